@@ -26,8 +26,8 @@ from time import perf_counter, process_time
 from benchmarks.timing import peak_mib, write_table
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.records.evidence import Evidence, load_evidence
 from hystbench.gap.run import closed_gap

@@ -10,8 +10,8 @@ from hystbench.blocks import registry
 from hystbench.gap import cache as module
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.cache import Remembered, remembered, remembering
-from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.records.evidence import load_evidence

@@ -14,8 +14,8 @@ from hystbench.challenge.plant.effects import VOCABULARY
 from hystbench.challenge.spec import CaseSpec
 from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.judging.unnamed import what_is_unnamed
 from hystbench.gap.judging.verdict import judge, what_is_left
 from hystbench.gap.locate import locate

@@ -6,8 +6,8 @@ import pytest
 
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.holdout.outcome import with_what_was_asked
 from hystbench.gap.naming.built_in import build_in
 from hystbench.gap.naming.rank import rank

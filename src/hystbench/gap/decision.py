@@ -13,11 +13,10 @@ from hystbench.gap.effects import among
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.excitations import Limits
 from hystbench.gap.fitting.augmented_model import augmented
-from hystbench.gap.fitting.base_on_records import start_state
+from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.apart import apart_inside
-from hystbench.gap.inside.named_inside import Inside, beats, named_inside
+from hystbench.gap.inside.named_inside import Inside, apart_inside, beats, named_inside
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
 from hystbench.gap.naming.add_effects import add_effects
 from hystbench.gap.naming.with_own_values import named_apart

@@ -12,18 +12,17 @@ from hystbench.blocks.calls import USED_UP, Calls, current
 from hystbench.gap.experiment.excitations import Limits
 from hystbench.gap.experiment.tell_apart import Experiment, tell_apart
 from hystbench.gap.fitting.augmented_model import augmented, blocks_of
-from hystbench.gap.fitting.compared_records import compared_records
-from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.model_score import floor_with_steps, make_score, step_error
+from hystbench.gap.fitting.on_records import compared_records
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.parameters import at_ends, base_parameters
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.fitting.step_error import floor_with_steps, step_error
 from hystbench.gap.fitting.uncertainty import (
+    beside_errors,
     on_more_samples,
     size_error,
     standard_errors,
 )
-from hystbench.gap.fitting.uncertainty_beside import beside_errors
 from hystbench.gap.holdout.show import FitResult
 from hystbench.gap.judging.black_box import BlackBox, black_box
 from hystbench.gap.judging.gap_json import (
@@ -112,13 +111,10 @@ def judge_and_tell(
         named = named.taken_back()
         left = what_is_left(start, named.state, floor.rms)
     state, model = named.state, augmented(base, named.state)
-    before = compared_records(start)
-    after = before if state is start else compared_records(state)
+    before, after = compared_records(start), compared_records(state)
     found = _judged(start, named, left, floor, before, after, own, unnamed_share)
     ladder = rungs(start, named)
-    simulated = {start: before, state: after}
-    is_named = found.verdict == "named"
-    contributed = contributions(ladder, simulated) if is_named else ()
+    contributed = contributions(ladder) if found.verdict == "named" else ()
     where = locate(before, floor, contributed)
     say(where[0].sentence)
     say(f"{found.verdict}: {found.reason}")

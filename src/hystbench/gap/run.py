@@ -16,8 +16,7 @@ from hystbench.gap.bases.lead import without_lead
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.decision import search
 from hystbench.gap.fitting.augmented_model import augmented
-from hystbench.gap.fitting.base_on_records import run_base, start_state
-from hystbench.gap.fitting.compared_records import compared_records
+from hystbench.gap.fitting.on_records import compared_records, run_base, start_state
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.holdout.outcome import outcome

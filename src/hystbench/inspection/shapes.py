@@ -11,7 +11,8 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Declined, Variant
+from hystbench.gap.effects.effect import Declined
+from hystbench.gap.effects.variant import Variant
 from hystbench.gap.fitting.state import ModelState, beside_columns
 from hystbench.record import FloatArray
 

@@ -9,8 +9,9 @@ import pytest
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Declined, logarithmic
 from hystbench.gap.effects.drift import FORMS, WINDING, path
+from hystbench.gap.effects.effect import Declined
+from hystbench.gap.effects.variant import logarithmic
 from hystbench.gap.fitting.edit_chain import removable, with_effect, without_effect
 from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.state import Free

@@ -13,7 +13,6 @@ from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import refit
 from hystbench.gap.fitting.state import Free
-from hystbench.gap.naming import cached as work
 from hystbench.gap.naming import rank as ranked
 from hystbench.gap.naming.rank import on_folds, rank
 from hystbench.gap.naming.rounds import Candidate
@@ -120,7 +119,7 @@ def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
     plain, finished = rank(before, score), []
     last = [item for item in plain if item.held_back is not None][-1]
 
-    exactly = work.finished
+    exactly = ranked.finished
 
     def noted(state, score):
         finished.append(state.added[-1].effect)
@@ -130,7 +129,7 @@ def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
         return 1e3 if after.added[-1].effect == last.effect else -1e3
 
     monkeypatch.setattr(ranked, "gain_held_back", told)
-    monkeypatch.setattr(work, "finished", noted)
+    monkeypatch.setattr(ranked, "finished", noted)
     monkeypatch.setattr(ranked, "EXACT", 1)
     ranking = rank(before, score)
     assert last.effect != plain[0].effect

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hystbench.blocks import registry
-from hystbench.gap.effects.base import Variant
+from hystbench.gap.effects.variant import Variant
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.parameter_units import unit_at, unit_behind

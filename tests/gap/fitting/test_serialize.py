@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Declined
-from hystbench.gap.fitting.base_on_records import start_state
+from hystbench.gap.effects.effect import Declined
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.fitting.variant_search import Attempt, coarse
 from hystbench.gap.records.evidence import load_evidence

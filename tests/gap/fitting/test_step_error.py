@@ -7,9 +7,9 @@ import pytest
 
 from hystbench.blocks.curve import finer
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.fitting.edit_chain import with_effect
-from hystbench.gap.fitting.step_error import above_floor, floor_with_steps, step_error
+from hystbench.gap.fitting.model_score import above_floor, floor_with_steps, step_error
+from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.naming import add_effects as naming
 from hystbench.gap.naming.add_effects import Progress, advance
 from hystbench.gap.progress import silent
@@ -95,7 +95,7 @@ def test_no_effect_is_tried_where_steps_hold_what_is_left(monkeypatch, error):
 
     monkeypatch.setattr(naming, "rank", rank)
     monkeypatch.setattr(
-        "hystbench.gap.fitting.step_error.step_error", lambda state: error
+        "hystbench.gap.fitting.model_score.step_error", lambda state: error
     )
     progress = Progress(state, 8 * NOISE**2)  # all that the base leaves is still there
     if error:

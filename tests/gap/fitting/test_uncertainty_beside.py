@@ -5,7 +5,7 @@ import pytest
 
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.state import Added, Free, ModelState
-from hystbench.gap.fitting.uncertainty_beside import beside_errors
+from hystbench.gap.fitting.uncertainty import beside_errors
 from hystbench.gap.records.scored_samples import ScoredSamples
 from tests.gap.made import record
 from tests.gap.small import block, plain_score
@@ -47,6 +47,18 @@ def humming(seed):
     values = {"frequency_hz": HZ}
     tone = lambda t: SIZE * np.sin(2 * np.pi * HZ * t + 0.4)  # noqa: E731
     return state_of("mains-pickup", 1, values, tone, seed)
+
+
+def test_amplitudes_of_two_signals_are_shared_out_by_record():
+    """Of a ramp one a record, of a tone two: in the order of the columns."""
+    drift, tone = drifting(1), humming(1)
+    both = ModelState(
+        drift.chain, drift.records, drift.sample, beside=(*drift.beside, *tone.beside)
+    )
+    assert both.beside_columns.shape[1] == 6
+    ramps, tones = both.by_signal(np.arange(6))
+    assert ramps.tolist() == [[0], [1]]
+    assert tones.tolist() == [[2, 3], [4, 5]]
 
 
 def errors(state):

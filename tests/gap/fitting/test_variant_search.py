@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import Declined
+from hystbench.gap.effects.effect import Declined
 from hystbench.gap.fitting.variant_search import Trial, coarse
 
 

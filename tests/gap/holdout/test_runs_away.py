@@ -12,9 +12,8 @@ import pytest
 
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.base_on_records import start_state
-from hystbench.gap.fitting.compared_records import compared_records
 from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.on_records import compared_records, start_state
 from hystbench.gap.holdout.show import FAR, FitResult, bounded, reach, score_hold_out
 from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.naming.ladder import Rung

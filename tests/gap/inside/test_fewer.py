@@ -12,7 +12,7 @@ from hystbench.gap.effects.law import Law
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.fewer import OnAll, on_fewer
-from hystbench.gap.inside.put_in import evened, with_law
+from hystbench.gap.inside.laws import evened, with_law
 from hystbench.gap.records.coarser import ENOUGH
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.quantities import Quantities

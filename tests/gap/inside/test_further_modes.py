@@ -21,7 +21,7 @@ from hystbench.gap.inside.further_modes import (
 )
 from hystbench.gap.inside.laws import laws_for
 from hystbench.gap.inside.modes import NUMBERS, frequency_of, sum_of
-from hystbench.gap.inside.search import Hypothesis, may_gain
+from hystbench.gap.inside.search import may_gain
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.record import Channel, Record
 
@@ -87,7 +87,7 @@ def found_with(second):
     added = (Added("hysteretic-force", "inside", "plays", (1,), {}, 2.0),)
     state = state_of(truth, chain, free, added)
     score = Score(state.sample, np.zeros((len(state.sample), 0)), NOISE**2)
-    return Hypothesis(("hysteretic-force",), ("plays",), fitted(state, score)), score
+    return fitted(state, score), score
 
 
 OFFER = partial(laws_for, turns=False, offered=("hysteretic-force",))
@@ -97,13 +97,13 @@ def test_a_joint_is_found_in_a_second_mode_as_the_same_effect():
     found, score = found_with((slips(SECOND),))
     wider, modes = in_further_modes(found, OFFER, score)
     assert modes == pytest.approx([4.5 * np.sqrt(1.3)])
-    state = wider.fitted.state
+    state = wider.state
     (effect,) = state.added
     assert [state.chain[k].name for k in effect.blocks] == ["iwan-force"] * 2
     joint = state.chain[effect.blocks[1]]
     assert joint.stiffness == pytest.approx(0.3 * SECOND["stiffness"], rel=0.1)
     assert joint.slip_distance == pytest.approx(0.02, rel=0.1)
-    assert np.sqrt(state.power(0.0)) < 0.01 * np.sqrt(found.fitted.state.power(0.0))
+    assert np.sqrt(state.power(0.0)) < 0.01 * np.sqrt(found.state.power(0.0))
     assert wider.effects == ("hysteretic-force",)
 
 
@@ -116,7 +116,7 @@ def test_no_joint_has_the_credit_of_a_damping_that_is_wrong():
 
 def test_a_mode_taken_out_does_what_it_did():
     found, _ = found_with((slips(SECOND),))
-    before = found.fitted.state
+    before = found.state
     split = list(with_another_mode(before))
     frequencies = [
         frequency_of(next(x for x in one.chain if isinstance(x, OtherMechanism)))

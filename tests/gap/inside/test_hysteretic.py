@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.inside.best_host import best_host
-from hystbench.gap.inside.hosts import one_coordinate
+from hystbench.gap.inside.hosts import best_host, one_coordinate
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import SCALE
 from hystbench.quantities import Quantities
@@ -66,12 +65,12 @@ def stiffens(force, v):
 def test_a_loop_that_grows_stiffer_on_loading_is_a_hysteretic_force():
     item = best(stiffens)
     assert item.effects == ("hysteretic-force",)
-    law = item.fitted.state.chain[1]
+    law = item.state.chain[1]
     assert law.name == "bouc-wen-force"
     assert law.stiffness == pytest.approx(40.0, rel=0.15)
     assert law.beta == pytest.approx(2.0, rel=0.15)
     assert law.gamma == pytest.approx(-3.0, rel=0.15)
-    rms = np.sqrt(np.mean(item.fitted.state.residual**2))
+    rms = np.sqrt(np.mean(item.state.residual**2))
     assert rms < 1.5 * NOISE
 
 
@@ -95,11 +94,11 @@ def test_elements_that_slip_one_after_the_other_are_a_hysteretic_force():
 
     item = best(held, offered=["hysteretic-force"])
     assert (item.effects, item.forms) == (("hysteretic-force",), ("plays",))
-    law = item.fitted.state.chain[1]
+    law = item.state.chain[1]
     assert law.stiffness == pytest.approx(40.0, rel=0.05)
     assert law.slip_distance == pytest.approx(0.3, rel=0.1)
     assert law.exponent == pytest.approx(0.0, abs=0.15)
-    assert np.sqrt(np.mean(item.fitted.state.residual**2)) < 3 * NOISE
+    assert np.sqrt(np.mean(item.state.residual**2)) < 3 * NOISE
 
 
 def test_elements_that_all_slip_at_once_are_friction_and_clearly_so():

@@ -12,7 +12,6 @@ from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added
 from hystbench.gap.inside import search as inside_search
 from hystbench.gap.inside.named_inside import Inside, _rounds, chosen
-from hystbench.gap.inside.search import Hypothesis
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.free_mass import windows
@@ -22,10 +21,13 @@ from hystbench.record import Channel, Record
 from tests.gap.small import block
 
 
+def added(effects):
+    return [SimpleNamespace(effect=x, place="inside", form="") for x in effects]
+
+
 def tried(score, *effects):
-    added = [SimpleNamespace(effect=x, place="inside", form="") for x in effects]
-    state = SimpleNamespace(added=added)
-    return Hypothesis(effects, ("",) * len(effects), Fitted(state, score))
+    state = SimpleNamespace(added=added(effects))
+    return Fitted(state, score)
 
 
 def test_an_effect_that_does_little_alone_comes_behind_the_one_that_it_needs():
@@ -38,7 +40,7 @@ def test_an_effect_that_does_little_alone_comes_behind_the_one_that_it_needs():
         tried(-250.0, "overflow", "stop"),
         tried(-30.0, "outflow", "stop"),
     ]
-    first, second = _rounds(found[0].fitted.state, best, found)
+    first, second = _rounds(found[0].state, best, found)
     assert [x.effect for x in first.ranking] == ["overflow", "outflow"]
     assert [x.effect for x in second.ranking] == ["outflow", "stop"]
     assert [x.gain for x in second.ranking] == [300.0, 50.0]
@@ -53,13 +55,13 @@ def test_where_one_order_of_three_was_tried_it_is_the_one_that_is_told():
         tried(-300.0, "drag", "stop"),
         best,
     ]
-    told = _rounds(found[0].fitted.state, best, found)
+    told = _rounds(found[0].state, best, found)
     assert [one.ranking[0].effect for one in told] == ["drag", "stop", "friction"]
 
 
 def test_without_an_effect_there_is_no_round():
     alone = tried(0.0)
-    assert _rounds(alone.fitted.state, alone, [alone]) == []
+    assert _rounds(alone.state, alone, [alone]) == []
 
 
 class Told(SimpleNamespace):
@@ -73,8 +75,8 @@ class Told(SimpleNamespace):
 
 
 def measured(score, left, *effects):
-    state = Told(left=left, freedom=len(effects))
-    return Hypothesis(effects, ("",) * len(effects), Fitted(state, score))
+    state = Told(left=left, freedom=len(effects), added=added(effects))
+    return Fitted(state, score)
 
 
 @pytest.mark.parametrize(
@@ -119,8 +121,8 @@ def test_threes_are_tried_where_a_pair_pays_or_no_single_does(
         return [chained(pair, *carried[0].effects, "drag")]
 
     def chained(score, *effects):
-        state = SimpleNamespace(chain=(), added=[], freedom=0.0)
-        return Hypothesis(effects, ("",) * len(effects), Fitted(state, score))
+        state = SimpleNamespace(chain=(), added=added(effects), freedom=0.0)
+        return Fitted(state, score)
 
     monkeypatch.setattr(inside_search, "_one_more", one_more)
     monkeypatch.setattr(inside_search, "with_one_fewer", lambda *_: [])

@@ -7,8 +7,7 @@ import pytest
 
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.inside.best_host import best_host
-from hystbench.gap.inside.hosts import hosts
+from hystbench.gap.inside.hosts import best_host, hosts
 from hystbench.gap.inside.named_inside import chosen
 from hystbench.gap.inside.stores import stores
 from hystbench.quantities import Quantities
@@ -51,8 +50,8 @@ def test_an_outflow_by_the_root_of_the_level_is_named():
     best, _ = found(tanks(root=True, height=np.inf))
     assert best.effects == ("outflow",)
     assert all(store.exponent == pytest.approx(0.5, abs=0.1)
-               for store in best.fitted.state.chain)  # fmt: skip
-    left = np.sqrt(np.mean(best.fitted.state.residual**2))
+               for store in best.state.chain)  # fmt: skip
+    left = np.sqrt(np.mean(best.state.residual**2))
     assert left < 1.5 * NOISE
 
 
@@ -73,15 +72,15 @@ def test_the_law_may_be_in_either_of_a_slow_and_a_fast_store(powers):
         key=lambda item: item.score,
     )
     assert best.effects == ("outflow",)
-    found = [store.exponent for store in best.fitted.state.chain]
+    found = [store.exponent for store in best.state.chain]
     assert found == pytest.approx(powers, abs=0.1)
-    assert np.sqrt(np.mean(best.fitted.state.residual**2)) < 1.5 * NOISE
+    assert np.sqrt(np.mean(best.state.residual**2)) < 1.5 * NOISE
 
 
 def test_overflow_is_named_and_goes_out_again():
     best, _ = found(tanks(root=False, height=90.0))
     assert best.effects == ("overflow",)
-    state = best.fitted.state
+    state = best.state
     assert np.sqrt(np.mean(state.residual**2)) < 1.5 * NOISE
     # The inflow is counted in volts of the pump: the upper store's unit is ours.
     assert state.chain[0].height == pytest.approx(90.0, rel=0.03)
@@ -124,7 +123,7 @@ def test_of_several_records_each_may_begin_where_it_rests():
     score = Score(begun[0].sample, np.zeros((2 * COUNT, 0)), NOISE**2)
     best = chosen(search(best_host(begun, score), score), score.floor)
     assert best.effects == ("outflow",)
-    state = best.fitted.state
+    state = best.state
     assert [store.start for store in state.chain] == ["settled"]
     assert np.sqrt(np.mean(state.residual**2)) < 1.5 * NOISE
 

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import augmented
-from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.parameters import at_ends, base_parameters
 from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.judging.gap_json import effect_mapping, ranking_rows

@@ -9,7 +9,7 @@ import yaml
 from hystbench.blocks.calls import Calls, counted
 from hystbench.errors import InputError
 from hystbench.gap.bases.load import load_base
-from hystbench.gap.fitting.base_on_records import start_state
+from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.naming.forecast_calls import calls_of_a_round, foretell
 from hystbench.gap.records.evidence import Evidence
 from tests.gap.closing import close_gap

@@ -78,7 +78,7 @@ def test_an_error_of_more_than_half_the_size_decides(
     monkeypatch.setattr(taken_out, "error_of_size", lambda *given: error)
     monkeypatch.setattr(taken_out, "gain_held_back", lambda *given: held_back)
     found = unknown(with_two(BEND), NOISE)
-    assert names(with_two(BEND) if found is None else found.state) == kept
+    assert names(with_two(BEND) if found is None else found[1]) == kept
 
 
 def test_numbers_that_stand_in_for_each_other_do_not_hide_a_size():
@@ -151,7 +151,7 @@ def test_a_wrong_shape_stays_by_the_rule_by_which_it_came(
     found = needless(state, NOISE, gap / share)
     assert (found is not None) == goes
     if found is not None:
-        assert found.gone.name == effect
+        assert found[0].name == effect
 
 
 def test_what_went_is_told_with_the_reason():

@@ -16,7 +16,7 @@ from hystbench.challenge.spec import CaseSpec
 from hystbench.gap.bases.load import load_base, simulated_column
 from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Declined
+from hystbench.gap.effects.effect import Declined
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.run import write_next_experiment

@@ -6,7 +6,7 @@ from hystbench import options
 from hystbench.files import write_text
 from hystbench.gap.bases.kinds import IDENTIFIED, check_base
 from hystbench.gap.bases.load import given_base
-from hystbench.gap.fitting.base_on_records import run_base
+from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.job import DatasetFile, Out, job
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from functools import cache
 
-from hystbench.gap.effects.base import Effect
+from hystbench.gap.effects.effect import Effect
 from hystbench.registered import classes_in, with_installed
 
 

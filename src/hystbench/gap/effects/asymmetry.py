@@ -8,9 +8,10 @@ from typing import ClassVar
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.blocks.exponential_curve import ExponentialCurve
-from hystbench.gap.effects.base import Effect, Values, Variant, logarithmic
+from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.effects.places import places_between_halves
+from hystbench.gap.effects.variant import Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
 EXPONENTIAL = "exponential-curve"

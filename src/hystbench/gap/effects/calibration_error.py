@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Declined, Effect, Variant
+from hystbench.gap.effects.effect import Declined, Effect
+from hystbench.gap.effects.variant import Variant
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import SHAPE
 

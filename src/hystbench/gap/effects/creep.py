@@ -8,7 +8,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from hystbench.gap.effects.base import Declined, Effect, Values, Variant, logarithmic
+from hystbench.gap.effects.effect import Declined, Effect
+from hystbench.gap.effects.variant import Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
 

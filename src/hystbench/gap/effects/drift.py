@@ -6,14 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hystbench.gap.effects.base import (
-    EVERY,
-    Beside,
-    Effect,
-    SomeSamples,
-    Values,
-    Variant,
-)
+from hystbench.gap.effects.effect import Effect
+from hystbench.gap.effects.variant import EVERY, Beside, SomeSamples, Values, Variant
 from hystbench.gap.records.nuisance import periods_of_input, shows_a_path
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray, Record

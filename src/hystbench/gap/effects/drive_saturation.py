@@ -6,9 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hystbench.gap.effects.base import Effect, Variant
+from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.effects.places import places_in_drive
+from hystbench.gap.effects.variant import Variant
 from hystbench.gap.simulation.simulation import Simulation
 
 

@@ -7,8 +7,9 @@ from functools import partial
 from typing import Any
 
 from hystbench.blocks.eddy_diffusion import GEOMETRIES
-from hystbench.gap.effects.base import Effect, Values, Variant, logarithmic
+from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.places import places_in_drive
+from hystbench.gap.effects.variant import Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
 

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.hysteretic_force import HystereticForce
 from hystbench.blocks.smooth_friction import SmoothFriction
-from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.law import SLIDES, Law, Moved
+from hystbench.gap.effects.variant import Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
 HOLDS = 1e-7

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hystbench.blocks.gravity import Gravity as GravityBlock
-from hystbench.gap.effects.base import ForceEffect
+from hystbench.gap.effects.effect import ForceEffect
 from hystbench.gap.effects.law import Law, Moved
 
 

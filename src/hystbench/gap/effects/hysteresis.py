@@ -9,7 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hystbench.envelope import Envelope
-from hystbench.gap.effects.base import Declined, Effect, Values, Variant
+from hystbench.gap.effects.effect import Declined, Effect
+from hystbench.gap.effects.variant import Values, Variant
 from hystbench.gap.simulation.simulation import Simulation
 
 OPERATORS = 8

@@ -9,7 +9,7 @@ import numpy as np
 from hystbench.blocks.bouc_wen_force import BoucWenForce
 from hystbench.blocks.hysteretic_force import HystereticForce as Block
 from hystbench.blocks.iwan_force import IwanForce
-from hystbench.gap.effects.base import ForceEffect
+from hystbench.gap.effects.effect import ForceEffect
 from hystbench.gap.effects.law import SLIDES, Law, Moved
 
 STEEPEST = 1.0

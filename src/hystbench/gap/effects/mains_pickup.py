@@ -7,15 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.gap.effects.base import (
-    EVERY,
-    Beside,
-    Declined,
-    Effect,
-    SomeSamples,
-    Values,
-    Variant,
-)
+from hystbench.gap.effects.effect import Declined, Effect
+from hystbench.gap.effects.variant import EVERY, Beside, SomeSamples, Values, Variant
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray, Record
 

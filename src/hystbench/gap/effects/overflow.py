@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import StoreEffect
+from hystbench.gap.effects.effect import StoreEffect
 from hystbench.gap.effects.law import Changed, Filled
 
 SHARES = (0.95, 0.75)

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import Declined, Effect, Values, Variant
+from hystbench.gap.effects.effect import Declined, Effect
+from hystbench.gap.effects.variant import Values, Variant
 from hystbench.gap.simulation.simulation import Simulation
 
 

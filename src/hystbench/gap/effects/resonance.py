@@ -7,7 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from scipy import fft
 
-from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.effects.effect import Effect
+from hystbench.gap.effects.variant import Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray
 

@@ -9,8 +9,9 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.saturation import Saturation as Limit
-from hystbench.gap.effects.base import Effect, Values, Variant, logarithmic
+from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.places import places_between_halves
+from hystbench.gap.effects.variant import Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
 SOFTEST, SHARPEST = 1.0, 20.0

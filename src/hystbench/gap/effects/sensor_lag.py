@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.effects.places import places_in_sensor
+from hystbench.gap.effects.variant import Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
 

@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.gap.effects.base import Effect, Variant
+from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.effects.places import places_in_sensor
+from hystbench.gap.effects.variant import Variant
 from hystbench.gap.simulation.simulation import Simulation
 
 UNSIGNED = "unsigned-sensor"

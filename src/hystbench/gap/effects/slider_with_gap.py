@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hystbench.blocks.slider_with_gap import SliderWithGap as Block
-from hystbench.gap.effects.base import ForceEffect
+from hystbench.gap.effects.effect import ForceEffect
 from hystbench.gap.effects.law import Law, Moved
 
 

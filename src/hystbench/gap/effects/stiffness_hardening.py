@@ -14,9 +14,10 @@ from hystbench.blocks.exponential_stiffness import ExponentialStiffness
 from hystbench.blocks.stiffness import Stiffness
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import Declined, Effect, Values, Variant
+from hystbench.gap.effects.effect import Declined, Effect
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.effects.places import TRANSFER_FUNCTION
+from hystbench.gap.effects.variant import Values, Variant
 from hystbench.gap.simulation.simulation import Simulation
 
 Before = tuple[Block, ...]

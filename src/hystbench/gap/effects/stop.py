@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from hystbench.blocks.stop import SIDES
 from hystbench.blocks.stop import Stop as StopBlock
-from hystbench.gap.effects.base import ForceEffect
+from hystbench.gap.effects.effect import ForceEffect
 from hystbench.gap.effects.law import Law, Moved
 
 

@@ -8,7 +8,7 @@ from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import SETTINGS
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.state import Added, ModelState, beside_count
+from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.model import Model
 
 
@@ -20,8 +20,8 @@ def augmented(base: Model, state: ModelState) -> Model:
     same share of what they are now. What the base tells of where numbers came from
     stays with those that were not re-tuned.
     """
-    chain = [*state.chain, *(block for block in beside_blocks(state))]
-    model = Model(f"{base.name}-augmented", base.input, base.output, tuple(chain))
+    chain = (*state.chain, *beside_blocks(state))
+    model = Model(f"{base.name}-augmented", base.input, base.output, chain)
     names = list(model.parameter_names())
     own = [k for item in state.added for k in item.blocks]
     labels = [label for label, _ in model.labelled()]
@@ -102,12 +102,9 @@ def beside_blocks(state: ModelState) -> list[Block]:
     """Give the blocks of what lies beside the chain."""
     if not state.beside:
         return []
-    blocks, first = [], 0
-    for beside, values in state.beside:
-        count = beside_count(state, beside, values)
-        own = state.beside_amplitudes[first : first + count]
-        rows = own.reshape(len(state.records), -1)
+    blocks = []
+    each = state.by_signal(state.beside_amplitudes)
+    for (beside, values), rows in zip(state.beside, each, strict=True):
         described = effects()[beside.effect].describe(values, rows)
         blocks.append(registry()[beside.effect].from_mapping(described))
-        first += count
     return blocks

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Values, Variant
+from hystbench.gap.effects.variant import Values, Variant
 from hystbench.gap.fitting.state import Added, Free, ModelState
 
 AT_END = 0.02
@@ -50,31 +50,13 @@ def with_effect(state: ModelState, variant: Variant, values: Values) -> ModelSta
     # The chain's own blocks stay in their order around those of the effect.
     stays = [k for k in range(len(chain)) if k not in places]
     came = [k for k in range(len(state.chain)) if old is None or k != variant.start]
-    moved = dict(zip(came, stays, strict=True))
+    state = state.rearranged(chain, dict(zip(came, stays, strict=True)))
+    numbers = (free for k in places for free in numbers_of(chain[k], k, variant))
     return replace(
         state,
-        chain=chain,
-        free=(
-            *_moved(state.free, moved),
-            *(f for k in places for f in numbers_of(chain[k], k, variant)),
-        ),
-        added=(
-            *(_placed(item, moved) for item in state.added),
-            Added(*own, places, note, variant.freedom, old),
-        ),
+        free=(*state.free, *numbers),
+        added=(*state.added, Added(*own, places, note, variant.freedom, old)),
     )
-
-
-def _moved(free: Iterable[Free], moved: dict[int, int]) -> Iterator[Free]:
-    """Follow free numbers to where their blocks are now; drop those that went."""
-    for item in free:
-        if item.block in moved:
-            yield item._replace(block=moved[item.block])
-
-
-def _placed(item: Added, moved: dict[int, int]) -> Added:
-    places = tuple(moved[k] for k in item.blocks if k in moved)
-    return item._replace(blocks=places)
 
 
 def without_effect(state: ModelState, number: int) -> ModelState:
@@ -94,12 +76,7 @@ def without_effect(state: ModelState, number: int) -> ModelState:
             chain.append(block)
         elif gone.replaced is not None and k == gone.blocks[0]:
             chain.append(gone.replaced)
-    return replace(
-        state,
-        chain=tuple(chain),
-        free=tuple(_moved(state.free, moved)),
-        added=tuple(_placed(item, moved) for item in rest),
-    )
+    return replace(state, added=rest).rearranged(tuple(chain), moved)
 
 
 def _with_old_numbers(

@@ -1,4 +1,10 @@
-"""Fitting all free numbers of a model together, by Levenberg and Marquardt's steps."""
+"""Fitting all free numbers of a model together, by Levenberg and Marquardt's steps.
+
+It goes far: a force inside the dynamics starts where it does little. What is lowered is
+a sum of squares, and steps are as long as the last ones were good for. A refit starts
+near, and lowers the score itself, beside amplitudes that are solved for: see
+:mod:`hystbench.gap.fitting.refit`. Neither does the other's work.
+"""
 
 from __future__ import annotations
 
@@ -43,6 +49,16 @@ class Fitted:
 
     state: ModelState
     score: float
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Its effects, in the order in which they were put in."""
+        return tuple(item.effect for item in self.state.added)
+
+    @property
+    def forms(self) -> tuple[str, ...]:
+        """Law of each."""
+        return tuple(item.form for item in self.state.added)
 
 
 def fitted(

@@ -1,12 +1,19 @@
-"""The score of a model: how it is made for one, and what a model scores."""
+"""The score of a model: how it is made for one, what it scores, and where it ends.
+
+It ends at a floor: noise, and what the simulator's steps miss.
+"""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
 from hystbench.gap.fitting.score import Products, Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.records.scored_samples import rms
 from hystbench.gap.simulation.reshape import orthonormal
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray
 
 
@@ -51,3 +58,37 @@ def score_beside(state: ModelState, score: Score, beside: Products | None) -> fl
     """Score a model where the products of what lies beside it are known."""
     nothing = np.zeros((len(state.sample), 0))
     return score.amplitudes(state.residual, nothing, state.freedom, beside=beside).score
+
+
+def step_error(state: ModelState) -> float | None:
+    """Measure what the plain simulation misses by its steps, RMS over scored samples.
+
+    The state's own residual is that of a simulation in short steps. None where the
+    chain holds a simulator whose inside is not seen: nobody knows its steps.
+    """
+    if not all(block.seen for block in state.chain):
+        return None
+    plain = state.sample.take(Simulation(state.chain, state.records, state.hold).output)
+    return rms(plain - (state.measured - state.residual))
+
+
+def floor_with_steps(noise_rms: float, error: float | None) -> float:
+    """Give the RMS of noise and step error together: neither knows of the other.
+
+    Where the step error is not known it is that of the noise.
+    """
+    return noise_rms if error is None else float(np.hypot(noise_rms, error))
+
+
+def above_floor(state: ModelState, score: Score) -> float:
+    """Tell how much could be gained in the score if all went that is no noise or step.
+
+    Parameters
+    ----------
+    state : ModelState
+    score : Score
+        Its floor is that of the noise.
+    """
+    floor = floor_with_steps(float(np.sqrt(score.floor)), step_error(state)) ** 2
+    whole = replace(score, floor=floor)
+    return score_of(state, whole) - whole.least(state.freedom)

@@ -28,8 +28,7 @@ from hystbench.gap.records.nuisance import FIRST
 from hystbench.gap.thresholds import PARAMETER, PAYS, RECORD_WEIGHT, SCALE
 from hystbench.record import FloatArray, Record
 
-KEYS = {"delay": "delay_s", "gain": "gain", "offset": "offset"}
-KINDS = tuple(KEYS)
+KINDS = ("delay", "gain", "offset")
 LONGEST = 1 / 20
 """Of a record, that it may be late or early by, as for a delay that all share."""
 FINER = 1e-3
@@ -96,11 +95,7 @@ class OwnValues:
             return None
         return {
             "kinds": list(self.kinds),
-            "records": [
-                {"name": name}
-                | {KEYS[kind]: getattr(own, KEYS[kind]) for kind in KINDS}
-                for name, own in self.records
-            ],
+            "records": [{"name": name, **own._asdict()} for name, own in self.records],
             "share_of_gap_power": self.share,
             "sentence": self._sentence(unit),
         }
@@ -111,21 +106,11 @@ class OwnValues:
         if content is None:
             return NONE
         told = [
-            (item["name"], Own(*(item[KEYS[kind]] for kind in KINDS)))
+            (item["name"], Own(*(item[key] for key in Own._fields)))
             for item in content["records"]
         ]
         kinds, share = tuple(content["kinds"]), content["share_of_gap_power"]
         return cls(kinds, tuple(told), share)
-
-    def plain(self) -> list[Any]:
-        """Give the same as JSON holds it, all digits of it."""
-        return [list(self.kinds), [[name, *own] for name, own in self.records]]
-
-    @classmethod
-    def of_plain(cls, content: Sequence[Any]) -> OwnValues:
-        """Give back what :meth:`plain` gave of what :func:`own_values` found."""
-        kinds, records = content
-        return cls(tuple(kinds), tuple((name, Own(*own)) for name, *own in records))
 
     @property
     def words(self) -> str:

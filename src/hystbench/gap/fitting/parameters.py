@@ -12,7 +12,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import beside_blocks, places_of_base
 from hystbench.gap.fitting.parameter_units import unit_at, unit_behind, written
 from hystbench.gap.fitting.state import Added, ModelState
-from hystbench.gap.fitting.uncertainty_beside import Errors
+from hystbench.gap.fitting.uncertainty import Errors
 from hystbench.model import Model
 from hystbench.record import FloatArray
 

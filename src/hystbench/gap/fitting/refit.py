@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +13,12 @@ from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import beside_of, score_beside, score_of
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import ModelState, beside_count, beside_slope
+from hystbench.gap.fitting.serialize import (
+    remembered_of,
+    state_again,
+    state_with_correction,
+)
+from hystbench.gap.fitting.state import ModelState, beside_slope
 from hystbench.gap.fitting.variant_search import Trial
 from hystbench.record import FloatArray
 
@@ -85,7 +92,39 @@ def sizes(state: ModelState) -> FloatArray:
 
 
 def added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, float]:
-    """Add an effect as a trial found it and refit everything together."""
+    """Add an effect as a trial found it and refit everything together.
+
+    Raises
+    ------
+    InputError
+        If a block refuses the values.
+    """
+    variant = trial.variant
+    about = [variant.effect, variant.place, variant.form, variant.start]
+    about.append(variant.operates)
+    return _remembered(
+        state,
+        lambda: ["added", *about, trial.values, score.digest],
+        lambda: _added(state, trial, score),
+    )
+
+
+def _remembered(
+    state: ModelState,
+    key: Callable[[], list[Any]],
+    compute: Callable[[], tuple[ModelState, float]],
+) -> tuple[ModelState, float]:
+    """Compute a model that follows from another one, or look it up."""
+    return remembered_of(
+        state,
+        key,
+        compute,
+        lambda found: [state_with_correction(found[0]), found[1]],
+        lambda kept: (state_again(kept[0], state), kept[1]),
+    )
+
+
+def _added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, float]:
     after = with_effect(state, trial.variant, trial.values)
     if trial.variant.zero is not None:
         after = after.settled()
@@ -102,11 +141,13 @@ def tuned(state: ModelState, score: Score) -> ModelState:
     ModelState
         Never worse than the one given.
     """
-    for number, key in _searched(state):
+    searched = [(k, key) for k, (_, own) in enumerate(state.beside) for key in own]
+    for number, key in searched:
         for _ in range(ROUNDS):
             before = score_of(state, score)
             beside, values = state.beside[number]
-            slope = beside_slope(state, beside, values, key, _own(state, number))
+            own = state.by_signal(state.beside_amplitudes)[number].ravel()
+            slope = beside_slope(state, beside, values, key, own)
             columns = np.column_stack([state.tangents, state.beside_columns, slope])
             stiffness = state.change_charges(columns.shape[1])
             step = score.amplitudes(state.residual, columns, 0.0, stiffness).values[-1]
@@ -121,18 +162,16 @@ def tuned(state: ModelState, score: Score) -> ModelState:
     return state
 
 
-def _searched(state: ModelState) -> list[tuple[int, str]]:
-    return [(k, key) for k, (_, values) in enumerate(state.beside) for key in values]
-
-
-def _own(state: ModelState, number: int) -> FloatArray:
-    """Give the amplitudes of one of the signals beside."""
-    counts = [beside_count(state, *item) for item in state.beside[: number + 1]]
-    return state.beside_amplitudes[sum(counts[:-1]) : sum(counts)]
-
-
 def finished(state: ModelState, score: Score) -> tuple[ModelState, float]:
     """Simulate a model exactly and refit it to the end."""
+    return _remembered(
+        state,
+        lambda: ["finished", score.digest],
+        lambda: _finished(state, score),
+    )
+
+
+def _finished(state: ModelState, score: Score) -> tuple[ModelState, float]:
     state = state.settled()
     state, _ = refit(state, score)
     state = tuned(state, score)

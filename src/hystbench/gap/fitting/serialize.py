@@ -20,7 +20,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.simulator import Simulator
 from hystbench.gap.cache import Result, records_digest, remembered
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Beside
+from hystbench.gap.effects.variant import Beside
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
@@ -161,12 +161,17 @@ class Restorer:
         )
         at = content["corrected_at"]
         if at is None:
-            return _replaced(state, beside)
+            return replace(state, beside=beside)
         chain = self.chain(at)
         if chain not in self._corrections:
             settled = ModelState(chain, self.records, self.sample, hold=hold).settled()
             self._corrections[chain] = settled.correction
-        return _replaced(state, beside, self._corrections[chain], chain)
+        return replace(
+            state,
+            beside=beside,
+            correction=self._corrections[chain],
+            corrected_at=chain,
+        )
 
     def _block(self, content: Mapping[str, Any]) -> Block:
         ((name, values),) = content.items()
@@ -212,22 +217,3 @@ def _beside(effect: str, order: int, simulation: Simulation) -> Beside:
     """Give the shapes of what lies beside, as its effect offers them."""
     offered = (variant.beside for variant in effects()[effect].variants(simulation))
     return next(item for item in offered if item is not None and item.order == order)
-
-
-def _replaced(
-    state: ModelState,
-    beside: tuple[tuple[Beside, Any], ...],
-    correction: FloatArray | None = None,
-    at: tuple[Block, ...] | None = None,
-) -> ModelState:
-    return ModelState(
-        state.chain,
-        state.records,
-        state.sample,
-        state.free,
-        state.added,
-        beside,
-        state.hold,
-        correction,
-        at,
-    )

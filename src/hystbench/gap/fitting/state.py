@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
 from hystbench.blocks.transfer_function import stable
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import Beside, Refused, Values
+from hystbench.gap.effects.variant import Beside, Refused, Values
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.reshape import orthonormal, reshapings
 from hystbench.gap.simulation.simulation import Signals, Simulation
@@ -99,23 +100,21 @@ class ModelState:
         """The chain on the records, simulated quickly."""
         return Simulation(self.chain, self.records, self.hold, quick=True)
 
-    def on(self, kept: Sequence[int]) -> ModelState:
-        """Give the state on some of its records, by number."""
-        rows = [self.sample.slices[k] for k in kept]
-        correction = self.correction
-        if correction is not None:
-            correction = np.concatenate([correction[part] for part in rows])
-        return replace(
-            self,
-            records=tuple(self.records[k] for k in kept),
-            sample=self.sample.on(kept),
-            correction=correction,
-        )
+    def on(
+        self, records: tuple[Record, ...], sample: ScoredSamples, rows: NDArray[Any]
+    ) -> ModelState:
+        """Give the state on less: the rows are the scored samples that are left."""
+        lacks = None if self.correction is None else self.correction[rows]
+        return replace(self, records=records, sample=sample, correction=lacks)
+
+    @cached_property
+    def exact(self) -> Signals:
+        """The chain's output, simulated in short steps."""
+        return Simulation(self.chain, self.records, self.hold, fine=True).output
 
     def settled(self) -> ModelState:
         """Give the state with what the quick simulation lacks made up for."""
-        exact = Simulation(self.chain, self.records, self.hold, fine=True).output
-        lacks = self.sample.take(exact) - self.sample.take(self.simulation.output)
+        lacks = self.sample.take(self.exact) - self.sample.take(self.simulation.output)
         return replace(self, correction=lacks, corrected_at=self.chain)
 
     @cached_property
@@ -203,9 +202,17 @@ class ModelState:
     @cached_property
     def beside_columns(self) -> FloatArray:
         """Scored samples of the shapes beside, of every record on its own."""
-        return _stack(
-            [beside_columns(self, *item) for item in self.beside], len(self.sample)
-        )
+        return _stack(self._beside_each, len(self.sample))
+
+    @cached_property
+    def _beside_each(self) -> list[FloatArray]:
+        return [beside_columns(self, *item) for item in self.beside]
+
+    def by_signal(self, amplitudes: NDArray[Any]) -> list[NDArray[Any]]:
+        """Share the amplitudes of all shapes beside out: (records, k) a signal."""
+        ends = np.cumsum([columns.shape[1] for columns in self._beside_each], dtype=int)
+        parts = np.split(amplitudes, ends)[:-1]
+        return [own.reshape(len(self.records), -1) for own in parts]
 
     @cached_property
     def beside_amplitudes(self) -> FloatArray:
@@ -295,6 +302,33 @@ class ModelState:
         """Give the state with other values in its chain."""
         return replace(self, chain=chain)
 
+    def rearranged(
+        self, chain: tuple[Block, ...], moved: Mapping[int, int]
+    ) -> ModelState:
+        """Give the state with its blocks at other places, in a chain of others too.
+
+        Free numbers and effects follow their blocks; what has no place any more goes.
+
+        Parameters
+        ----------
+        chain : tuple of Block
+        moved : mapping of int to int
+            Places in it of the blocks that stay, by their places now.
+        """
+        return replace(
+            self,
+            chain=chain,
+            free=tuple(
+                item._replace(block=moved[item.block])
+                for item in self.free
+                if item.block in moved
+            ),
+            added=tuple(
+                item._replace(blocks=tuple(moved[k] for k in item.blocks if k in moved))
+                for item in self.added
+            ),
+        )
+
     @cached_property
     def _simulated(self) -> FloatArray:
         return self.reference - self.residual
@@ -330,12 +364,6 @@ def beside_columns(state: ModelState, beside: Beside, values: Values) -> FloatAr
         full[where] = own
         parts.append(full)
     return np.hstack(parts)
-
-
-def beside_count(state: ModelState, beside: Beside, values: Values) -> int:
-    """Give the number of amplitudes of a signal beside, in all records together."""
-    each: int = beside.columns(state.records[0], values, beside.order).shape[1]
-    return each * len(state.records)
 
 
 def beside_slope(

@@ -12,8 +12,10 @@ import numpy as np
 from hystbench.blocks.calls import CallsUsedUp
 from hystbench.blocks.parameter import HUGE
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import Declined, Values, Variant
+from hystbench.gap.effects.effect import Declined
+from hystbench.gap.effects.variant import Values, Variant
 from hystbench.gap.fitting.score import Amplitudes, Products, Score
+from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState, beside_columns
 from hystbench.record import FloatArray
 
@@ -255,6 +257,23 @@ def fine(attempt: Attempt, start: Trial) -> Trial:
 
     The halved steps are tried one parameter at a time.
     """
+    variant = attempt.variant
+    return remembered_of(
+        attempt.state,
+        lambda: [
+            "fine",
+            variant.effect,
+            attempt.number,
+            start.values,
+            attempt.score.digest,
+        ],
+        lambda: _fine(attempt, start),
+        lambda found: [found.values, found.score],
+        lambda kept: Trial(variant, *kept),
+    )
+
+
+def _fine(attempt: Attempt, start: Trial) -> Trial:
     grids = attempt.variant.grids
     best = start
     steps = {

@@ -12,8 +12,8 @@ from itertools import pairwise
 from typing import Any
 
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Effect
-from hystbench.gap.fitting.base_on_records import run_base
+from hystbench.gap.effects.effect import Effect
+from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.holdout.show import (
     FitResult,
     Outcome,

@@ -10,7 +10,7 @@ import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.gap.fitting.augmented_model import augmented
-from hystbench.gap.fitting.base_on_records import run_base
+from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.holdout.shrink import Shrink, left_rms, shrink

@@ -101,17 +101,11 @@ class Beginnings:
 
         What other modes do beside them is nearly right, and is fitted in the end.
         """
-        lacks = state.correction
         free = (
             x for x in state.free if not isinstance(state.chain[x.block], OtherModes)
         )
-        return replace(
-            state,
-            free=tuple(free),
-            records=self.records,
-            sample=self.sample,
-            correction=None if lacks is None else lacks[self.kept],
-        )
+        less = state.on(self.records, self.sample, self.kept)
+        return replace(less, free=tuple(free))
 
 
 def with_numbers_of(state: ModelState, other: ModelState) -> ModelState:

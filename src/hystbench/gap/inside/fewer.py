@@ -16,7 +16,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.least_squares import Fitted, fitted, judged
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.search import FEW, Hypothesis
+from hystbench.gap.inside.search import FEW
 from hystbench.gap.records.coarser import coarser, left_out
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
@@ -120,26 +120,19 @@ class OnAll:
             sample=self.whole.sample,
         ).settled()
 
-    def judged(self, found: Fitted) -> Fitted:
-        """Score a model on all samples as it is."""
-        state = self.state(found.state)
-        return Fitted(state, judged(state, self.score))
-
-    def fitted(self, found: Fitted) -> Fitted:
-        """Fit a model to all samples, from where it is."""
-        return fitted(self.state(found.state), self.score, FEW)
-
     def hypotheses(
-        self, found: Sequence[Hypothesis], best: Sequence[Hypothesis]
-    ) -> list[Hypothesis]:
+        self, found: Sequence[Fitted], best: Sequence[Fitted]
+    ) -> list[Fitted]:
         """Fit the best ones to all samples, and score the others on them."""
-        return [
-            replace(
-                item,
-                fitted=(self.fitted if item in best else self.judged)(item.fitted),
+        on_all = []
+        for item in found:
+            state = self.state(item.state)
+            on_all.append(
+                fitted(state, self.score, FEW)
+                if item in best
+                else Fitted(state, judged(state, self.score))
             )
-            for item in found
-        ]
+        return on_all
 
 
 def _simulated(whole: ModelState, chain: tuple[Block, ...]) -> FloatArray:

@@ -12,11 +12,11 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_mechanism import OtherMechanism
 from hystbench.blocks.other_modes import OtherModes
-from hystbench.gap.fitting.least_squares import fitted
+from hystbench.gap.fitting.least_squares import Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.beginnings import Beginnings
-from hystbench.gap.inside.laws import Offer
+from hystbench.gap.inside.laws import Offer, host_of
 from hystbench.gap.inside.modes import (
     NONE,
     NUMBERS,
@@ -25,9 +25,7 @@ from hystbench.gap.inside.modes import (
     numbers_of,
     taken_out,
 )
-from hystbench.gap.inside.put_in import host_of
 from hystbench.gap.inside.search import (
-    Hypothesis,
     fitted_likely,
     may_gain,
     starts,
@@ -45,12 +43,12 @@ def for_a_further(taken: float, share: float) -> float:
 
 
 def in_further_modes(
-    found: Hypothesis,
+    found: Fitted,
     offer: Offer,
     score: Score,
     say: Say = silent,
     share: float = UNNAMED_SHARE,
-) -> tuple[Hypothesis, tuple[float, ...]]:
+) -> tuple[Fitted, tuple[float, ...]]:
     """Let a force act in other modes too, one after the other, while that pays.
 
     A joint that slips is in every mode that moves it. It is one effect, with numbers of
@@ -59,7 +57,7 @@ def in_further_modes(
 
     Parameters
     ----------
-    found : Hypothesis
+    found : Fitted
     offer : callable
         Gives what may be put into the last host of a model.
     score : Score
@@ -69,7 +67,7 @@ def in_further_modes(
 
     Returns
     -------
-    found : Hypothesis
+    found : Fitted
     frequencies : tuple of float
         Natural frequencies, in Hz, of the modes that were taken, as they were before.
     """
@@ -77,7 +75,7 @@ def in_further_modes(
     while may_gain(found, score) and (more := _in_one_more(found, offer, score, share)):
         found, frequency = more
         modes.append(frequency)
-        host = found.fitted.state.chain[host_of(found.fitted.state)]
+        host = found.state.chain[host_of(found.state)]
         assert isinstance(host, Mechanism)  # noqa: S101  (for the type checker)
         say(f"inside: also in the mode at {frequency_of(host):.3g} Hz")
     return found, tuple(modes)
@@ -107,10 +105,10 @@ def further_words(state: ModelState) -> str:
 
 
 def _in_one_more(
-    found: Hypothesis, offer: Offer, score: Score, share: float
-) -> tuple[Hypothesis, float] | None:
+    found: Fitted, offer: Offer, score: Score, share: float
+) -> tuple[Fitted, float] | None:
     """Put the force into the mode that needs it most; None if it does not pay there."""
-    state = found.fitted.state
+    state = found.state
     acting = [
         item
         for item in state.added
@@ -121,13 +119,12 @@ def _in_one_more(
         return None
     chosen = max(split, key=_needs)
     linear = fitted(chosen, score)
-    alone = replace(found, fitted=linear)
     laws = offer(linear)
     begun = [
         start
         for item in acting
         for start in starts(
-            alone,
+            linear,
             item.effect,
             [law for law in laws.get(item.effect, ()) if law.form == item.form],
             score,
@@ -138,14 +135,12 @@ def _in_one_more(
         return None
     also = best[0]
     gap = max(state.power(score.floor), score.floor)
-    taken = also.fitted.state.share(linear.state, score.floor, gap)
+    taken = also.state.share(linear.state, score.floor, gap)
     pays = for_a_further(taken, share)
     if also.score > min(linear.score, found.score) - pays:
         return None
-    joined = replace(
-        also.fitted.state, added=_joined(also.fitted.state.added, also.effects[-1])
-    )
-    return replace(found, fitted=replace(also.fitted, state=joined)), _frequency(chosen)
+    joined = replace(also.state, added=_joined(also.state.added, also.effects[-1]))
+    return replace(also, state=joined), _frequency(chosen)
 
 
 def _joined(added: tuple[Added, ...], effect: str) -> tuple[Added, ...]:
@@ -211,22 +206,16 @@ def _with_mode(
     behind = list(chain[place + (0 if rest else 1) :])
     blocks = (*chain[:place], new, *behind)
     moved = {k: k + (rest and k >= place) for k in range(len(chain))}
-    free: list[Free] = []
-    for item in state.free:
-        old = state.chain[item.block]
-        if isinstance(old, OtherModes):
-            continue
-        free.append(item._replace(block=moved[item.block]))
-    for k in sorted({x.block for x in state.free}):
-        block = blocks[moved[k]]
+    with_numbers = {moved[x.block] for x in state.free}
+    free = [x for x in state.free if not isinstance(state.chain[x.block], OtherModes)]
+    state = replace(state, free=tuple(free)).rearranged(blocks, moved)
+    free = list(state.free)
+    for k in sorted(with_numbers):
+        block = blocks[k]
         if isinstance(block, OtherModes):
-            free += numbers_of(block, moved[k])
+            free += numbers_of(block, k)
     free += [Free(place, name) for name in NUMBERS]
-    added = (
-        item._replace(blocks=tuple(moved[k] for k in item.blocks))
-        for item in state.added
-    )
-    return replace(state, chain=blocks, free=tuple(free), added=tuple(added)).settled()
+    return replace(state, free=tuple(free)).settled()
 
 
 def _needs(state: ModelState) -> float:

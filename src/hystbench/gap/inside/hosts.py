@@ -23,14 +23,12 @@ from hystbench.blocks.mechanism import Mechanism, free_starts
 from hystbench.blocks.starts import possible_starts
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.orders import HIGHEST
-from hystbench.gap.fitting.least_squares import Fitted, fitted
+from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.inside.best_host import best_host
 from hystbench.gap.inside.modes import frequency_of, modes, shows_a_pole
 from hystbench.gap.inside.stores import in_other_order, stores
 from hystbench.gap.records.scored_samples import ScoredSamples, rms
-from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
@@ -134,6 +132,22 @@ def hosts(
         yield Host(best.state if identified else mode, best, words)
 
 
+def best_host(states: Sequence[ModelState], score: Score) -> Fitted | None:
+    """Fit linear hosts, the likely ones to the end; give the one that scores least.
+
+    What it gives as its output may also have a share of the next derivative (a zero).
+    """
+    if not states:
+        return None
+    quick = [fitted(state, score, QUICK) for state in states]
+    best = fitted(min(quick, key=lambda item: item.score).state, score)
+    block, free = best.state.chain[0], best.state.free
+    if isinstance(block, Mechanism) and block.output != "force":
+        with_zero = replace(best.state, free=(*free, Free(0, "blend")))
+        best = min(best, fitted(with_zero, score), key=lambda item: item.score)
+    return best
+
+
 def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
     """Give a mass without a spring, where another mass was fitted to its acceleration.
 
@@ -161,17 +175,15 @@ def _behind(start: ModelState) -> ModelState:
 
 def _without_timing(start: ModelState) -> ModelState:
     """Give a base without the timing of its input, on the records as they are."""
-    free = (item._replace(block=item.block - 1) for item in start.free if item.block)
-    return replace(start, chain=start.chain[1:], free=tuple(free)).settled()
+    moved = {k: k - 1 for k in range(1, len(start.chain))}
+    return start.rearranged(start.chain[1:], moved).settled()
 
 
 def _in_front(delay: Block, start: ModelState, state: ModelState) -> ModelState:
     """Give a model of such records on those of a base, with the timing of its input."""
-    free = (item._replace(block=item.block + 1) for item in state.free)
-    chain = (delay, *state.chain)
-    return replace(
-        state, chain=chain, records=start.records, free=tuple(free)
-    ).settled()
+    moved = {k: k + 1 for k in range(len(state.chain))}
+    behind = state.rearranged((delay, *state.chain), moved)
+    return replace(behind, records=start.records).settled()
 
 
 def is_seen_moving(state: ModelState) -> bool:
@@ -206,18 +218,16 @@ def same_as(start: ModelState, quantities: Quantities) -> ModelState | None:
     It may differ by as much of the gap as may stay unnamed. Of a base that a gain and
     an offset do as well there is none: nothing moves in it.
     """
-    outputs = Simulation(start.chain, start.records, start.hold, fine=True).output
     simulated = tuple(
         replace(record, y=y, simulated=None, interpolated=None)
-        for record, y in zip(start.records, outputs, strict=True)
+        for record, y in zip(start.records, start.exact, strict=True)
     )
     most = UNNAMED_SHARE * float(np.mean(start.residual**2))
-    u, wanted = (start.sample.take(x) for x in ([r.u for r in simulated], outputs))
+    u, wanted = (start.sample.take(x) for x in ([r.u for r in simulated], start.exact))
     static = np.column_stack([u, np.ones(len(u))])
     if np.mean((wanted - static @ _solved(static, wanted)) ** 2) < most:
         return None
-    nothing = np.zeros((len(wanted), 0))
-    score = Score(ScoredSamples.of(simulated), nothing, 1e-3 * most)
+    score = Score.plain(ScoredSamples.of(simulated), 1e-3 * most)
     best = best_host(list(one_coordinate(simulated, quantities, start.hold)), score)
     if best is None or rms(best.state.residual) ** 2 > most:
         return None

@@ -1,13 +1,17 @@
-"""What may be put inside a host: the laws of all effects, and how the host moves."""
+"""Laws inside a host: which of all effects may be put there, and where a fit begins."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from hystbench.blocks.force import Force, against
+from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.gap.effects import among
@@ -15,9 +19,11 @@ from hystbench.gap.effects.law import Changed, Law, Moved
 from hystbench.gap.fitting.least_squares import (
     Fitted,
 )
-from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.put_in import host_of
+from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.stores import how_it_fills
+
+REMAINS = 0.05
+"""Of a spring or a damper, at least, where a force begins that does its work."""
 
 Laws = Mapping[str, Sequence[Law | Changed]]
 """What may be put into a host, by effect."""
@@ -87,3 +93,95 @@ def how_it_moves(state: ModelState, turns: bool) -> Moved:
         host.stiffness,
         *(max(float(np.max(np.abs(x))) for x in signals) for signals in (given, shown)),
     )
+
+
+def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
+    """Put a law into a chain, with its numbers free.
+
+    A force goes behind the host, a filter before all or behind all. What a force stands
+    for goes out of the host's spring. Of several hosts it is the last one.
+    """
+    host = host_of(state)
+    place = {"before": 0, "inside": host + 1, "behind": len(state.chain)}[law.place]
+    base: list[Any] = list(state.chain)
+    if law.stands_for:
+        spring = (1.0 - law.stands_for) * base[host].stiffness
+        base[host] = replace(base[host], stiffness=spring)
+    chain = (*base[:place], law.block, *base[place:])
+
+    state = state.rearranged(chain, {k: k + (k >= place) for k in range(len(base))})
+    free = list(state.free)
+    for name in law.free:
+        low, high = law.ranges.get(name, (-np.inf, np.inf))
+        free.append(Free(place, name, low=low, high=high))
+    values: dict[str, Any] = {name: getattr(law.block, name) for name in law.free}
+    item = Added(effect, law.place, law.form, (place,), values, float(len(law.free)))
+    return replace(state, free=tuple(free), added=(*state.added, item))
+
+
+def evened(state: ModelState) -> ModelState:
+    """Take out of a mass's spring and damper what a force put in last does on average.
+
+    Along the way that the host goes without the force: the spring and the damper that
+    are nearest to the force there, in least squares (statistical linearization [1]_).
+    So the mode that the force is put into stays where it was.
+
+    References
+    ----------
+    .. [1] J. B. Roberts, P. D. Spanos, Random Vibration and Statistical Linearization,
+       Wiley, 1990.
+    """
+    (place,) = state.added[-1].blocks
+    law, chain = state.chain[place], list(state.chain)
+    number = host_of(state)
+    host = chain[number]
+    if isinstance(host, Mechanism) and place < number:
+        return _as_strong(state, place)
+    if not (isinstance(law, Force) and isinstance(host, Mechanism)):
+        return state
+    own = chain[number + 1 :]
+    others = tuple(x for x in own if isinstance(x, Force) and x is not law)
+    square, product = np.zeros((3, 3)), np.zeros(3)
+    for record, z in zip(state.records, state.simulation.driving(number), strict=True):
+        way = host.motion(z, record.dt, others)
+        q, v = (np.ascontiguousarray(x) for x in (way.position, way.velocity))
+        place_counts = q if host.stiffness else np.zeros(len(q))
+        columns = np.column_stack([place_counts, v, np.ones(len(q))])
+        alike = 1.0 / max(float(np.sum(v**2)), 1.0 / HUGE)  # as records are weighed
+        square += alike * columns.T @ columns
+        product += alike * columns.T @ against((law,), q, v, record.dt)
+    sizes = np.sqrt(np.maximum(np.diag(square), 1.0 / HUGE))
+    if not (np.all(np.isfinite(square)) and np.all(np.isfinite(product))):
+        return state
+    scaled = square / np.outer(sizes, sizes)
+    spring, damper, _ = np.linalg.lstsq(scaled, product / sizes, rcond=1e-9)[0] / sizes
+    chain[number] = replace(
+        host,
+        stiffness=max(host.stiffness - spring, REMAINS * host.stiffness),
+        damping=max(host.damping - damper, REMAINS * host.damping),
+    )
+    return state.with_chain(tuple(chain))
+
+
+def _as_strong(state: ModelState, place: int) -> ModelState:
+    """Let a mass, and what is beside it, be driven as strongly as without the curve."""
+    pairs = zip(state.simulation.at(place), state.simulation.at(place + 1), strict=True)
+    powers = np.array([[np.var(one), np.var(other)] for one, other in pairs])
+    before, behind = np.sum(powers / np.maximum(powers[:, :1], 1.0 / HUGE), axis=0)
+    times = float(np.sqrt(behind / before)) if before > 0 else 1.0
+    if not (np.isfinite(times) and times > 0):
+        return state
+    chain = list(state.chain)
+    for k, block in enumerate(chain):
+        if isinstance(block, Mechanism):
+            chain[k] = replace(block, gain=block.gain / times)
+        elif isinstance(block, OtherModes):
+            up = tuple(x / times for x in block.numerator)
+            chain[k] = replace(block, numerator=up)
+    return state.with_chain(tuple(chain))
+
+
+def host_of(state: ModelState) -> int:
+    """Give the place of what forces are put inside of: the last host of the chain."""
+    hosts = (Mechanism, Impedance)
+    return max(k for k, block in enumerate(state.chain) if isinstance(block, hosts))

@@ -1,11 +1,11 @@
-"""Naming effects inside the dynamics.
+"""Naming effects inside the dynamics, also of records with a zero of their own.
 
 Whether they do better than those in the chain is asked afterwards (:func:`beats`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -15,6 +15,9 @@ import numpy as np
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.least_squares import Fitted
+from hystbench.gap.fitting.model_score import score_of
+from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.fewer import OnAll, on_fewer
@@ -27,13 +30,13 @@ from hystbench.gap.inside.further_modes import (
 from hystbench.gap.inside.hosts import hosts
 from hystbench.gap.inside.laws import laws_for
 from hystbench.gap.inside.search import (
-    Hypothesis,
     may_gain,
     singles,
     together,
 )
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round
+from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.simulation import may_have_hysteresis
@@ -105,7 +108,7 @@ def named_inside(
         return None
 
     # Together forces are tried in the host that does best with one.
-    def charge_of(found: Sequence[Hypothesis]) -> float:
+    def charge_of(found: Sequence[Fitted]) -> float:
         best = chosen(found, score.floor, share)
         return charged(best, found, score.floor, share)
 
@@ -123,9 +126,9 @@ def named_inside(
         place = [item is best for item in found].index(True)
         found = on_all.hypotheses(found, way)
         best = found[place]
-        alone = found[0].fitted.state if identified else on_all.state(alone)
-    fitted = found[0].fitted.state
-    state = replace(best.fitted.state, offered=start.offered).settled()
+        alone = found[0].state if identified else on_all.state(alone)
+    fitted = found[0].state
+    state = replace(best.state, offered=start.offered).settled()
     alone = with_modes(replace(alone, offered=start.offered), modes).settled()
     left = (float(np.sqrt(max(x.power(floor_rms**2), 0.0))) for x in (start, alone))
     before, after = (f"{rms:.3g} {base.output.unit}" for rms in left)
@@ -146,6 +149,59 @@ def named_inside(
     )
 
 
+def apart_inside(
+    start: ModelState,
+    inside: Inside | None,
+    floor_rms: float,
+    look: Callable[[ModelState], Inside | None],
+    say: Say,
+) -> tuple[ModelState, Inside | None, OwnValues]:
+    """Look for forces again without the offsets that records have of their own.
+
+    Offsets are found beside what was named, then beside what is named without them, and
+    so on while the score falls. The first time it has to fall by what an effect has to
+    gain, all offsets charged.
+
+    Parameters
+    ----------
+    start : ModelState
+        The base on the fit records.
+    inside : Inside or None
+        What was found on them as they are.
+    floor_rms : float
+    look : callable
+        Finds forces beside a base.
+    say : callable
+
+    Returns
+    -------
+    start : ModelState
+        The base on records without their offsets, or as it was.
+    inside : Inside or None
+    own : OwnValues
+    """
+    square = floor_rms**2
+    score = Score.plain(start.sample, square)
+    state = start if inside is None else inside.named.state
+    found, least = (start, inside, NONE), score_of(state, score) - PAYS
+    for _ in range(ROUNDS):
+        own = own_values(start.records, state.exact, square, ("offset",))
+        if not own.records:
+            break
+        say("inside: records have an offset of their own: looking beside that")
+        apart = on_records(start, own.taken_off(start.records, start.hold))
+        again, before = look(apart), [item.effect for item in state.added]
+        state = apart if again is None else again.named.state
+        value = score_of(state, score) + own.charge
+        if again is None or value >= least:
+            break
+        share = apart.share(start, square, start.power(square))
+        found, least = (apart, again, replace(own, share=share)), value
+        if [item.effect for item in state.added] == before:
+            break  # looking has told all that it can
+    return found
+
+
 def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> bool:
     """Tell whether effects inside do better than those in a chain.
 
@@ -160,8 +216,8 @@ def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> 
 
 
 def charged(
-    item: Hypothesis,
-    found: Sequence[Hypothesis],
+    item: Fitted,
+    found: Sequence[Fitted],
     floor: float,
     share: float = UNNAMED_SHARE,
 ) -> float:
@@ -170,14 +226,14 @@ def charged(
     A further one must take a share of the gap that matters, or be beyond doubt: what is
     left after the right force is also what its law, or the simulation, misses.
     """
-    gap, value = max(found[0].fitted.state.power(floor), floor), item.score
+    gap, value = max(found[0].state.power(floor), floor), item.score
     for before, after in pairwise((found[0], *way_to(item, found))):
-        taken = after.fitted.state.share(before.fitted.state, floor, gap)
+        taken = after.state.share(before.state, floor, gap)
         value += for_a_further(taken, share) if before.effects else PAYS
     return value
 
 
-def way_to(item: Hypothesis, found: Sequence[Hypothesis]) -> list[Hypothesis]:
+def way_to(item: Fitted, found: Sequence[Fitted]) -> list[Fitted]:
     """Give hypotheses of one effect more each, up to one with all of them.
 
     The effect that is missed least comes last, and so on.
@@ -195,8 +251,8 @@ def way_to(item: Hypothesis, found: Sequence[Hypothesis]) -> list[Hypothesis]:
 
 
 def chosen(
-    found: Sequence[Hypothesis], floor: float, share: float = UNNAMED_SHARE
-) -> Hypothesis:
+    found: Sequence[Fitted], floor: float, share: float = UNNAMED_SHARE
+) -> Fitted:
     """Take the least score with what effects have to pay; of a tie the fewest numbers.
 
     Bouc and Wen's hysteresis that yields at once is dry friction, which has one number.
@@ -211,16 +267,14 @@ def chosen(
         if value < min(values) + SCALE and len(item.effects) == len(best.effects)
     ]
 
-    def unlikely(item: Hypothesis) -> tuple[float, int, float]:
+    def unlikely(item: Fitted) -> tuple[float, int, float]:
         special = sum(effects()[name].special for name in item.effects)
-        return item.fitted.state.freedom, -special, item.score
+        return item.state.freedom, -special, item.score
 
     return min(tied, key=unlikely)
 
 
-def _rounds(
-    start: ModelState, best: Hypothesis, found: Sequence[Hypothesis]
-) -> list[Round]:
+def _rounds(start: ModelState, best: Fitted, found: Sequence[Fitted]) -> list[Round]:
     """Write how the effects were found as rounds: each beside those before it.
 
     They come in the order of :func:`way_to`.
@@ -236,14 +290,14 @@ def _rounds(
         (effect,) = {*taken.effects} - already
         ranking = sorted(candidates, key=lambda x: (x.effect != effect, x.score))
         rounds.append(Round(before, now, tuple(ranking), True))
-        before, now = taken.fitted.state, taken.score
+        before, now = taken.state, taken.score
         already = frozenset(taken.effects)
     return rounds
 
 
-def _candidate(item: Hypothesis, already: frozenset[str], now: float) -> Candidate:
+def _candidate(item: Fitted, already: frozenset[str], now: float) -> Candidate:
     """Give the effect that a hypothesis has beyond those of the rounds before."""
-    state = item.fitted.state
+    state = item.state
     last = next(x for x in state.added if x.effect not in already)
     return Candidate(
         last.effect, last.place, last.form, item.score, now - item.score, state

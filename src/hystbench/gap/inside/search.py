@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import ceil
 
 import numpy as np
@@ -22,8 +22,7 @@ from hystbench.gap.fitting.least_squares import (
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.beginnings import Beginnings, with_numbers_of
-from hystbench.gap.inside.laws import Offer, of_stores
-from hystbench.gap.inside.put_in import evened, with_law
+from hystbench.gap.inside.laws import Offer, evened, of_stores, with_law
 from hystbench.gap.inside.stores import with_changed
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
@@ -36,48 +35,24 @@ FEW = 4
 """Evaluations of the residual after which the worse half of the starts is left."""
 
 
-@dataclass(frozen=True)
-class Hypothesis:
-    """A host with forces inside, fitted.
-
-    Parameters
-    ----------
-    effects : tuple of str
-        In the order in which they were put in.
-    forms : tuple of str
-        Law of each.
-    fitted : Fitted
-    """
-
-    effects: tuple[str, ...]
-    forms: tuple[str, ...]
-    fitted: Fitted
-
-    @property
-    def score(self) -> float:
-        """Score with all numbers charged."""
-        return self.fitted.score
-
-
 def singles(
     host: Fitted,
     offer: Offer,
     score: Score,
     say: Say = silent,
     other: ModelState | None = None,
-) -> list[Hypothesis]:
+) -> list[Fitted]:
     """Try each force alone: the host without one first, then the least score.
 
     Forces are put into the host, or into another model that is as good without them.
     """
-    alone = Hypothesis((), (), host)
-    begun = replace(alone, fitted=host if other is None else replace(host, state=other))
-    return [alone, *_one_more([begun], offer, score, SINGLES, host.score, say)]
+    begun = host if other is None else replace(host, state=other)
+    return [host, *_one_more([begun], offer, score, SINGLES, host.score, say)]
 
 
 def together(
-    found: Sequence[Hypothesis], offer: Offer, score: Score, say: Say = silent
-) -> list[Hypothesis]:
+    found: Sequence[Fitted], offer: Offer, score: Score, say: Say = silent
+) -> list[Fitted]:
     """Go on from singles to pairs, and to threes.
 
     Forces that gain little alone may gain much together. But where one pays alone and
@@ -85,42 +60,40 @@ def together(
 
     Returns
     -------
-    list of Hypothesis
+    list of Fitted
         The host alone first; of each set of effects the best laws.
     """
     every, alone, carried = list(found), found[0].score, list(found[1:])
     for keep in (PAIRS, 1):
         if not may_gain(least(every), score) or _in_vain(every, carried):
             break
-        if not of_stores(found[0].fitted):
+        if not of_stores(found[0]):
             carried = [item for item in carried if item.score < alone]
         carried = _one_more(carried, offer, score, keep, alone, say)
         every += carried
     best = least(every)
-    if not of_stores(best.fitted):
+    if not of_stores(best):
         every += with_one_fewer(best, every, score)
     return best_of_each(every)
 
 
-def least(found: Sequence[Hypothesis]) -> Hypothesis:
+def least(found: Sequence[Fitted]) -> Fitted:
     """Give the hypothesis that scores least."""
     return min(found, key=lambda item: item.score)
 
 
-def _in_vain(every: Sequence[Hypothesis], pairs: Sequence[Hypothesis]) -> bool:
+def _in_vain(every: Sequence[Fitted], pairs: Sequence[Fitted]) -> bool:
     """Tell whether an effect pays alone, and none pays beside it."""
     one = least([item for item in every if len(item.effects) < 2])
     tried = [item for item in pairs if len(item.effects) == 2]
-    if not (tried and one.effects) or of_stores(one.fitted):
+    if not (tried and one.effects) or of_stores(one):
         return False
     return (
         every[0].score - one.score > PAYS and least(tried).score > one.score - FURTHER
     )
 
 
-def with_one_fewer(
-    best: Hypothesis, found: Sequence[Hypothesis], score: Score
-) -> list[Hypothesis]:
+def with_one_fewer(best: Fitted, found: Sequence[Fitted], score: Score) -> list[Fitted]:
     """Take each effect of a hypothesis out, where the others together were not tried.
 
     An effect that stood for another one before that came may be needless beside it. The
@@ -130,22 +103,18 @@ def with_one_fewer(
         return []
     tried = {frozenset(item.effects) for item in found}
     left = []
-    for number, effect in enumerate(best.effects):
+    for number in range(len(best.effects)):
         others = tuple(x for k, x in enumerate(best.effects) if k != number)
         ways = (frozenset(others) - {one} for one in others)
         if frozenset(others) in tried or not any(way in tried for way in ways):
             continue
-        state = best.fitted.state
-        place = [item.effect for item in state.added].index(effect)
-        forms = tuple(x for k, x in enumerate(best.forms) if k != number)
-        begun = without_effect(state, place)
-        left.append(Hypothesis(others, forms, Fitted(begun, np.inf)))
+        left.append(Fitted(without_effect(best.state, number), np.inf))
     return _to_the_end(left, score)
 
 
-def best_of_each(found: Sequence[Hypothesis]) -> list[Hypothesis]:
+def best_of_each(found: Sequence[Fitted]) -> list[Fitted]:
     """Keep of each set of effects the hypothesis that scores least, in their order."""
-    best: dict[frozenset[str], Hypothesis] = {}
+    best: dict[frozenset[str], Fitted] = {}
     for item in found:
         effects = frozenset(item.effects)
         if effects not in best or item.score < best[effects].score:
@@ -154,50 +123,50 @@ def best_of_each(found: Sequence[Hypothesis]) -> list[Hypothesis]:
 
 
 def _one_more(
-    carried: Sequence[Hypothesis],
+    carried: Sequence[Fitted],
     offer: Offer,
     score: Score,
     keep: int,
     alone: float,
     say: Say,
-) -> list[Hypothesis]:
+) -> list[Fitted]:
     """Put one more force into each hypothesis; give the best, the least score first."""
     begun = [
         further
         for before in carried
         if may_gain(before, score)
-        for name, own in offer(before.fitted).items()
+        for name, own in offer(before).items()
         if name not in before.effects
         for further in starts(before, name, own, score)
     ]
     if not begun:
         return []
-    if any(of_stores(item.fitted) for item in carried):
+    if any(of_stores(item) for item in carried):
         best_first = fitted_each(begun, score)
     else:
-        beginnings = Beginnings.of(carried[0].fitted.state, score)
+        beginnings = Beginnings.of(carried[0].state, score)
         best_first = fitted_likely(begun, beginnings, score, keep)
     for item in best_first[:3]:
         say(f"inside: {' + '.join(item.effects)}: gain {alone - item.score:.1f}")
     return best_first
 
 
-def may_gain(item: Hypothesis, score: Score) -> bool:
+def may_gain(item: Fitted, score: Score) -> bool:
     """Tell whether a further force could gain what it has to pay."""
     pays = FURTHER if item.effects else PAYS
-    return item.score - score.least(item.fitted.state.freedom) > pays
+    return item.score - score.least(item.state.freedom) > pays
 
 
 def starts(
-    before: Hypothesis, effect: str, laws: Sequence[Law | Changed], score: Score
-) -> Iterator[Hypothesis]:
+    before: Fitted, effect: str, laws: Sequence[Law | Changed], score: Score
+) -> Iterator[Fitted]:
     """Put a further force inside, by each law and start, with the score to be expected.
 
     The residual is explained by what the force does as it starts, as one column, by
     what each of its numbers does that starts at zero, which that column does not hold,
     and by what changes of all other numbers do, by least squares.
     """
-    state = before.fitted.state
+    state = before.state
     tangents, weights = state.tangents, record_weights(state)
     for law in laws:
         begun = (
@@ -218,8 +187,7 @@ def starts(
         )
         rest = state.residual - scaled @ found
         expected = score.of(rest, begun.freedom)
-        effects, forms = (*before.effects, effect), (*before.forms, law.form)
-        yield Hypothesis(effects, forms, Fitted(begun, expected))
+        yield Fitted(begun, expected)
 
 
 def of_zeros(begun: ModelState) -> FloatArray:
@@ -230,13 +198,13 @@ def of_zeros(begun: ModelState) -> FloatArray:
 
 
 def fitted_likely(
-    begun: Iterable[Hypothesis], beginnings: Beginnings, score: Score, count: int
-) -> list[Hypothesis]:
+    begun: Iterable[Fitted], beginnings: Beginnings, score: Score, count: int
+) -> list[Fitted]:
     """Fit the hypotheses that promise most: roughly first, the best of them to the end.
 
     Parameters
     ----------
-    begun : iterable of Hypothesis
+    begun : iterable of Fitted
         With the scores to be expected.
     beginnings : Beginnings
         What they are fitted to roughly.
@@ -248,10 +216,10 @@ def fitted_likely(
 
     Returns
     -------
-    list of Hypothesis
+    list of Fitted
         Those that were fitted to the end, the least score first.
     """
-    likely: dict[frozenset[str], list[Hypothesis]] = {}
+    likely: dict[frozenset[str], list[Fitted]] = {}
     for item in sorted(begun, key=lambda item: item.score):
         likely.setdefault(frozenset(item.effects), []).append(item)
     rough = [
@@ -260,18 +228,13 @@ def fitted_likely(
     ]
     rough.sort(key=lambda pair: pair[1].score)
     begun_well = [
-        replace(
-            item,
-            fitted=replace(own, state=with_numbers_of(item.fitted.state, own.state)),
-        )
+        replace(own, state=with_numbers_of(item.state, own.state))
         for item, own in rough[:count]
     ]
     return _to_the_end(begun_well, score)
 
 
-def raced(
-    begun: Sequence[Hypothesis], beginnings: Beginnings
-) -> tuple[Hypothesis, Fitted]:
+def raced(begun: Sequence[Fitted], beginnings: Beginnings) -> tuple[Fitted, Fitted]:
     """Fit starts a little, and the better half of them further, until one is left.
 
     Successive halving [1]_: the same time is spent on all starts of a round together.
@@ -283,9 +246,7 @@ def raced(
     .. [1] K. Jamieson, A. Talwalkar, "Non-stochastic best arm identification and
        hyperparameter optimization", AISTATS 2016, 240-248.
     """
-    running = [
-        (item, Fitted(beginnings.cut(item.fitted.state), np.inf)) for item in begun
-    ]
+    running = [(item, Fitted(beginnings.cut(item.state), np.inf)) for item in begun]
     evaluations = FEW
     while True:
         running = [
@@ -308,33 +269,30 @@ def raced(
         evaluations = min(2 * evaluations, QUICK)
 
 
-def fitted_each(begun: Iterable[Hypothesis], score: Score) -> list[Hypothesis]:
+def fitted_each(begun: Iterable[Fitted], score: Score) -> list[Fitted]:
     """Fit all laws of all effects to the end, each from its likeliest start."""
-    likely: dict[tuple[str, ...], Hypothesis] = {}
+    likely: dict[tuple[str, ...], Fitted] = {}
     for item in sorted(begun, key=lambda item: item.score):
         law = tuple(sorted(map(" ".join, zip(item.effects, item.forms, strict=True))))
         likely.setdefault(law, item)
     return _to_the_end(likely.values(), score)
 
 
-def _to_the_end(begun: Iterable[Hypothesis], score: Score) -> list[Hypothesis]:
+def _to_the_end(begun: Iterable[Fitted], score: Score) -> list[Fitted]:
     """Fit hypotheses to the end; the least score first, none that runs away."""
-    done = [
-        replace(item, fitted=fitted_to_the_end(item.fitted.state, score))
-        for item in begun
-    ]
+    done = [fitted_to_the_end(item.state, score) for item in begun]
     kept = (
         item for item in done if np.isfinite(item.score) and not _vanishes(item, score)
     )
     return sorted(kept, key=lambda item: item.score)
 
 
-def _vanishes(item: Hypothesis, score: Score) -> bool:
+def _vanishes(item: Fitted, score: Score) -> bool:
     """Tell whether an effect does as well without the number that makes it itself.
 
     A slider without its clearance is dry friction, which is tried as such.
     """
-    state = item.fitted.state
+    state = item.state
     for added in state.added:
         name = effects()[added.effect].vanishing
         for place in added.blocks if name else ():

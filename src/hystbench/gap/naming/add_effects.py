@@ -8,11 +8,10 @@ from dataclasses import dataclass, replace
 from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
 from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
-from hystbench.gap.fitting.model_score import make_score, score_of
+from hystbench.gap.fitting.model_score import above_floor, make_score, score_of
 from hystbench.gap.fitting.refit import finished, ready
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.fitting.step_error import above_floor
 from hystbench.gap.naming.forecast_calls import foretell, foretell_rest
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.naming.removal import TakenOut, is_most_of_it, without_what_goes

@@ -14,16 +14,16 @@ from typing import Any
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import augmented
-from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.parameters import parameters_of
-from hystbench.gap.fitting.refit import finished
+from hystbench.gap.fitting.refit import added, finished
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.tried import tried
 from hystbench.gap.fitting.uncertainty import on_more_samples, standard_errors
-from hystbench.gap.fitting.variant_search import Trial
-from hystbench.gap.naming import cached
+from hystbench.gap.fitting.variant_search import Trial, fine
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model
@@ -127,15 +127,15 @@ def build_in(
 
 def _with(state: ModelState, score: Score, name: str) -> ModelState:
     """Add an effect where and as it scores best, whether it pays or not."""
-    tried, declined = cached.tried(effects()[name], state, score)
-    blocks = [(attempt, trial) for attempt, trial in tried if not trial.variant.beside]
+    found, declined = tried(effects()[name], state, score)
+    blocks = [(attempt, trial) for attempt, trial in found if not trial.variant.beside]
     if not blocks:
         why = declined or (
             "it is new in every record, so that no model can hold it; the search may "
             "name it"
         )
         raise InputError(f"--with {name}: {why}")
-    trials = [cached.fine(attempt, trial) for attempt, trial in blocks]
+    trials = [fine(attempt, trial) for attempt, trial in blocks]
     refused = None
     for trial in sorted(trials, key=lambda trial: trial.score):
         try:
@@ -149,6 +149,6 @@ def _added(state: ModelState, trial: Trial, score: Score) -> ModelState:
     """Add an effect as a trial found it, refitted where the block accepts that."""
     as_found = with_effect(state, trial.variant, trial.values)
     try:
-        return cached.added(state, trial, score)[0]
+        return added(state, trial, score)[0]
     except InputError:
         return as_found

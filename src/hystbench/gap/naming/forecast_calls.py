@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from math import prod
+
 from hystbench.blocks.calls import PATIENCE, current, minutes
 from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError
 from hystbench.gap.effects import among
-from hystbench.gap.effects.base import Declined, Variant
-from hystbench.gap.fitting.glance import records_at_a_glance
+from hystbench.gap.effects.effect import Declined
+from hystbench.gap.effects.variant import Variant
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.tried import records_at_a_glance
 from hystbench.gap.fitting.variant_search import MANY
 from hystbench.gap.naming.rank import FINALISTS
 from hystbench.gap.naming.rounds import MOST
@@ -52,7 +55,7 @@ def calls_of_a_round(state: ModelState) -> int:
         for item in variants:
             if item.beside is not None or item.start > places[-1]:
                 continue
-            points = _points(item)
+            points = prod(len(axis) for axis in item.grids.values())
             again = 0 if few == count else 1 + points // MANY
             grids += _runs(item) * (points * few + again * (count - few))
             before += 1
@@ -124,14 +127,6 @@ def foretell_rest(state: ModelState, rounds: int) -> None:
     if calls.made:
         left = max(MOST - rounds, 0)
         calls.expected = calls.asked + left * calls_of_a_round(state)
-
-
-def _points(variant: Variant) -> int:
-    """Count the points of a variant's grid."""
-    count = 1
-    for axis in variant.grids.values():
-        count *= len(axis)
-    return count
 
 
 def _runs(variant: Variant) -> int:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.compared_records import compared_records
+from hystbench.gap.fitting.on_records import compared_records
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.locate import Contribution
 from hystbench.gap.naming.add_effects import Named
-from hystbench.gap.records.scored_samples import Compared
 
 BASE = "base"
 RETUNED = "base re-tuned"
@@ -54,20 +53,9 @@ def rungs(start: ModelState, named: Named) -> tuple[Rung, ...]:
     return (*found[:-1], found[-1]._replace(state=named.state if found[1:] else start))
 
 
-def contributions(
-    ladder: Sequence[Rung], simulated: Mapping[ModelState, list[Compared]]
-) -> list[Contribution]:
-    """Give what each named effect adds to the output of the rung before it.
-
-    Parameters
-    ----------
-    ladder : sequence of Rung
-    simulated : mapping of ModelState to list of Compared
-        States that were simulated before; any other is simulated here.
-    """
-    outputs = [
-        simulated.get(rung.state) or compared_records(rung.state) for rung in ladder
-    ]
+def contributions(ladder: Sequence[Rung]) -> list[Contribution]:
+    """Give what each named effect adds to the output of the rung before it."""
+    outputs = [compared_records(rung.state) for rung in ladder]
     found = []
     for (old, new), (before, after) in zip(
         pairwise(ladder), pairwise(outputs), strict=True

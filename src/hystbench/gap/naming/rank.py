@@ -11,14 +11,15 @@ from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
 from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError
 from hystbench.gap.effects import among, effects
-from hystbench.gap.effects.base import Effect
+from hystbench.gap.effects.effect import Effect
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.model_score import directions_of, score_of
+from hystbench.gap.fitting.refit import added, finished
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.fitting.variant_search import Trial
-from hystbench.gap.naming import cached
+from hystbench.gap.fitting.tried import Tried, tried
+from hystbench.gap.fitting.variant_search import Trial, fine
 from hystbench.gap.naming.rounds import Candidate, TriedVariant, best_forms, in_order
 from hystbench.gap.thresholds import (
     CERTAIN,
@@ -73,9 +74,9 @@ def rank(
         if effect.name in have
     ]
     others = [effect for effect in known if effect.name not in have]
-    found: list[cached.Tried] = []
+    found: list[Tried] = []
     for effect in others:
-        trials, why = cached.tried(effect, state, score)
+        trials, why = tried(effect, state, score)
         found += trials
         if why:
             declined.append(Candidate(effect.name, effect.place, declined=why))
@@ -84,7 +85,7 @@ def rank(
     best = min(trial.score for _, trial in found)
     reach = max(NEAR, (now - best) * STILL)
     refined = [
-        cached.fine(attempt, trial) if trial.score < best + reach else trial
+        fine(attempt, trial) if trial.score < best + reach else trial
         for attempt, trial in found
     ]
     refined.sort(key=lambda trial: trial.score)
@@ -122,9 +123,7 @@ def rank(
         if effect not in finalists
     ]
     judged = [replace(x, variants=tuple(tested[x.effect])) for x in judged]
-    judged = [_not_cut_short(item, state) for item in judged]
-    declined += [item for item in judged if item.declined]
-    candidates = in_order(item for item in judged if not item.declined)
+    candidates = in_order(_not_cut_short(x, state) for x in (*declined, *judged))
     exact = [
         item.effect
         for item in candidates[:EXACT]
@@ -136,14 +135,12 @@ def rank(
     )
     candidates = beside_their_own_shapes(candidates, exact, state, score.floor)
     if not folds:
-        return (*_beyond_others(candidates, state, score), *declined)
-    judged = [
+        return tuple(_beyond_others(candidates, state, score))
+    candidates = in_order(
         _not_cut_short(item, state) for item in first_on_folds(candidates, state, score)
-    ]
-    declined += [item for item in judged if item.declined]
-    candidates = in_order(item for item in judged if not item.declined)
+    )
     # Folds may put one first that was not simulated exactly.
-    while candidates and candidates[0].effect not in exact and candidates[0].held_back:
+    while candidates[0].effect not in exact and candidates[0].held_back:
         first = candidates.pop(0)
         exact.append(first.effect)
         again = on_folds(exactly(first, score, now), state, score)
@@ -151,7 +148,7 @@ def rank(
         candidates = in_order(
             first_on_folds(in_order([again, *candidates]), state, score)
         )
-    return (*_beyond_others(candidates, state, score), *declined)
+    return tuple(_beyond_others(candidates, state, score))
 
 
 def _beyond_others(
@@ -243,7 +240,7 @@ def _judged(trial: Trial, state: ModelState, score: Score, now: float) -> Candid
         return Candidate(variant.effect, variant.place, declined=why)
 
     try:
-        after, value = cached.added(state, trial, score)
+        after, value = added(state, trial, score)
     except InputError as error:
         return declined(f"fits best where {error}")
     if end := at_end(after):
@@ -274,7 +271,7 @@ def exactly(item: Candidate, score: Score, now: float) -> Candidate:
     if item.state is None:
         return item
     try:
-        after, value = cached.finished(item.state, score)
+        after, value = finished(item.state, score)
     except CallsUsedUp as error:
         return Candidate(item.effect, item.place, declined=str(error))
     if end := at_end(after):

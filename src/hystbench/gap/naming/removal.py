@@ -24,11 +24,8 @@ class TakenOut(NamedTuple):
     reason: str
 
 
-class Without(NamedTuple):
-    """A model without one of its effects."""
-
-    gone: TakenOut
-    state: ModelState
+Without = tuple[TakenOut, ModelState]
+"""What went, and the model without it."""
 
 
 def without_what_goes(
@@ -53,8 +50,9 @@ def without_what_goes(
     gone: tuple[TakenOut, ...] = ()
     for look in (partial(needless, gap=gap), unknown):
         while len(state.added) > 1 and (found := look(state, floor_rms)) is not None:
-            say(f"{found.gone.name} goes: {found.gone.reason}")
-            gone, state = (*gone, found.gone), found.state
+            one, state = found
+            say(f"{one.name} goes: {one.reason}")
+            gone = (*gone, one)
     return state, gone
 
 
@@ -79,7 +77,7 @@ def needless(state: ModelState, floor_rms: float, gap: float) -> Without | None:
         share = full.share(short, floor_rms**2, gap)
         if gain < FURTHER and not is_most_of_it(item.effect, gain, share):
             reason = f"needless beside the others, its gain is {gain:.1f}"
-            return Without(TakenOut(item.effect, reason), short)
+            return TakenOut(item.effect, reason), short
     return None
 
 
@@ -113,7 +111,7 @@ def unknown(state: ModelState, floor_rms: float) -> Without | None:
         reason = f"the standard error of its size is {error:.0%} of it"
         if np.isnan(error):
             reason = "the records show nothing of it"
-        return Without(TakenOut(item.effect, reason), short)
+        return TakenOut(item.effect, reason), short
     return None
 
 

@@ -148,5 +148,5 @@ def best_forms(
 
 
 def in_order(candidates: Iterable[Candidate]) -> list[Candidate]:
-    """Put finalists first, and what scores least first among them."""
+    """Put finalists first, what scores least first among them; what declined, last."""
     return sorted(candidates, key=lambda item: (item.state is None, item.score))

@@ -11,16 +11,14 @@ from hystbench.gap.cache import records_digest
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.own_values import KINDS, NONE, OwnValues, own_values
-from hystbench.gap.fitting.refit import ENOUGH
+from hystbench.gap.fitting.refit import ENOUGH, finished
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.naming import cached
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.progress import Say
-from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import ABOVE_NOISE, PAYS, UNNAMED_SHARE
-from hystbench.record import FloatArray, Record
+from hystbench.record import Record
 
 
 def named_apart(
@@ -137,7 +135,7 @@ def _likely(
             if not own.records:
                 break
             bare = own.taken_off(start.records, start.hold)
-            apart, value = cached.finished(on_records(state, bare), score)
+            apart, value = finished(on_records(state, bare), score)
             if value + own.charge >= best[0] - ENOUGH:
                 break
             best = value + own.charge, own
@@ -153,9 +151,9 @@ def _own_values(state: ModelState, start: ModelState, floor: float) -> OwnValues
     return remembered_of(
         state,
         lambda: ["own values", records_digest(start.records), floor, kinds],
-        lambda: own_values(start.records, simulated(state), floor, kinds),
-        OwnValues.plain,
-        OwnValues.of_plain,
+        lambda: own_values(start.records, state.exact, floor, kinds),
+        lambda own: own.mapping(start.records[0].output.unit),
+        OwnValues.of_mapping,
     )
 
 
@@ -168,8 +166,3 @@ def kinds_of(state: ModelState) -> tuple[str, ...]:
 def on_records(state: ModelState, records: tuple[Record, ...]) -> ModelState:
     """Give a model on other records of the same lengths."""
     return replace(state, records=records, correction=None).settled()
-
-
-def simulated(state: ModelState) -> Sequence[FloatArray]:
-    """Give the output of a model's chain on the fit records."""
-    return Simulation(state.chain, state.records, state.hold, fine=True).output

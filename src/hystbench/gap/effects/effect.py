@@ -1,20 +1,12 @@
-"""What an effect must say so that the search can try it.
-
-An effect offers variants: a place in the chain and a form. A variant says how the
-blocks from that place on look for given values of its parameters. Parameters that the
-output depends on in a curved way (a time constant, a limit) are searched on a grid;
-those that scale a contribution (a magnitude) are solved for.
-"""
+"""What an effect must say to be tried, in a chain or inside the dynamics."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
@@ -23,126 +15,14 @@ from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.gap.effects.law import Changed, Filled, Law, Moved
 from hystbench.gap.effects.places import INSIDE, places_between_halves
+from hystbench.gap.effects.variant import Beside, Refused, Values, Variant, in_operation
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.view_kinds import ViewKind
 from hystbench.record import FloatArray
 
-Values = Mapping[str, float]
-SomeSamples = slice | NDArray[np.intp]
-"""Some samples of a record."""
-EVERY: SomeSamples = slice(None)
-
 
 class Declined(Exception):  # noqa: N818  (an answer, not an error)
     """An effect cannot be judged on these records or in this chain; says why."""
-
-
-Refused = Literal["", "either", "upper"]
-"""Ends of a number's range at which an effect is not accepted."""
-
-
-@dataclass(frozen=True)
-class Beside:
-    """A signal that the input does not explain, new in every record.
-
-    Parameters
-    ----------
-    effect : str
-    order : int
-        How many shapes of it there are: harmonics, or the degree of a path.
-    columns : callable
-        ``columns(record, values, order)`` gives the shapes, shape (n, k), and with a
-        fourth argument those at some samples alone; each record has amplitudes of its
-        own.
-    """
-
-    effect: str
-    order: int
-    columns: Callable[..., FloatArray]
-
-
-@dataclass(frozen=True)
-class Variant:
-    """An effect at one place in one form.
-
-    Parameters
-    ----------
-    effect, place, form : str
-    start : int
-        The first block of the chain that changes.
-    build : callable
-        Blocks from ``start`` on, from values of all parameters.
-    positions : tuple of int
-        Where the effect's own blocks stand in what ``build`` gives.
-    grids : dict of str to ndarray
-        Values to search, by parameter.
-    limits : dict of str to (float, float)
-        Ends of the range of searched parameters, where they are not the grid's.
-    unit : dict of str to float
-        Parameters that are solved for, and a small step of each.
-    positive : tuple of str
-        Of these, the ones that may not be negative.
-    free : tuple of str
-        Parameters of the block that a refit may change.
-    beside : Beside, optional
-        Added to the output of the chain, which stays as it is.
-    charge : float, optional
-        Parameters to be charged, where it is not the number of those searched.
-    refused : dict of str to {"either", "upper"}
-        Searched parameters that at an end of their range make another thing of the
-        effect: there it is not accepted.
-    replaces : bool
-        Whether the effect's block takes the place of the chain's at ``start``.
-    neutral : bool
-        Whether the chain is as before where all parameters solved for are zero.
-    zero : dict of str to float, optional
-        Values at which the chain is as before, but simulated in another way: only the
-        difference to them is the effect's.
-    begun : bool
-        Whether a trial only begins it: the refit frees numbers that no trial has, so
-        that the score of its trial says little.
-    is_linear : bool
-        Whether its block is linear dynamics.
-    operates : str
-        How that starts, where it is not at rest.
-    """
-
-    effect: str
-    place: str
-    form: str
-    start: int
-    build: Callable[[Values], tuple[Block, ...]]
-    positions: tuple[int, ...]
-    grids: dict[str, FloatArray] = field(default_factory=dict)
-    unit: dict[str, float] = field(default_factory=dict)
-    positive: tuple[str, ...] = ()
-    free: tuple[str, ...] = ()
-    beside: Beside | None = None
-    charge: float | None = None
-    refused: dict[str, Refused] = field(default_factory=dict)
-    replaces: bool = False
-    limits: dict[str, tuple[float, float]] = field(default_factory=dict)
-    neutral: bool = True
-    zero: dict[str, float] | None = None
-    begun: bool = False
-    is_linear: bool = False
-    operates: str = ""
-
-    def ends(self, name: str) -> tuple[float, float]:
-        """Give the ends of a searched parameter's range."""
-        axis = self.grids[name]
-        return self.limits.get(name, (float(axis.min()), float(axis.max())))
-
-    @property
-    def freedom(self) -> float:
-        """Number of parameters that are charged."""
-        own = len(self.grids) + len(self.unit)
-        return own if self.charge is None else self.charge
-
-    @property
-    def label(self) -> str:
-        """The effect, with its form where it has several."""
-        return f"{self.effect} ({self.form})" if self.form else self.effect
 
 
 class Effect(ABC):
@@ -339,30 +219,6 @@ class Effect(ABC):
 def never_at_rest(signals: Sequence[FloatArray]) -> bool:
     """Tell whether a signal of some record keeps away from zero, on one side of it."""
     return any(len(z) > 0 and (z.min() > 0.0 or z.max() < 0.0) for z in signals)
-
-
-def in_operation(variant: Variant, simulation: Simulation) -> Variant:
-    """Give a linear variant that has operated before its records began.
-
-    Whole periods of an input came before; else the first value has stood there.
-    """
-    whole = all(record.repeats for record in simulation.records)
-    start: Any = "repeating" if whole else "settled"
-    (place,) = variant.positions
-
-    def build(given: Values) -> tuple[Block, ...]:
-        blocks = list(variant.build(given))
-        own: Any = blocks[place]
-        blocks[place] = replace(own, start=start)
-        return tuple(blocks)
-
-    return replace(variant, build=build, operates=start)
-
-
-def logarithmic(low: float, high: float, per_decade: float = 2.5) -> FloatArray:
-    """Give values from low to high, so many a decade, evenly in their logarithm."""
-    count = max(2, int(np.ceil(np.log10(high / low) * per_decade)) + 1)
-    return np.geomspace(low, high, count)
 
 
 class InsideEffect(Effect):

@@ -1,19 +1,28 @@
-"""A model on fewer samples: few choose a point of a grid, more search around it."""
+"""All variants of an effect beside a model, each over its grid.
+
+Few samples choose a point of a grid, more search around it.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.linear import LinearBlock
+from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import Variant
+from hystbench.gap.effects.effect import Declined, Effect
+from hystbench.gap.effects.variant import Variant
 from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.fitting.variant_search import Attempt
+from hystbench.gap.fitting.variant_search import Attempt, Trial, coarse
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.reshape import orthonormal
 from hystbench.gap.simulation.simulation import NOT_LINEAR
@@ -29,8 +38,73 @@ LEAST = 150
 EACH = 3
 """Of the scored samples, one of so many is looked at, where enough are left."""
 
+Tried = tuple[Attempt, Trial]
+"""A variant beside a model, and how it does over its grid."""
 
-def glance_of(attempt: Attempt) -> Attempt:
+
+def tried(effect: Effect, state: ModelState, score: Score) -> tuple[list[Tried], str]:
+    """Score every variant of an effect over its grid; or say why it declines."""
+    try:
+        variants = list(effect.every_variant(state.simulation))
+    except Declined as reason:
+        return [], str(reason)
+    runnable = [
+        (number, item)
+        for number, item in enumerate(variants)
+        if not _needs_rerun(state, item)
+    ]
+    if variants and not runnable:
+        return [], NEEDS_RERUN
+
+    def read(content: Any) -> tuple[list[Tried], str]:
+        kept, why = content
+        found = [
+            (
+                _thinned(Attempt(state, variants[number], score, number)),
+                Trial(variants[number], values, value),
+            )
+            for number, values, value in kept
+        ]
+        return found, why
+
+    return remembered_of(
+        state,
+        lambda: ["tried", effect.name, score.digest],
+        lambda: _tried(runnable, state, score),
+        lambda result: [
+            [[each.number, x.values, x.score] for each, x in result[0]],
+            result[1],
+        ],
+        read,
+    )
+
+
+def _tried(
+    runnable: Sequence[tuple[int, Variant]], state: ModelState, score: Score
+) -> tuple[list[Tried], str]:
+    """Score variants over their grids; say why none can be, if so."""
+    found: list[Tried] = []
+    refused = ""
+    for number, item in runnable:
+        attempt = Attempt(state, item, score, number)
+        try:
+            glance = _glance_of(attempt)
+            attempt = _thinned(attempt)
+            trial = coarse(attempt, glance)
+        except Declined as reason:
+            refused = str(reason)
+            continue
+        found.append((attempt, trial))
+    return found, "" if found else refused
+
+
+def _needs_rerun(state: ModelState, variant: Variant) -> bool:
+    """Tell whether a variant changes what enters a block whose output is stored."""
+    behind = state.chain[variant.start :]
+    return variant.beside is None and not all(block.reruns for block in behind)
+
+
+def _glance_of(attempt: Attempt) -> Attempt:
     """Give a variant on few samples: of half of the records, and fewer of each.
 
     The half has most of the gap. Of an input that moves slowly not every sample is
@@ -44,7 +118,7 @@ def glance_of(attempt: Attempt) -> Attempt:
     return Attempt(few[0], variant, few[1])
 
 
-def thinned(attempt: Attempt) -> Attempt:
+def _thinned(attempt: Attempt) -> Attempt:
     """Give a variant on all records, with fewer samples of those that move slowly.
 
     What is scored stays the same. A mode rings faster than its input moves.
@@ -71,9 +145,15 @@ def _half(state: ModelState, score: Score) -> tuple[ModelState, Score]:
     kept = sorted(order.tolist())
     if len(kept) == count:
         return state, score
-    few = state.on(kept)
-    directions = np.concatenate([score.directions[slices[k]] for k in kept])
-    return few, Score(few.sample, orthonormal(directions), score.floor)
+    rows = np.concatenate([np.arange(slices[k].start, slices[k].stop) for k in kept])
+    records = tuple(state.records[k] for k in kept)
+    few = state.on(records, state.sample.on(kept), rows)
+    return few, _on(few.sample, rows, score)
+
+
+def _on(sample: ScoredSamples, rows: NDArray[np.intp], score: Score) -> Score:
+    """Give a score of fewer samples."""
+    return Score(sample, orthonormal(score.directions[rows]), score.floor)
 
 
 @lru_cache(maxsize=1)
@@ -87,14 +167,9 @@ def _coarser(state: ModelState, score: Score) -> tuple[ModelState, Score]:
     ]
     rows = np.concatenate(kept)
     every = np.concatenate(state.sample.positions)
-    few = replace(
-        state,
-        sample=ScoredSamples(tuple(every[own] for own in kept)),
-        correction=None if state.correction is None else state.correction[rows],
-    )
-    directions = orthonormal(score.directions[rows])
-    few = _in_longer_steps(few, STRAIGHT)
-    return few, Score(few.sample, directions, score.floor)
+    sample = ScoredSamples(tuple(every[own] for own in kept))
+    few = _in_longer_steps(state.on(state.records, sample, rows), STRAIGHT)
+    return few, _on(few.sample, rows, score)
 
 
 @lru_cache(maxsize=2)

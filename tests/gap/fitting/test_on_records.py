@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.gap.decision import search
-from hystbench.gap.fitting.base_on_records import free_numbers, start_state
+from hystbench.gap.fitting.on_records import free_numbers, start_state
 from hystbench.gap.fitting.refit import refit
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT

@@ -1,4 +1,4 @@
-"""What a search starts from: the base on the fit records, and the noise floor."""
+"""Models on whole records: the base that a search starts from, and any other."""
 
 from __future__ import annotations
 
@@ -39,22 +39,16 @@ def start_state(
         If the base's output is not finite.
     """
     base = base.with_hold(hold)
-    chain = base.chain
-    exact = Simulation(chain, records, hold, fine=True).output
-    check_finite(base.name, records, exact)
     state = ModelState(
-        chain,
+        base.chain,
         records,
         ScoredSamples.of(records),
         free=free_numbers(base),
         hold=hold,
         offered=offered,
-    ).settled()
-    compared = [
-        Compared(record, simulated)
-        for record, simulated in zip(records, exact, strict=True)
-    ]
-    return state, noise_floor(compared, declared)
+    )
+    check_finite(base.name, records, state.exact)
+    return state.settled(), noise_floor(compared_records(state), declared)
 
 
 def run_base(
@@ -119,3 +113,15 @@ def free_numbers(base: Model) -> tuple[Free, ...]:
                 own = own._replace(low=number - size, high=number + size)
             found.append(own)
     return tuple(found)
+
+
+def compared_records(state: ModelState) -> list[Compared]:
+    """Simulate a model on its records, in free run, with what lies beside it."""
+    outputs = [y.copy() for y in state.exact] if state.beside else state.exact
+    each = state.by_signal(state.beside_amplitudes) if state.beside else []
+    # The shapes over whole records, as the scored samples fit them.
+    for (beside, values), rows in zip(state.beside, each, strict=True):
+        for record, y, own in zip(state.records, outputs, rows, strict=True):
+            y += beside.columns(record, values, beside.order) @ own
+    pairs = zip(state.records, outputs, strict=True)
+    return [Compared(record, y) for record, y in pairs]
