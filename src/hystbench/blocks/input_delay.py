@@ -10,14 +10,17 @@ import numpy as np
 
 from hystbench.blocks.curve import AHEAD, POINTS, value_at, weighed
 from hystbench.blocks.held import HeldBlock, Hold
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import choice, number
 from hystbench.blocks.step import Sampling, Step, smooth_curve
 from hystbench.record import FloatArray
 
 
 @dataclass(frozen=True)
 class InputDelay(HeldBlock):
-    """Pure delay: ``v(t) = z(t - delay_s + lead_s)``; z rests before and after.
+    """Pure delay: ``v(t) = z(t - delay_s + lead_s)``.
+
+    Before a record the input had its first value (``settled``), or was zero (``rest``);
+    after it, it keeps the last.
 
     A lead is no foresight of the device: its input was written down late. With a
     band-limited input, which is what ``hold`` is by default, the value is taken
@@ -42,6 +45,7 @@ class InputDelay(HeldBlock):
     lead_s: float = number(
         "s", "time by which the command was written down late", 0.0, 1e3, 0.0
     )
+    start: str = choice("input before the first sample", ("settled", "rest"), "settled")
 
     @classmethod
     def by(cls, delay_s: float, hold: str = "default") -> InputDelay:
@@ -52,10 +56,10 @@ class InputDelay(HeldBlock):
         """Compute the delayed input."""
         shift, place = (self.delay_s - self.lead_s) / dt, np.arange(len(z))
         if self.holding != "band-limited" or len(z) < 3:
-            between: FloatArray = np.interp(place - shift, place, z)
-            return between
-        v = later(z, shift)
-        v[place < shift] = z[0]
+            v = np.interp(place - shift, place, z)
+        else:
+            v = later(z, shift)
+        v[place < shift] = z[0] if self.start == "settled" else 0.0
         return v
 
     def step(self, sampling: Sampling) -> Step:
@@ -74,6 +78,7 @@ class InputDelay(HeldBlock):
         first = max(floor(shift) - points // 2 + 1, 0)
         constants = {
             "shift": shift,
+            "settled": float(self.start == "settled"),
             "first": first,
             "points": points,
             "taps": value_at(points, first - shift),

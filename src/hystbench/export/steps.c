@@ -203,14 +203,14 @@ static double hb_thermal_drift(double coefficient, int count, const double *lags
 }
 
 /* kept is a ring of first + points samples; the taps lie first samples back and more. */
-static double hb_input_delay(double shift, int first, int points, const double *taps,
-                             double *count, double *kept, double z)
+static double hb_input_delay(double shift, double settled, int first, int points,
+                             const double *taps, double *count, double *kept, double z)
 {
     double window[HB_POINTS];
     const double room = first + points, now = *count;
     kept[(int)fmod(now, room)] = z;
     *count = now + 1;
-    if (now < shift) return kept[0];
+    if (now < shift) return settled * kept[0];
     int known = 0;
     for (; known < points && now - first - known >= 0; known++)
         window[known] = kept[(int)fmod(now - first - known, room)];

@@ -71,3 +71,23 @@ def test_on_a_record_that_does_not_repeat_its_first_value_has_stood_before():
     (once,) = Simulation(chain, (replace(step, period_samples=None),)).output
     assert whole[0] > 6.5  # it comes from the end of the period before
     np.testing.assert_allclose(once[:100], 5.0, atol=1e-12)
+
+
+def test_a_device_that_was_idle_may_answer_late():
+    """A first input of ten from the first sample on reaches a lag seven seconds later.
+
+    If the delayed input had been there before, the lag would rise at once.
+    """
+    rng, dt = np.random.default_rng(3), 0.5
+    steps = np.repeat(rng.uniform(5, 15, 20), 60)
+    t = dt * np.arange(len(steps))
+    lag = block("sensor-lag", time_constant_s=40.0, hold="zero-order")
+    late = np.concatenate([np.zeros(14), steps[:-14]])
+    y = lag.simulate(late, late, dt) + 0.05 * rng.standard_normal(len(t))
+    state = state_of((lag,), (record(steps, y, name="heater", dt=dt),))
+    known = [effects()[name] for name in ("input-delay", "drive-lag", "sensor-lag")]
+    first = rank(state, plain_score(state, 0.05**2), known, folds=False)[0]
+    assert (first.effect, first.form) == ("input-delay", "idle before")
+    (delay,) = (x for x in first.state.chain if x.name == "input-delay")
+    assert delay.start == "rest"
+    assert delay.delay_s == pytest.approx(7.0, abs=0.3)

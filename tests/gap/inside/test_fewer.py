@@ -5,16 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hystbench.blocks import registry
 from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.sensor_lag import SensorLag
 from hystbench.blocks.stiffness import Stiffness
 from hystbench.gap.effects.law import Law
+from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.fewer import OnAll, on_fewer
 from hystbench.gap.inside.laws import evened, with_law
 from hystbench.gap.records.coarser import ENOUGH
 from hystbench.gap.records.scored_samples import ScoredSamples
+from hystbench.gap.thresholds import PAYS, SCALE
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 
@@ -81,3 +85,27 @@ def test_a_force_that_a_motion_makes_keeps_all_samples():
     whole = state(periodic("rest"))
     moved = Quantities("position", "force")
     assert on_fewer(whole, moved) is whole
+
+
+def test_rivals_of_what_was_chosen_are_fitted_to_all_samples_too():
+    """A lag behind linear dynamics is one before them: both have to be fitted."""
+    record = periodic("rest", 1)
+    shown = replace(
+        record, y=SensorLag(time_constant_s=0.004).simulate(record.y, record.u, DT)
+    )
+    whole = state(shown)
+    score = Score(whole.sample, np.zeros((len(whole.sample), 0)), 1e-12)
+    found = [Fitted(whole, 100.0)]
+    for effect, place, value in (
+        ("sensor-lag", "behind", 0.0041),
+        ("drive-lag", "before", 0.0042),
+        ("drive-lag", "before", 0.02),
+    ):
+        block = registry()[effect].from_mapping({"time_constant_s": value})
+        law = Law("", block, ("time_constant_s",), place)
+        score_on_fewer = 0.0 if value < 0.01 else 2 * PAYS
+        found.append(Fitted(with_law(whole, effect, law), score_on_fewer))
+    on_all = OnAll(whole, score, "rest")
+    _, best, rival, other = on_all.hypotheses(found, found[:2])
+    assert abs(best.score - rival.score) < SCALE
+    assert other.score > best.score + PAYS

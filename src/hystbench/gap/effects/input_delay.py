@@ -18,14 +18,21 @@ class InputDelay(Effect):
     place = "drive"
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
-        """Offer the delay before the first block."""
-        yield self.inserted(
-            simulation,
-            0,
-            grids={
-                "delay_s": logarithmic(simulation.step / 20, simulation.span / 20, 2)
-            },
-        )
+        """Offer the delay before the first block.
+
+        Where an input does not begin at zero, also one of a device that was idle before
+        the record, as dynamics of the chain that begin at rest say.
+        """
+        grids = {"delay_s": logarithmic(simulation.step / 20, simulation.span / 20, 2)}
+        yield self.inserted(simulation, 0, grids=grids)
+        if any(z[0] != 0.0 for z in simulation.at(0) if len(z)):
+            yield self.inserted(
+                simulation,
+                0,
+                lambda given: {**given, "start": "rest"},
+                form="idle before",
+                grids=grids,
+            )
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer it before the mechanism."""

@@ -20,6 +20,7 @@ from hystbench.gap.inside.search import FEW
 from hystbench.gap.records.coarser import coarser, left_out
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
+from hystbench.gap.thresholds import PAYS
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray
 
@@ -123,13 +124,24 @@ class OnAll:
     def hypotheses(
         self, found: Sequence[Fitted], best: Sequence[Fitted]
     ) -> list[Fitted]:
-        """Fit the best ones to all samples, and score the others on them."""
+        """Fit the best ones and their rivals to all samples, and score the others.
+
+        A rival is as good as a best one of as many effects, but for what would pay for
+        an effect.
+        """
+
+        def rivals(item: Fitted) -> bool:
+            return any(
+                len(item.effects) == len(one.effects) and item.score < one.score + PAYS
+                for one in best
+            )
+
         on_all = []
         for item in found:
             state = self.state(item.state)
             on_all.append(
                 fitted(state, self.score, FEW)
-                if item in best
+                if rivals(item)
                 else Fitted(state, judged(state, self.score))
             )
         return on_all
