@@ -70,58 +70,6 @@ class OutputFolder(_Place):
         written.check_writable(path)
 
 
-def limits(command: Command) -> Command:
-    """Add the limits of the next experiment: ``limit_low``, ``_high``, ``_rate``."""
-    told = "Largest rate of its input, per second; else that of the records."
-    command = click.option("--limit-rate", type=float, help=told)(command)
-    return _both_limits(command, "next experiment")
-
-
-def input_limits(command: Command) -> Command:
-    """Add the limits of an actuator's input: ``limit_low`` and ``limit_high``."""
-    return _both_limits(command, "actuator")
-
-
-def _both_limits(command: Command, whose: str) -> Command:
-    for name, told in (("high", "Highest"), ("low", "Lowest")):
-        told = f"{told} input of the {whose}."
-        command = click.option(f"--limit-{name}", type=float, help=told)(command)
-    return command
-
-
-def vocabulary(command: Command) -> Command:
-    """Add the effects that a search leaves out and puts in: ``without``, ``with_``."""
-    command = click.option(
-        "--with",
-        "with_",
-        multiple=True,
-        metavar="EFFECT",
-        help="An effect that you put in: it is fitted from the start, and is no "
-        "finding.",
-    )(command)
-    return click.option(
-        "--without",
-        multiple=True,
-        metavar="EFFECT",
-        help="An effect that the search must not name; may stand there several times.",
-    )(command)
-
-
-def calls(command: Command) -> Command:
-    """Add what holds for a simulator that is a function: ``calls``, ``keep_calls``."""
-    command = click.option(
-        "--keep-calls/--no-keep-calls",
-        default=True,
-        help="Whether outputs of a slow function are kept in the user's cache folder, "
-        "so that another run need not call it again.",
-    )(command)
-    return click.option(
-        "--calls",
-        type=click.IntRange(min=1),
-        help="Calls of a function that are made at most; the search then ends.",
-    )(command)
-
-
 @contextmanager
 def counted_calls(
     bound: int | None, keep: bool, say: Callable[[str], None]
@@ -204,29 +152,8 @@ def warn(lines: Iterable[str]) -> None:
         click.echo(f"hystbench: warning: {line}", err=True)
 
 
-unnamed_share = click.option(
-    "--unnamed-share",
-    type=click.FloatRange(0.0, 1.0, min_open=True),
-    default=0.01,
-    show_default=True,
-    help="Share of the gap's power that may stay unnamed beside a name.",
-)
-
-write_experiment = click.option(
-    "--write-experiment",
-    type=OutputFile(path_type=Path),
-    help="Write the excitation that would tell likely effects apart, as CSV or .npz.",
-)
-
 FILE = InputPlace(exists=True, dir_okay=False, path_type=Path)
 #: A dataset.yaml or its folder; what it refers to is held safe as it is read.
 DATASET = InputPlace(path_type=Path)
 NEW_FILE = OutputFile(path_type=Path)
 NEW_FOLDER = OutputFolder(path_type=Path)
-
-out = click.option(
-    "--out", type=NEW_FILE, required=True, help="File to write, whole or not at all."
-)
-out_folder = click.option(
-    "--out", type=NEW_FOLDER, required=True, help="Folder to write."
-)

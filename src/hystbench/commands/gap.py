@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import Annotated
 
 import click
 
@@ -13,43 +13,51 @@ from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import will_write, write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary, in_words
 from hystbench.interface.gap import find_gap
+from hystbench.signature import (
+    DatasetFile,
+    Experiment,
+    NextHigh,
+    NextLow,
+    NextRate,
+    OutFolder,
+    UnnamedShare,
+    With,
+    Without,
+    command,
+)
 
 
-@click.command()
-@click.argument("dataset", type=options.DATASET)
-@click.option(
-    "--model",
-    required=True,
-    help="Model file, gpi, linear, column, or package.module:function.",
-)
-@options.out_folder
-@options.vocabulary
-@options.write_experiment
-@options.limits
-@options.unnamed_share
-@options.calls
-@click.option(
-    "--cache/--no-cache",
-    default=True,
-    help="Whether what the search computes is kept in the user's cache folder, so that "
-    "another one on the same records is quicker.",
-)
-@click.option("--report/--no-report", default=True, help="Whether to write the page.")
+@command
 def gap(
-    dataset: Path,
-    model: str,
-    out: Path,
-    without: tuple[str, ...],
-    with_: tuple[str, ...],
-    write_experiment: Path | None,
-    limit_low: float | None,
-    limit_high: float | None,
-    limit_rate: float | None,
-    unnamed_share: float,
-    calls: int | None,
-    keep_calls: bool,
-    cache: bool,
-    report: bool,
+    dataset: DatasetFile,
+    *,
+    model: Annotated[
+        str, "Model file, gpi, linear, column, or package.module:function."
+    ],
+    out: OutFolder,
+    without: tuple[Without, ...] = (),
+    with_: tuple[With, ...] = (),
+    write_experiment: Experiment | None = None,
+    limit_low: NextLow | None = None,
+    limit_high: NextHigh | None = None,
+    limit_rate: NextRate | None = None,
+    unnamed_share: UnnamedShare = 0.01,
+    calls: Annotated[
+        int | None,
+        click.IntRange(min=1),
+        "Calls of a function that are made at most; the search then ends.",
+    ] = None,
+    keep_calls: Annotated[
+        bool,
+        "Whether outputs of a slow function are kept in the user's cache folder, so "
+        "that another run need not call it again.",
+    ] = True,
+    cache: Annotated[
+        bool,
+        "Whether what the search computes is kept in the user's cache folder, so that "
+        "another one on the same records is quicker.",
+    ] = True,
+    report: Annotated[bool, "Whether to write the page."] = True,
 ) -> None:
     """Find what MODEL lacks beside the measurements in DATASET.
 

@@ -4,51 +4,35 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, get_type_hints
 
 import click
 
 from hystbench import options
-from hystbench.device_kinds import DEVICE_KINDS
 from hystbench.errors import InputError
 from hystbench.files import write_text
 from hystbench.inspection.columns import Flags
 from hystbench.inspection.draft import Draft, draft
 from hystbench.inspection.writing import yaml_text
+from hystbench.signature import In, command
 from hystbench.written import writes
 
 PLACE = "dataset.yaml"
 
 
-@click.command()
-@click.argument("files", type=options.FILE, nargs=-1, required=True)
-@click.option("--input", help="Column of the input.")
-@click.option("--output", help="Column of the output.")
-@click.option("--time", help="Column of time.")
-@click.option("--input-unit", help="Its unit, such as A; '-' for none.")
-@click.option("--output-unit", help="Its unit, such as um; '-' for none.")
-@click.option("--time-unit", help="Its unit; seconds where the file tells none.")
-@click.option(
-    "--sampling-frequency",
-    "sampling_frequency_hz",
-    type=float,
-    help="In Hz, where no column is time.",
-)
-@click.option("--hold-out", multiple=True, help="Name of a record to hold out.")
-@click.option(
-    "--missing",
-    type=click.Choice(["interpolate", "split"]),
-    help="What to do where samples are missing.",
-)
-@click.option("--device", type=click.Choice(DEVICE_KINDS), help="Kind of the device.")
-@click.option("--name", help="Name of the dataset; by default that of its folder.")
-@click.option(
-    "--out",
-    type=options.NEW_FILE,
-    help="The dataset.yaml to write; by default beside the first file.",
-)
-def init(files: Sequence[Path], out: Path | None, **given: Any) -> None:
+@partial(command, also=get_type_hints(Flags, include_extras=True))
+def init(
+    files: tuple[In, ...],
+    *,
+    out: Annotated[
+        Path | None,
+        options.NEW_FILE,
+        "The dataset.yaml to write; by default beside the first file.",
+    ] = None,
+    **given: Any,
+) -> None:
     """Propose a dataset.yaml for FILES: CSV, MATLAB, HDF5, Parquet, TDMS, .npz, WAV.
 
     Columns, units, periods and roles are found; what cannot be found is asked, or has

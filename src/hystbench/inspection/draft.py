@@ -77,8 +77,8 @@ def draft(files: Sequence[Path], place: Path, given: Flags, ask: Ask) -> Draft:
         If a file cannot be read, no column can be time, input or output, or a record
         cannot be used.
     """
-    if given.sampling_frequency_hz is not None:
-        checked_frequency(given.sampling_frequency_hz)
+    if given.sampling_frequency is not None:
+        checked_frequency(given.sampling_frequency)
     notes: list[str] = []
     parts: list[Part] = []
     for file in files:

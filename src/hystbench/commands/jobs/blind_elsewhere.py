@@ -1,10 +1,10 @@
 """``hystbench job blind-elsewhere``: the score of cases that another plant made."""
 
 from hystbench.files import atomic_path
-from hystbench.job import DatasetFile, In, Out, job
+from hystbench.signature import DatasetFile, In, Out, command
 
 
-@job
+@command
 def blind_elsewhere(
     cases: tuple[DatasetFile, ...], *, own: tuple[In, ...] = (), out: Out
 ) -> None:

@@ -3,10 +3,10 @@
 from hystbench.challenge.contest.chunk import WRITTEN, make_chunk
 from hystbench.challenge.contest.plan import chunks, plan
 from hystbench.files import whole_folder
-from hystbench.job import OutFolder, Settings, job
+from hystbench.signature import OutFolder, Settings, command
 
 
-@job
+@command
 def blind_make(*, settings: Settings, out: OutFolder) -> None:
     """Write a folder a case; no truth is written anywhere."""
     entries = chunks(plan(**settings["plan"]), settings["size"])

@@ -5,10 +5,10 @@ from functools import partial
 from hystbench.compare import comparison
 from hystbench.compare.evidence import FILES
 from hystbench.files import whole_folder
-from hystbench.job import In, OutFolder, Settings, job
+from hystbench.signature import In, OutFolder, Settings, command
 
 
-@partial(job, also=FILES)
+@partial(command, also=dict.fromkeys(FILES, In))
 def compare(
     *,
     runs: tuple[In, ...] = (),

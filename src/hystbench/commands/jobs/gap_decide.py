@@ -1,7 +1,5 @@
 """``hystbench job gap-decide``: what to name, from the fit records alone."""
 
-from pathlib import Path
-
 import click
 
 from hystbench import options
@@ -9,26 +7,33 @@ from hystbench.gap.bases.load import load_base
 from hystbench.gap.records.evidence import check_units, load_evidence
 from hystbench.gap.run import decide_in, write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary
-from hystbench.job import DatasetFile, OutFolder, job
+from hystbench.signature import (
+    DatasetFile,
+    Experiment,
+    NextHigh,
+    NextLow,
+    NextRate,
+    OutFolder,
+    UnnamedShare,
+    With,
+    Without,
+    command,
+)
 
 
-@job
-@options.write_experiment
-@options.vocabulary
-@options.limits
-@options.unnamed_share
+@command
 @options.kept_calls
 def gap_decide(
     dataset: DatasetFile,
     *,
     model: str,
-    without: tuple[str, ...],
-    with_: tuple[str, ...],
-    write_experiment: Path | None,
-    limit_low: float | None,
-    limit_high: float | None,
-    limit_rate: float | None,
-    unnamed_share: float,
+    without: tuple[Without, ...] = (),
+    with_: tuple[With, ...] = (),
+    write_experiment: Experiment | None = None,
+    limit_low: NextLow | None = None,
+    limit_high: NextHigh | None = None,
+    limit_rate: NextRate | None = None,
+    unnamed_share: UnnamedShare = 0.01,
     out: OutFolder,
 ) -> None:
     """Decide what MODEL lacks beside the fit records of DATASET; opens no other.

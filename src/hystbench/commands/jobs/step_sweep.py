@@ -2,12 +2,12 @@
 
 from hystbench.compare.edges import COLUMNS
 from hystbench.compare.rows import four_digits, names_of, write_fields
-from hystbench.job import In, Json, Out, Settings, job
 from hystbench.record import load_record
+from hystbench.signature import In, Json, Out, Settings, command
 from hystbench.twins.edges import Point, sweep
 
 
-@job
+@command
 def step_sweep(
     records: tuple[In, ...],
     *,
