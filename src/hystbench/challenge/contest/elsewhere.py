@@ -10,8 +10,7 @@ import pandas as pd
 
 from hystbench.challenge.contest.frames import CONFIDENT
 from hystbench.challenge.contest.score import Row, given, judge
-from hystbench.challenge.contest.summary import FAMILIES, HIDDEN, figures, of
-from hystbench.challenge.contest.tables import calibration_error, middle
+from hystbench.challenge.contest.summary import figures
 from hystbench.files import read_json
 from hystbench.yaml_files import load_yaml
 
@@ -97,30 +96,9 @@ def beside(own: pd.DataFrame, elsewhere: pd.DataFrame) -> pd.DataFrame:
     both = [_with_names(cases) for cases in (own, elsewhere)]
     found: list[tuple[Any, ...]] = []
     for figure in figures("elsewhere"):
-        here, there = map(figure.share, both)
+        here, there = map(figure.of, both)
         found.append((figure.name, figure.asked, here.share, here.cases, *there))
-    for name, families, asked in (
-        ("gap closed, median, exact base", FAMILIES["gpi"], ">= 0.95"),
-        ("gap closed, median, foreign base", FAMILIES["foreign"], ">= 0.85"),
-    ):
-        chosen = [of(x[x["family"].isin(families)], HIDDEN) for x in both]
-        found.append(
-            _number(name, asked, chosen, [middle(x, "shrink") for x in chosen])
-        )
-    apart = [calibration_error(x) if len(x) else None for x in both]
-    found.append(_number("stated confidence off by", "<= 0.05", both, apart))
     return pd.DataFrame(found, columns=list(COLUMNS)).round(4)
-
-
-def _number(
-    name: str,
-    asked: str,
-    cases: Sequence[pd.DataFrame],
-    values: Sequence[float | None],
-) -> tuple[Any, ...]:
-    """Give the row of a number that is no share, and has no interval."""
-    (own, elsewhere), (here, there) = map(len, cases), values
-    return (name, asked, here, own, there, None, None, elsewhere)
 
 
 def _with_names(cases: pd.DataFrame) -> pd.DataFrame:
