@@ -177,6 +177,24 @@ class ClaimEvidence:
             edges=tuple(edge for edge in self.edges if edge.model in MODELS),
         )
 
+    def on_signals(self, signals: Iterable[str]) -> ClaimEvidence:
+        """Keep what is said on some signals, the published errors among it."""
+        kept = set(signals)
+
+        def of(found: Mapping[Any, Any]) -> dict[Any, Any]:
+            """Keep what stands under a signal, or a signal and something else."""
+            alone = {key: key if isinstance(key, str) else key[0] for key in found}
+            return {key: found[key] for key, signal in alone.items() if signal in kept}
+
+        return replace(
+            self,
+            published=tuple(p for p in self.published if p.signal in kept),
+            runs=of(self.runs),
+            records=of(self.records),
+            envelope_errors=of(self.envelope_errors),
+            drawn=of(self.drawn),
+        )
+
 
 def _need(content: Mapping[str, Any], key: str, path: str | Path) -> Any:
     """Take a key of a file or say which is missing."""

@@ -6,8 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from hystbench.compare.claims import CLAIMS
-from hystbench.compare.claims.claim import Claim
-from hystbench.compare.claims.halves import holds
+from hystbench.compare.claims.claim import Claim, holds
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import names_of, or_empty, write_fields
 from hystbench.compare.twins import TwinClaim, TwinError

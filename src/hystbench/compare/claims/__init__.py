@@ -23,14 +23,13 @@ from hystbench.compare.claims import (
 )
 from hystbench.compare.claims.claim import (
     Claim,
-    Condition,
     Judgement,
     NotTestable,
     Numbers,
     Test,
+    about_signals,
     judge,
 )
-from hystbench.compare.claims.halves import about_signals, on_signals
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import write_fields
 from hystbench.yaml_files import parse_yaml
@@ -61,7 +60,7 @@ def _test(row: Mapping[str, Any]) -> Test:
     return Test(
         measure=MEASURES[row["measure"]],
         arguments=row.get("with", {}),
-        holds=tuple(map(Condition, row["holds"])),
+        holds=tuple(compile(text, text, "eval") for text in row["holds"]),
         says=row["says"],
         otherwise=row.get("otherwise", ""),
     )
@@ -104,7 +103,7 @@ def judge_all(
         Signals that no fit has read. A claim that is judged by them and by others is
         also judged on them alone.
     """
-    alone = on_signals(evidence, held_out)
+    alone = evidence.on_signals(held_out)
     return tuple(_judge(claim, evidence, alone) for claim in CLAIMS)
 
 
