@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hystbench.compare.beside import Drawn, Edge
 from hystbench.compare.claims import (
     CLAIMS,
     COLUMNS,
@@ -19,8 +20,6 @@ from hystbench.compare.claims.operators import (
     loop_asymmetry,
     sine,
 )
-from hystbench.compare.draws import Drawn
-from hystbench.compare.edges import Edge
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.order_errors import OrderError
 from hystbench.published import FILTERS, Printed

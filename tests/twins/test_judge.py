@@ -4,10 +4,10 @@ from types import SimpleNamespace
 
 import pytest
 
+from hystbench.compare.beside import read_holdings, read_spreads
 from hystbench.compare.claims import CLAIMS
 from hystbench.compare.claims.claim import holds
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.compare.twins import read_holdings, read_spreads
 from hystbench.twins.experiments import CONFIGURED, Experiment
 from hystbench.twins.judge import results_on_runs, write_twins
 from hystbench.twins.parts import Outcome

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from hystbench.compare.beside import write_margins
 from hystbench.compare.cells import ComparedCell, compare_cells
 from hystbench.compare.claims import judge_all, write_claims
 from hystbench.compare.claims.claim import Judgement
-from hystbench.compare.edges import Edge, write_margins
-from hystbench.compare.evidence import ClaimEvidence, Run, read_evidence
+from hystbench.compare.evidence import ClaimEvidence, read_evidence
 from hystbench.compare.measured import COLUMNS, errors_table
 from hystbench.compare.off import OffCell, off_cells, write_off
 from hystbench.compare.rows import or_diverged, write_fields
-from hystbench.compare.summary import rms_error_percent, summarise
+from hystbench.compare.summary import summarise
 from hystbench.compare.tables import PrintedTable, paper_tables
 from hystbench.compare.verdict import (
     first_result,
@@ -45,14 +45,13 @@ CELL_COLUMNS = (
 class Comparison:
     """All that a comparison finds."""
 
+    evidence: ClaimEvidence
+    held_out: frozenset[str]
     cells: tuple[ComparedCell, ...]
     off: tuple[OffCell, ...]
     claims: tuple[Judgement, ...]
     summary: dict[str, Any]
     tables: tuple[PrintedTable, ...]
-    edges: tuple[Edge, ...]
-    held_out: frozenset[str]
-    added: tuple[Run, ...] = ()
 
     def text(self) -> str:
         """Give the comparison for a terminal."""
@@ -65,7 +64,7 @@ class Comparison:
         write_off(self.off, out / "off.csv")
         write_claims(self.claims, out / "claims.csv")
         write_audit(out / "audit.csv")
-        write_margins(self.edges, self.held_out, out / "margins.csv")
+        write_margins(self.evidence.edges, self.held_out, out / "margins.csv")
         write_json(out / "summary.json", self.summary)
         write_text(out / "verdict.rst", verdict_page(self.summary, "rst"))
         write_text(out / "verdict.md", verdict_page(self.summary, "pipe"))
@@ -73,8 +72,8 @@ class Comparison:
         write_text(out / "tables.txt", self.text())
         for table in self.tables:
             table.write(out / "tables")
-        if self.added:
-            write_fields(out / "added.csv", COLUMNS, self.added, or_diverged)
+        if added := self.evidence.added:
+            write_fields(out / "added.csv", COLUMNS, added, or_diverged)
 
 
 def write_cells(cells: Iterable[ComparedCell], path: str | Path) -> None:
@@ -91,37 +90,23 @@ def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:
 def compare_evidence(
     evidence: ClaimEvidence, held_out: Iterable[str] = ()
 ) -> Comparison:
-    """Compare evidence that is already read; ``held_out`` as in ``summarise``.
+    """Compare evidence that is already read; ``held_out`` as in ``compare``.
 
     Models and signals that the paper does not have stand in a table of their own;
     neither claims nor summary are of such models.
     """
-    unseen = set(held_out)
-    whole, evidence = evidence, evidence.of_the_paper
-    cells = compare_cells(evidence, unseen)
-    claims = judge_all(evidence, unseen)
+    unseen, own = frozenset(held_out), evidence.of_the_paper
+    cells = compare_cells(own, unseen)
+    claims = judge_all(own, unseen)
+    counts = {name: drawn.count for name, drawn in own.drawn.items()}
     return Comparison(
-        cells=cells,
-        off=off_cells(cells, evidence),
-        claims=claims,
-        summary=summarise(
-            cells,
-            claims,
-            unseen,
-            rms_error_percent(evidence),
-            rms_used=evidence.drawn,
-            edges=evidence.edges,
-            constants=evidence.constants,
-        ),
-        tables=(
-            *paper_tables(
-                cells, {name: drawn.count for name, drawn in evidence.drawn.items()}
-            ),
-            *_added_table(whole),
-        ),
-        edges=whole.edges,
-        held_out=frozenset(unseen),
-        added=whole.added,
+        evidence,
+        unseen,
+        cells,
+        off_cells(cells, own),
+        claims,
+        summarise(own, cells, claims, unseen),
+        (*paper_tables(cells, counts), *_added_table(evidence)),
     )
 
 

@@ -12,11 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.compare.constants import Ranking
-from hystbench.compare.draws import Drawn, read_draws
-from hystbench.compare.edges import Edge
+from hystbench.compare.beside import (
+    Drawn,
+    Edge,
+    Holding,
+    Ranking,
+    read_draws,
+    read_holdings,
+    read_spreads,
+)
 from hystbench.compare.rows import finite_or_infinite, read_items, read_rows
-from hystbench.compare.twins import Holding, read_holdings, read_spreads
 from hystbench.errors import InputError, nearest
 from hystbench.files import read_json
 from hystbench.order_errors import OrderError

@@ -1,6 +1,6 @@
 """``hystbench job constants``: the ranking with other constants."""
 
-from hystbench.compare.constants import Ranking
+from hystbench.compare.beside import Ranking
 from hystbench.compare.rows import four_digits, names_of, write_fields
 from hystbench.published import load_errors
 from hystbench.signature import In, Json, Out, Settings, command

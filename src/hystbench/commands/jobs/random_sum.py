@@ -1,6 +1,6 @@
 """``hystbench job random-sum``: the random sum drawn many times."""
 
-from hystbench.compare.draws import Draw
+from hystbench.compare.beside import Draw
 from hystbench.compare.rows import names_of, or_empty, write_fields
 from hystbench.files import write_csv
 from hystbench.published import load_errors

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field, replace
 from types import CodeType
 from typing import Any, Literal
 
+from hystbench.compare.beside import Holding, holding_text
 from hystbench.compare.cells import twin_runs
 from hystbench.compare.evidence import Cell, ClaimEvidence, Run
-from hystbench.compare.twins import Holding, holding_text
 from hystbench.published import FILTERS
 
 Verdict = Literal[

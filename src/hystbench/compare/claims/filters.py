@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from statistics import median
 
+from hystbench.compare.beside import Edge
 from hystbench.compare.claims.claim import NotTestable, Numbers, lms_runs
-from hystbench.compare.edges import Edge
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.order_errors import OrderError
 from hystbench.published import FILTERS

@@ -2,11 +2,11 @@
 
 import pytest
 
+from hystbench.compare.beside import Holding, holding_text, read_holdings, read_spreads
 from hystbench.compare.cells import compare_cells
 from hystbench.compare.claims import judge_all, write_claims
 from hystbench.compare.comparison import write_cells
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.compare.twins import Holding, holding_text, read_holdings, read_spreads
 from hystbench.errors import InputError
 from tests.conftest import table
 
