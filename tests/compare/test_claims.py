@@ -144,7 +144,7 @@ CASES = {
     "algorithm-converges": (identified(), identified(reached=False)),
     "identification-iterative": (
         identified(),
-        identified(sums=np.array([1.0, 1.5]), epsilon=0.1),
+        identified(J=[1.0, 1.5], epsilon=0.1),
     ),
     "identified-envelopes": (
         # twice the scale and shifted: the weights take it back
