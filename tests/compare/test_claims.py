@@ -12,7 +12,6 @@ from hystbench.compare.claims import (
     COLUMNS,
     judge_all,
     read_claim,
-    write_claims,
 )
 from hystbench.compare.claims.claim import NotTestable, judge
 from hystbench.compare.claims.operators import (
@@ -21,6 +20,7 @@ from hystbench.compare.claims.operators import (
     sine,
 )
 from hystbench.compare.evidence import ClaimEvidence
+from hystbench.compare.rows import write_fields
 from hystbench.order_errors import OrderError
 from hystbench.published import FILTERS, Printed
 from tests.conftest import table
@@ -473,7 +473,7 @@ def test_claims_on_the_play_hold(name):
 
 def test_ledger_as_csv(tmp_path):
     judgements = judge_all(ClaimEvidence())
-    write_claims(judgements, tmp_path / "claims.csv")
+    write_fields(tmp_path / "claims.csv", COLUMNS, judgements)
     rows = table(tmp_path / "claims.csv")
     assert list(rows[0]) == [column.partition("=")[0] for column in COLUMNS]
     assert [row["id"] for row in rows] == [claim.id for claim in CLAIMS]

@@ -8,12 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from hystbench.compare.beside import write_margins
+from hystbench.compare.cells import COLUMNS as CELL_COLUMNS
 from hystbench.compare.cells import ComparedCell, compare_cells
-from hystbench.compare.claims import judge_all, write_claims
+from hystbench.compare.claims import COLUMNS as CLAIM_COLUMNS
+from hystbench.compare.claims import judge_all
 from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.evidence import ClaimEvidence, read_evidence
 from hystbench.compare.measured import COLUMNS, errors_table
-from hystbench.compare.off import OffCell, off_cells, write_off
+from hystbench.compare.off import COLUMNS as OFF_COLUMNS
+from hystbench.compare.off import OffCell, off_cells
 from hystbench.compare.rows import or_diverged, write_fields
 from hystbench.compare.summary import summarise
 from hystbench.compare.tables import PrintedTable, paper_tables
@@ -34,11 +37,6 @@ WRITTEN = (
     *("added.csv", "tables/added.*"),
 )
 """Files of a comparison, as names or patterns."""
-CELL_COLUMNS = (
-    *("table", "signal", "model", "metric", "half", "published", "ours"),
-    *("spread_low", "spread_high", "draws_low", "draws_high", "log10_ratio"),
-    *("published_consistent", "status"),
-)
 
 
 @dataclass(frozen=True)
@@ -60,9 +58,9 @@ class Comparison:
     def write(self, out_dir: str | Path) -> None:
         """Write what was found into a folder; see :func:`compare`."""
         out = Path(out_dir)
-        write_cells(self.cells, out / "cells.csv")
-        write_off(self.off, out / "off.csv")
-        write_claims(self.claims, out / "claims.csv")
+        write_fields(out / "cells.csv", CELL_COLUMNS, self.cells, or_diverged)
+        write_fields(out / "off.csv", OFF_COLUMNS, self.off)
+        write_fields(out / "claims.csv", CLAIM_COLUMNS, self.claims)
         write_audit(out / "audit.csv")
         write_margins(self.evidence.edges, self.held_out, out / "margins.csv")
         write_json(out / "summary.json", self.summary)
@@ -74,11 +72,6 @@ class Comparison:
             table.write(out / "tables")
         if added := self.evidence.added:
             write_fields(out / "added.csv", COLUMNS, added, or_diverged)
-
-
-def write_cells(cells: Iterable[ComparedCell], path: str | Path) -> None:
-    """Write the cells as CSV; a cell without a finite run has no ours."""
-    write_fields(path, CELL_COLUMNS, cells, or_diverged)
 
 
 def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:

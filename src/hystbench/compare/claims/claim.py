@@ -75,7 +75,8 @@ class Test:
 
     Parameters
     ----------
-    measure : callable
+    measure : callable or None
+        None where nothing can judge it: the sentence says why.
     arguments : mapping of str to object
         What the measure takes beside the evidence.
     holds : tuple of code
@@ -87,7 +88,7 @@ class Test:
         The sentence where the claim does not hold; empty for the same.
     """
 
-    measure: Measure
+    measure: Measure | None
     arguments: Mapping[str, Any] = field(default_factory=dict)
     holds: tuple[CodeType, ...] = ()
     says: str = ""
@@ -101,6 +102,8 @@ class Test:
         NotTestable
             If the evidence lacks what the measure needs.
         """
+        if self.measure is None:
+            raise NotTestable(self.says)
         numbers = self.measure(evidence, **self.arguments)
         # The comparisons are of the package's own table.
         holds = all(eval(each, {}, dict(numbers)) for each in self.holds)  # noqa: S307
