@@ -13,7 +13,7 @@ from hystbench.compare.cells import ComparedCell, compare_cells
 from hystbench.compare.claims import COLUMNS as CLAIM_COLUMNS
 from hystbench.compare.claims import judge_all
 from hystbench.compare.claims.claim import Judgement
-from hystbench.compare.evidence import ClaimEvidence, read_evidence
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.measured import COLUMNS, errors_table
 from hystbench.compare.off import COLUMNS as OFF_COLUMNS
 from hystbench.compare.off import OffCell, off_cells
@@ -28,8 +28,6 @@ from hystbench.compare.verdict import (
 from hystbench.files import write_json, write_text
 from hystbench.published import load_errors, signals
 from hystbench.published.audit import write_audit
-
-__all__ = ["Comparison", "compare", "compare_evidence", "read_evidence"]
 
 WRITTEN = (
     *("cells.csv", "off.csv", "claims.csv", "audit.csv", "summary.json", "margins.csv"),
@@ -56,7 +54,14 @@ class Comparison:
         return print_tables(self.tables, self.claims, self.summary)
 
     def write(self, out_dir: str | Path) -> None:
-        """Write what was found into a folder; see :func:`compare`."""
+        """Write what was found into a folder.
+
+        These are ``cells.csv``, ``off.csv``, ``claims.csv``, ``audit.csv``,
+        ``margins.csv``, ``summary.json``, ``verdict.rst``, ``verdict.md``,
+        ``first.md`` for the README, ``tables.txt`` for the terminal and ``tables/``
+        (Tables 1-4 as CSV, Markdown and LaTeX); and where models or signals ran that
+        the paper does not have, ``added.csv`` and ``tables/added``.
+        """
         out = Path(out_dir)
         write_fields(out / "cells.csv", CELL_COLUMNS, self.cells, or_diverged)
         write_fields(out / "off.csv", OFF_COLUMNS, self.off)
@@ -83,10 +88,17 @@ def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:
 def compare_evidence(
     evidence: ClaimEvidence, held_out: Iterable[str] = ()
 ) -> Comparison:
-    """Compare evidence that is already read; ``held_out`` as in ``compare``.
+    """Compare evidence with the paper.
 
     Models and signals that the paper does not have stand in a table of their own;
     neither claims nor summary are of such models.
+
+    Parameters
+    ----------
+    evidence : ClaimEvidence
+    held_out : iterable of str
+        Signals whose published errors were not used in choosing the twin; the summary
+        then tells both groups apart.
     """
     unseen, own = frozenset(held_out), evidence.of_the_paper
     cells = compare_cells(own, unseen)
@@ -114,40 +126,3 @@ def _added_table(evidence: ClaimEvidence) -> list[PrintedTable]:
     why = f"The paper has no numbers for {', '.join((*models, *names))}."
     runs = list(evidence.runs.values()) if models else list(evidence.added)
     return [errors_table("added", "Our errors on the twin.", why, runs)]
-
-
-def compare(
-    out_dir: str | Path,
-    runs: Iterable[str | Path],
-    records: Iterable[str | Path] = (),
-    held_out: Iterable[str] = (),
-    **files: str | Path | None,
-) -> Comparison:
-    """Read the files of the runs, compare them with the paper, write what came out.
-
-    Parameters
-    ----------
-    out_dir : path
-        Folder for ``cells.csv``, ``off.csv``, ``claims.csv``, ``audit.csv``,
-        ``margins.csv``, ``summary.json``, ``verdict.rst``, ``verdict.md``,
-        ``first.md`` for the README, ``tables.txt`` for the terminal and ``tables/``
-        (Tables 1-4 as CSV, Markdown and LaTeX); and where models or signals ran that
-        the paper does not have, for ``added.csv`` and ``tables/added``.
-    runs : iterable of paths
-        One JSON file for each signal and model.
-    records : iterable of paths
-        Records of the signals.
-    held_out : iterable of str
-        Signals whose published errors were not used in choosing the twin; the
-        summary then tells both groups apart.
-    **files : path or None
-        As for :func:`read_evidence`; claims on what is left out are not testable.
-
-    Raises
-    ------
-    InputError
-        If a file is not what it should be.
-    """
-    found = compare_evidence(read_evidence(runs, records, **files), held_out)
-    found.write(out_dir)
-    return found
