@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from hystbench.challenge.contest.frames import CONFIDENT
-from hystbench.challenge.contest.score import Row, given, judge
+from hystbench.challenge.contest.frames import sure
+from hystbench.challenge.contest.score import Row, judge
 from hystbench.challenge.contest.summary import figures
 from hystbench.files import read_json
 from hystbench.yaml_files import load_yaml
@@ -75,11 +75,6 @@ def told(case: Path, schema: Mapping[str, Any]) -> Row:
     return judge("gap", place, ours, answer, schema, lambda members: members)
 
 
-def rows(cases: Sequence[Path], schema: Mapping[str, Any]) -> list[Row]:
-    """Judge cases, folders as for :func:`told`."""
-    return [told(case, schema) for case in cases]
-
-
 def beside(own: pd.DataFrame, elsewhere: pd.DataFrame) -> pd.DataFrame:
     """Put the figures of both plants side by side.
 
@@ -103,16 +98,10 @@ def beside(own: pd.DataFrame, elsewhere: pd.DataFrame) -> pd.DataFrame:
 
 def _with_names(cases: pd.DataFrame) -> pd.DataFrame:
     """Add whether no name is given, one surely, and a wrong one surely."""
-    names = [
-        given(verdict, words)
-        for verdict, words in zip(cases["verdict"], cases["confidences"], strict=True)
-    ]
-    hidden = [str(truth).split() for truth in cases["truth"]]
+    both = zip(cases["given"], cases["truth"].str.split(), strict=True)
+    wrong = [{x: y for x, y in names.items() if x not in true} for names, true in both]
     return cases.assign(
-        no_name=[not x for x in names],
-        confident=[any(sure > CONFIDENT for sure in x.values()) for x in names],
-        wrongly=[
-            any(sure > CONFIDENT and name not in true for name, sure in x.items())
-            for x, true in zip(names, hidden, strict=True)
-        ],
+        no_name=[not names for names in cases["given"]],
+        confident=list(map(sure, cases["given"])),
+        wrongly=list(map(sure, wrong)),
     )

@@ -223,20 +223,6 @@ def write_rows(path: Path, rows: Iterable[Row]) -> None:
     write_csv(path, COLUMNS, (astuple(row) for row in rows))
 
 
-def stated(confidences: str) -> dict[str, float]:
-    """Give the stated confidence of each name, as a row has them."""
-    parts = (word.rpartition("=") for word in confidences.split())
-    return {name: float(confidence) for name, _, confidence in parts}
-
-
-def given(verdict: str, confidences: str) -> dict[str, float]:
-    """Give the names that an answer gives, with what they are stated with.
-
-    Names beside another verdict than ``named`` do not count.
-    """
-    return stated(confidences) if verdict == "named" else {}
-
-
 _NOTHING: dict[str, Any] = {"verdict": "", "effects": [], "where": [], "gap": None}
 
 

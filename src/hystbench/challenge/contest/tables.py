@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 
 from hystbench.challenge.contest import table
-from hystbench.challenge.contest.score import SHAPE, stated
+from hystbench.challenge.contest.score import SHAPE
 from hystbench.challenge.contest.wilson import Share, wilson
 
 #: Edges of the bins of stated confidence.
@@ -150,8 +150,8 @@ def _outcomes(cases: pd.DataFrame) -> list[tuple[float, bool]]:
     """Give the stated confidence of each effect named, and whether it is hidden."""
     return [
         (confidence, name in truth.split())
-        for truth, words in zip(cases["truth"], cases["confidences"], strict=True)
-        for name, confidence in stated(words).items()
+        for truth, stated in zip(cases["truth"], cases["stated"], strict=True)
+        for name, confidence in stated.items()
     ]
 
 
