@@ -15,6 +15,7 @@ from hystbench.errors import InputError
 from hystbench.files import write_text
 from hystbench.inspection.columns import Flags
 from hystbench.inspection.draft import Draft, draft
+from hystbench.inspection.excitation import excitation_of
 from hystbench.inspection.writing import yaml_text
 from hystbench.signature import In, command
 from hystbench.written import writes
@@ -78,11 +79,11 @@ def _said(place: Path, found: Draft) -> list[str]:
     ]
     width = max(len(record.name) for record in found.records)
     for record in found.records:
-        item = found.inputs[record.name]
+        kind = excitation_of(record.u, record.dt).kind
         period = record.period_samples
         lines.append(
             f"  {record.name:{width}}  {record.use:8}  {len(record)} samples at "
-            f"{1 / record.dt:.6g} Hz, {item.kind}, "
+            f"{1 / record.dt:.6g} Hz, {kind}, "
             + (f"period_samples: {period}" if period else "no period")
         )
     lines += [f"  note: {note}" for note in found.notes]

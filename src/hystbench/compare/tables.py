@@ -90,18 +90,11 @@ class PrintedTable:
             )
         )
 
-    def write(self, folder: str | Path) -> list[Path]:
-        """Write the table in all three formats; give the paths."""
-        written = []
-        for suffix, text in (
-            (".csv", self.csv()),
-            (".md", self.markdown()),
-            (".tex", self.latex()),
-        ):
-            path = Path(folder) / f"{self.name}{suffix}"
-            write_text(path, text)
-            written.append(path)
-        return written
+    def write(self, folder: str | Path) -> None:
+        """Write the table in all three formats."""
+        texts = {"csv": self.csv(), "md": self.markdown(), "tex": self.latex()}
+        for suffix, text in texts.items():
+            write_text(Path(folder) / f"{self.name}.{suffix}", text)
 
 
 _LATEX = {

@@ -181,9 +181,8 @@ def signals_of(parts: Sequence[Part], given: Flags, ask: Ask) -> ChosenColumns:
         units[key] = plain(unit) or "-"
     unit_of_time = given.time_unit or (told[time][1] if time else None)
     if time is not None and unit_of_time is None:
-        clock = clock_of(first.columns[time].values)
-        unit_of_time = clock.unit if clock else "s"
-        taken = clock.words if clock else "seconds"
+        counted = clock_of(first.columns[time].values)
+        unit_of_time, taken = counted or ("s", "seconds")
         notes.append(f"time {time!r}: no unit is told; taken for {taken} (--time-unit)")
     return ChosenColumns(
         time,

@@ -166,7 +166,6 @@ def judge(
     if tolerated:
         members = tuple(name for name in members if name != SHAPE)
     confirmed = confirm(members) if single and len(members) > 1 else members
-    found = recovered(truth["effects"], effects)
     # An effect outside the vocabulary has no name to be called by.
     right, right_strict = _right(kind, hidden, gap["verdict"], named, strict)
     views = gap["where"]
@@ -209,10 +208,7 @@ def judge(
         if single and machine
         else None,
         shrink=_shrink(truth, gap["gap"]) if hidden else None,
-        parameters=found.compared,
-        intervals=found.intervals,
-        covered=found.covered,
-        parameter_error=found.median_error,
+        **recovered(truth["effects"], effects),
         seconds=answer["seconds"],
         cpu_seconds=answer["cpu_seconds"],
     )
