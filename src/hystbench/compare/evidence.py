@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -194,10 +193,7 @@ def _need(content: Mapping[str, Any], key: str, path: str | Path) -> Any:
 
 
 def _content(path: str | Path) -> dict[str, Any]:
-    try:
-        content = read_json(path)
-    except (OSError, json.JSONDecodeError) as error:
-        raise InputError(f"{path}: not a readable JSON file ({error})") from error
+    content = read_json(path)
     if not isinstance(content, dict):
         raise InputError(f"{path}: expected a JSON object")
     return content

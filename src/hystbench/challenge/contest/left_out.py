@@ -8,7 +8,7 @@ import pandas as pd
 
 from hystbench.challenge.contest.frames import sure
 from hystbench.challenge.contest.score import SHAPE
-from hystbench.challenge.contest.wilson import wilson
+from hystbench.challenge.contest.tables import wilson
 
 COLUMNS = ("left_out", "cases", "no_name", "low", "high", "confident", "called")
 EVERY = "all"

@@ -12,6 +12,7 @@ import pandas as pd
 
 from hystbench.challenge.contest import table
 from hystbench.challenge.contest.tables import (
+    Share,
     brier,
     calibration_error,
     coverage,
@@ -19,7 +20,6 @@ from hystbench.challenge.contest.tables import (
     middle,
     shares,
 )
-from hystbench.challenge.contest.wilson import Share
 from hystbench.challenge.plant.inside import MACHINES
 
 FAMILIES = {
