@@ -10,7 +10,7 @@ from hystbench.signature import In, Json, Out, Settings, SettingsType, command
 told = []
 
 
-@partial(command, also=dict.fromkeys(("left", "right_side"), In))
+@partial(command, also=dict.fromkeys(("left", "right_side"), (In, None)))
 def made(
     first: In,
     others: tuple[In, ...] = (),

@@ -6,9 +6,10 @@ import math
 import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Annotated, Any, TypeVar, cast
 
 import click
 
@@ -157,3 +158,47 @@ FILE = InputPlace(exists=True, dir_okay=False, path_type=Path)
 DATASET = InputPlace(path_type=Path)
 NEW_FILE = OutputFile(path_type=Path)
 NEW_FOLDER = OutputFolder(path_type=Path)
+
+
+@dataclass(frozen=True)
+class SearchOptions:
+    """What is asked of a search for what a simulator lacks, each with its help."""
+
+    without: tuple[
+        Annotated[
+            str,
+            "An effect that the search must not name; may stand there several times.",
+            {"metavar": "EFFECT"},
+        ],
+        ...,
+    ] = ()
+    with_: tuple[
+        Annotated[
+            str,
+            "An effect that you put in: it is fitted from the start, and is no "
+            "finding.",
+            {"metavar": "EFFECT"},
+        ],
+        ...,
+    ] = ()
+    write_experiment: Annotated[
+        Path | None,
+        NEW_FILE,
+        "Write the excitation that would tell likely effects apart, as CSV or .npz.",
+    ] = None
+    limit_low: Annotated[float | None, "Lowest input of the next experiment."] = None
+    limit_high: Annotated[float | None, "Highest input of the next experiment."] = None
+    limit_rate: Annotated[
+        float | None, "Largest rate of its input, per second; else that of the records."
+    ] = None
+    unnamed_share: Annotated[
+        float,
+        click.FloatRange(0.0, 1.0, min_open=True),
+        "Share of the gap's power that may stay unnamed beside a name.",
+        {"show_default": True},
+    ] = 0.01
+
+    @property
+    def limits(self) -> dict[str, float]:
+        """The limits of the next experiment that were asked for, by name."""
+        return asked_limits(self.limit_low, self.limit_high, self.limit_rate)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import inspect
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import fields
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
@@ -57,60 +58,38 @@ Folder = Annotated[Path, FOLDER, "Folder to read."]
 Out = Annotated[Path, NEW_FILE, "File to write, whole or not at all."]
 OutFolder = Annotated[Path, NEW_FOLDER, "Folder to write."]
 
-# Of the next experiment that a search proposes.
-NextLow = Annotated[float, "Lowest input of the next experiment."]
-NextHigh = Annotated[float, "Highest input of the next experiment."]
-NextRate = Annotated[
-    float, "Largest rate of its input, per second; else that of the records."
-]
-Experiment = Annotated[
-    Path,
-    NEW_FILE,
-    "Write the excitation that would tell likely effects apart, as CSV or .npz.",
-]
 # Of an actuator.
 InputLow = Annotated[float, "Lowest input of the actuator."]
 InputHigh = Annotated[float, "Highest input of the actuator."]
-# Of a search for what a simulator lacks.
-Without = Annotated[
-    str,
-    "An effect that the search must not name; may stand there several times.",
-    {"metavar": "EFFECT"},
-]
-With = Annotated[
-    str,
-    "An effect that you put in: it is fitted from the start, and is no finding.",
-    {"metavar": "EFFECT"},
-]
-UnnamedShare = Annotated[
-    float,
-    click.FloatRange(0.0, 1.0, min_open=True),
-    "Share of the gap's power that may stay unnamed beside a name.",
-    {"show_default": True},
-]
 
 
 def command(
-    function: Callable[..., None], also: Mapping[str, Any] | None = None
+    function: Callable[..., None], also: Mapping[str, tuple[Any, Any]] | None = None
 ) -> click.Command:
     """Make a command of a function, with its docstring as help.
 
     Parameters
     ----------
     function : callable
-    also : mapping of str to type, optional
-        Further options, which its ``**`` parameter takes: none is required.
+    also : mapping of str to (kind, default), optional
+        Further options, which its ``**`` parameter takes.
     """
     hints = get_type_hints(function, include_extras=True)
     parameters: list[click.Parameter] = []
     for given in inspect.signature(function).parameters.values():
         if given.kind is given.VAR_KEYWORD:
-            parameters += [_option(*each, None) for each in (also or {}).items()]
+            parameters += [_option(name, *each) for name, each in (also or {}).items()]
         else:
             by_place = given.kind is given.POSITIONAL_OR_KEYWORD
             make = _argument if by_place else _option
             parameters.append(make(given.name, hints[given.name], given.default))
     return click.command(params=parameters)(function)
+
+
+def of_class(kind: type) -> dict[str, tuple[Any, Any]]:
+    """Give the fields of a dataclass as options, all with a default."""
+    hints = get_type_hints(kind, include_extras=True)
+    return {item.name: (hints[item.name], item.default) for item in fields(kind)}
 
 
 def _argument(name: str, hint: Any, default: Any) -> click.Argument:

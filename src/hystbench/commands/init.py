@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, get_type_hints
+from typing import Annotated, Any
 
 import click
 
@@ -17,13 +17,13 @@ from hystbench.inspection.columns import Flags
 from hystbench.inspection.draft import Draft, draft
 from hystbench.inspection.excitation import excitation_of
 from hystbench.inspection.writing import yaml_text
-from hystbench.signature import In, command
+from hystbench.signature import In, command, of_class
 from hystbench.written import writes
 
 PLACE = "dataset.yaml"
 
 
-@partial(command, also=get_type_hints(Flags, include_extras=True))
+@partial(command, also=of_class(Flags))
 def init(
     files: tuple[In, ...],
     *,

@@ -8,7 +8,7 @@ from hystbench.files import whole_folder
 from hystbench.signature import In, OutFolder, Settings, command
 
 
-@partial(command, also=dict.fromkeys(FILES, In))
+@partial(command, also=dict.fromkeys(FILES, (In, None)))
 def compare(
     *,
     runs: tuple[In, ...] = (),
