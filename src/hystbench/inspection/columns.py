@@ -14,7 +14,13 @@ from hystbench.device_kinds import DeviceKind
 from hystbench.errors import InputError, nearest
 from hystbench.formats import Column, Table
 from hystbench.inspection.clocks import clock_of
-from hystbench.inspection.names import choose, is_simulated, is_time, split_unit
+from hystbench.inspection.names import (
+    choose,
+    is_known,
+    is_simulated,
+    is_time,
+    split_unit,
+)
 from hystbench.record import FloatArray
 from hystbench.units import NONE, check_known, plain
 
@@ -206,13 +212,8 @@ def _common(parts: Sequence[Part]) -> list[str]:
 def _told(name: str, column: Column) -> tuple[str, str | None]:
     """Give a column's name without its unit, and its unit, if one is told and known."""
     words, unit = split_unit(name)
-    own = column.unit
-    if own is not None:
-        try:
-            check_known("", own)
-        except InputError:
-            return words, unit
-        return words, plain(own)
+    if column.unit is not None and is_known(column.unit):
+        return words, plain(column.unit)
     return words, unit
 
 
