@@ -28,6 +28,11 @@ TITLES = {
 METRIC_NAMES: dict[Metric, str] = {"mse": "MSE (um^2)", "re": "RE"}
 
 
+def grid(frame: pd.DataFrame, style: str) -> str:
+    """Write a table of text in one of the styles of tabulate."""
+    return str(frame.to_markdown(index=False, tablefmt=style, disable_numparse=True))
+
+
 @dataclass(frozen=True)
 class PrintedTable:
     """A table with its caption and what its marks mean.
@@ -51,10 +56,7 @@ class PrintedTable:
 
     def grid(self, style: str) -> str:
         """Give the cells alone in one of the styles of tabulate."""
-        told = self.frame.to_markdown(
-            index=False, tablefmt=style, disable_numparse=True
-        )
-        return str(told)
+        return grid(self.frame, style)
 
     def csv(self) -> str:
         """Give the table as CSV, with the caption in a column of its own."""
