@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TextIO
 
+from hystbench.errors import InputError
 from hystbench.interrupt import held
 from hystbench.written import (
     ENTRIES,
@@ -203,8 +204,17 @@ def finite_or_none(value: float) -> float | None:
 
 
 def read_json(path: str | Path) -> Any:
-    """Read a JSON file."""
-    return json.loads(Path(path).read_text(encoding="utf-8"))
+    """Read a JSON file.
+
+    Raises
+    ------
+    InputError
+        If it is none.
+    """
+    try:
+        return json.loads(Path(path).read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise InputError(f"{path}: not a readable JSON file ({error})") from error
 
 
 def write_csv(

@@ -6,9 +6,10 @@ import math
 import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Annotated, Any, TypeVar, cast
 
 import click
 
@@ -68,58 +69,6 @@ class OutputFolder(_Place):
     def take(self, path: Path) -> None:
         """Refuse a folder that cannot be written into."""
         written.check_writable(path)
-
-
-def limits(command: Command) -> Command:
-    """Add the limits of the next experiment: ``limit_low``, ``_high``, ``_rate``."""
-    told = "Largest rate of its input, per second; else that of the records."
-    command = click.option("--limit-rate", type=float, help=told)(command)
-    return _both_limits(command, "next experiment")
-
-
-def input_limits(command: Command) -> Command:
-    """Add the limits of an actuator's input: ``limit_low`` and ``limit_high``."""
-    return _both_limits(command, "actuator")
-
-
-def _both_limits(command: Command, whose: str) -> Command:
-    for name, told in (("high", "Highest"), ("low", "Lowest")):
-        told = f"{told} input of the {whose}."
-        command = click.option(f"--limit-{name}", type=float, help=told)(command)
-    return command
-
-
-def vocabulary(command: Command) -> Command:
-    """Add the effects that a search leaves out and puts in: ``without``, ``with_``."""
-    command = click.option(
-        "--with",
-        "with_",
-        multiple=True,
-        metavar="EFFECT",
-        help="An effect that you put in: it is fitted from the start, and is no "
-        "finding.",
-    )(command)
-    return click.option(
-        "--without",
-        multiple=True,
-        metavar="EFFECT",
-        help="An effect that the search must not name; may stand there several times.",
-    )(command)
-
-
-def calls(command: Command) -> Command:
-    """Add what holds for a simulator that is a function: ``calls``, ``keep_calls``."""
-    command = click.option(
-        "--keep-calls/--no-keep-calls",
-        default=True,
-        help="Whether outputs of a slow function are kept in the user's cache folder, "
-        "so that another run need not call it again.",
-    )(command)
-    return click.option(
-        "--calls",
-        type=click.IntRange(min=1),
-        help="Calls of a function that are made at most; the search then ends.",
-    )(command)
 
 
 @contextmanager
@@ -204,29 +153,52 @@ def warn(lines: Iterable[str]) -> None:
         click.echo(f"hystbench: warning: {line}", err=True)
 
 
-unnamed_share = click.option(
-    "--unnamed-share",
-    type=click.FloatRange(0.0, 1.0, min_open=True),
-    default=0.01,
-    show_default=True,
-    help="Share of the gap's power that may stay unnamed beside a name.",
-)
-
-write_experiment = click.option(
-    "--write-experiment",
-    type=OutputFile(path_type=Path),
-    help="Write the excitation that would tell likely effects apart, as CSV or .npz.",
-)
-
 FILE = InputPlace(exists=True, dir_okay=False, path_type=Path)
 #: A dataset.yaml or its folder; what it refers to is held safe as it is read.
 DATASET = InputPlace(path_type=Path)
 NEW_FILE = OutputFile(path_type=Path)
 NEW_FOLDER = OutputFolder(path_type=Path)
 
-out = click.option(
-    "--out", type=NEW_FILE, required=True, help="File to write, whole or not at all."
-)
-out_folder = click.option(
-    "--out", type=NEW_FOLDER, required=True, help="Folder to write."
-)
+
+@dataclass(frozen=True)
+class SearchOptions:
+    """What is asked of a search for what a simulator lacks, each with its help."""
+
+    without: tuple[
+        Annotated[
+            str,
+            "An effect that the search must not name; may stand there several times.",
+            {"metavar": "EFFECT"},
+        ],
+        ...,
+    ] = ()
+    with_: tuple[
+        Annotated[
+            str,
+            "An effect that you put in: it is fitted from the start, and is no "
+            "finding.",
+            {"metavar": "EFFECT"},
+        ],
+        ...,
+    ] = ()
+    write_experiment: Annotated[
+        Path | None,
+        NEW_FILE,
+        "Write the excitation that would tell likely effects apart, as CSV or .npz.",
+    ] = None
+    limit_low: Annotated[float | None, "Lowest input of the next experiment."] = None
+    limit_high: Annotated[float | None, "Highest input of the next experiment."] = None
+    limit_rate: Annotated[
+        float | None, "Largest rate of its input, per second; else that of the records."
+    ] = None
+    unnamed_share: Annotated[
+        float,
+        click.FloatRange(0.0, 1.0, min_open=True),
+        "Share of the gap's power that may stay unnamed beside a name.",
+        {"show_default": True},
+    ] = 0.01
+
+    @property
+    def limits(self) -> dict[str, float]:
+        """The limits of the next experiment that were asked for, by name."""
+        return asked_limits(self.limit_low, self.limit_high, self.limit_rate)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.compare.evidence import IdentifiedLoop, Run
+from hystbench.compare.evidence import Run
 from hystbench.published import load_errors, load_text, signals, sine_frequency
 from hystbench.record import Channel, Record
 
@@ -113,16 +113,15 @@ def sum_records(scale: float = 1.0, odd: float = 0.0, outside: float = 0.0):
     return {name: make_record(name, u, 20 * u) for name, u in found.items()}
 
 
-def make_identification(**changes) -> IdentifiedLoop:
+def make_identification(**changes) -> dict:
     """Make an identification that found the published envelopes."""
-    found = IdentifiedLoop(
-        envelope=dict(TEXT.envelope),
-        thresholds=np.arange(31) / 31 * 0.2,
-        weights=np.exp(-np.arange(31) / 5),
-        sums=np.array([9.0, 1.0, 0.5]),
-        epsilon=0.6,
-        reached=True,
-        relative_error=0.004,
-        published_relative_error=0.028,
-    )
-    return replace(found, **changes)
+    return {
+        "envelope": dict(TEXT.envelope),
+        "thresholds": list(np.arange(31) / 31 * 0.2),
+        "weights": list(np.exp(-np.arange(31) / 5)),
+        "J": [9.0, 1.0, 0.5],
+        "epsilon": 0.6,
+        "reached": True,
+        "relative_error": 0.004,
+        "published_relative_error": 0.028,
+    } | changes

@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from hystbench.compare.cells import compare_cells
-from hystbench.compare.comparison import write_cells
+from hystbench.compare.cells import COLUMNS, compare_cells
 from hystbench.compare.evidence import ClaimEvidence
+from hystbench.compare.rows import or_diverged, write_fields
 from tests.conftest import table
 
 from .made import make_run, published_runs
@@ -73,7 +73,12 @@ def test_consistency_of_the_printed_pair_goes_along():
 
 def test_cells_as_csv(tmp_path):
     runs = published_runs({FIRST: None})
-    write_cells(compare_cells(ClaimEvidence(runs=runs)), tmp_path / "cells.csv")
+    write_fields(
+        tmp_path / "cells.csv",
+        COLUMNS,
+        compare_cells(ClaimEvidence(runs=runs)),
+        or_diverged,
+    )
     rows = table(tmp_path / "cells.csv")
     assert len(rows) == 124
     told = {

@@ -6,22 +6,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hystbench.compare.beside import Drawn, Edge
 from hystbench.compare.claims import (
     CLAIMS,
     COLUMNS,
     judge_all,
     read_claim,
-    write_claims,
 )
-from hystbench.compare.claims.claim import Condition, NotTestable, judge
+from hystbench.compare.claims.claim import NotTestable, judge
 from hystbench.compare.claims.operators import (
     at_two_speeds,
     loop_asymmetry,
     sine,
 )
-from hystbench.compare.draws import Drawn
-from hystbench.compare.edges import Edge
 from hystbench.compare.evidence import ClaimEvidence
+from hystbench.compare.rows import write_fields
 from hystbench.order_errors import OrderError
 from hystbench.published import FILTERS, Printed
 from tests.conftest import table
@@ -145,7 +144,7 @@ CASES = {
     "algorithm-converges": (identified(), identified(reached=False)),
     "identification-iterative": (
         identified(),
-        identified(sums=np.array([1.0, 1.5]), epsilon=0.1),
+        identified(J=[1.0, 1.5], epsilon=0.1),
     ),
     "identified-envelopes": (
         # twice the scale and shifted: the weights take it back
@@ -474,7 +473,7 @@ def test_claims_on_the_play_hold(name):
 
 def test_ledger_as_csv(tmp_path):
     judgements = judge_all(ClaimEvidence())
-    write_claims(judgements, tmp_path / "claims.csv")
+    write_fields(tmp_path / "claims.csv", COLUMNS, judgements)
     rows = table(tmp_path / "claims.csv")
     assert list(rows[0]) == [column.partition("=")[0] for column in COLUMNS]
     assert [row["id"] for row in rows] == [claim.id for claim in CLAIMS]
@@ -487,28 +486,36 @@ def test_ledger_as_csv(tmp_path):
     assert all(len(row["claim"].split()) <= 30 for row in rows)
 
 
+ROW = {
+    "id": "twenty",
+    "claim": "the edge lies below 20",
+    "where": "Section 4",
+    "kind": "result",
+    "measure": "filters.edges_and_bound",
+    "holds": ["edges < 20"],
+    "says": "{edges} edges",
+}
+
+
 def test_a_new_claim_is_a_row():
-    row = {
-        "id": "twenty",
-        "claim": "the edge lies below 20",
-        "where": "Section 4",
-        "kind": "result",
-        "measure": "filters.edges_and_bound",
-        "holds": ["edges < 20"],
-        "says": "{edges} edges",
-    }
-    found = judge(read_claim(row), edges())
+    found = judge(read_claim(ROW), edges())
     assert (found.verdict, found.evidence) == ("not reproduced", "36 edges")
     with pytest.raises(KeyError, match="no_such"):
-        read_claim(row | {"measure": "filters.no_such"})
-    with pytest.raises(ValueError, match="below 20"):
-        read_claim(row | {"holds": ["edges below 20"]})
+        read_claim(ROW | {"measure": "filters.no_such"})
+    with pytest.raises(SyntaxError, match="below 20"):
+        read_claim(ROW | {"holds": ["edges below 20"]})
 
 
 @pytest.mark.parametrize(
     ("text", "wanted"),
     [("a < b", False), ("2 * a >= b", True), ("b <= 2 * a", True), ("b == 4", True)],
 )
-def test_a_condition_compares_numbers(text, wanted):
-    assert Condition(text).holds({"a": 4.0, "b": 4}) is wanted
-    assert not Condition(text).holds({"a": math.nan, "b": math.nan})
+def test_a_claim_compares_numbers(text, wanted):
+    row = ROW | {"holds": [text], "says": "Told."}
+    for numbers, holds in (
+        ({"a": 4.0, "b": 4}, wanted),
+        ({"a": math.nan, "b": math.nan}, False),
+    ):
+        test = read_claim(row).ours
+        made = replace(test, measure=lambda _, numbers=numbers: numbers)
+        assert made(ClaimEvidence()).holds is holds

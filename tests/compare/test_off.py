@@ -5,7 +5,9 @@ import pytest
 
 from hystbench.compare.cells import compare_cells
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.compare.off import off_cells, write_off
+from hystbench.compare.off import COLUMNS as OFF_COLUMNS
+from hystbench.compare.off import off_cells
+from hystbench.compare.rows import write_fields
 from tests.conftest import table
 
 from .made import make_record, make_run, published_runs
@@ -80,7 +82,11 @@ def test_rms_and_spread_are_told():
 
 def written(mse, folder):
     evidence = ClaimEvidence(runs=published_runs({CELL: mse}))
-    write_off(off_cells(compare_cells(evidence), evidence), folder / "off.csv")
+    write_fields(
+        folder / "off.csv",
+        OFF_COLUMNS,
+        off_cells(compare_cells(evidence), evidence),
+    )
     (row,) = table(folder / "off.csv")
     return row
 

@@ -7,12 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hystbench.compare.beside import Drawn, Edge, Holding, Ranking
 from hystbench.compare.cells import ComparedCell, compare_cells
 from hystbench.compare.claims import judge_all
 from hystbench.compare.claims.claim import Claim, Judgement
-from hystbench.compare.constants import Ranking
-from hystbench.compare.draws import Drawn
-from hystbench.compare.edges import Edge
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.summary import (
     claim_counts,
@@ -23,8 +21,8 @@ from hystbench.compare.summary import (
     rms_error_percent,
     summarise,
 )
-from hystbench.compare.twins import Holding
 from hystbench.published import FILTERS
+from hystbench.published.consistency import check
 
 from .made import PAIRS, make_record, published_runs
 
@@ -49,6 +47,20 @@ DIVERGED = ("diverged at sample 3", "yes")
 def judgement(kind, basis, verdict, alone="", holdings=()):
     claim = Claim("x", "", "", kind, "", basis, lambda _: None)
     return Judgement(claim, verdict, "", "not in tables", "", holdings, alone)
+
+
+def summed(evidence=None, held_out=()):
+    """Sum up all but the claims."""
+    evidence = evidence or ClaimEvidence()
+    return summarise(evidence, compare_cells(evidence), (), held_out)
+
+
+def off_by(errors):
+    """Make records whose RMS is off the one that the tables imply, in per cent."""
+    return {
+        name: make_record(name, *2 * [[rms * (1 + errors[name] / 100)] * 4])
+        for name, rms in ((s, check(PAIRS)[s].implied_rms) for s in errors)
+    }
 
 
 def test_nearness_by_hand():
@@ -104,7 +116,7 @@ def test_two_diverged_runs_and_equal_runs_have_no_order():
 
 def test_runs_as_printed_agree_everywhere():
     evidence = ClaimEvidence(runs=published_runs())
-    found = summarise(compare_cells(evidence), judge_all(evidence))
+    found = summarise(evidence, compare_cells(evidence), judge_all(evidence))
     assert found["cells"] == found["cells_published"] == 52
     assert found["within_factor_2"] == 1
     assert found["median_abs_log10_ratio"] == 0
@@ -117,7 +129,7 @@ def test_runs_as_printed_agree_everywhere():
 
 
 def test_inconsistent_cells_leave_by_rule():
-    found = summarise(compare_cells(ClaimEvidence()), ())["without_inconsistent"]
+    found = summed()["without_inconsistent"]
     # 4 filter pairs are refuted, 2 more undecided
     assert found["without_no"]["cells_published"] == 48
     assert found["without_no_and_undecided"]["cells_published"] == 46
@@ -127,7 +139,7 @@ def test_held_out_signals_stand_apart():
     held_out = {"sine-060hz", "chirp-1-100hz"}
     changed = {(s, m): 1e6 for s in held_out for m in ("gpo", "delayed")}
     evidence = ClaimEvidence(runs=published_runs(changed))
-    found = summarise(compare_cells(evidence), (), held_out)
+    found = summed(evidence, held_out)
     assert found["held_out"]["cells"] == 8
     assert found["held_out"]["within_factor_2"] == 0.5
     assert found["calibrated"]["cells"] == 44
@@ -137,7 +149,7 @@ def test_held_out_signals_stand_apart():
     assert medians["backlash"] == medians["volterra"] == 0
     assert medians["gpo"] > 6
     assert set(found["calibrated"]["median_abs_log10_ratio"].values()) == {0}
-    assert "held_out" not in summarise(compare_cells(evidence), ())
+    assert "held_out" not in summed(evidence)
 
 
 def test_rms_error_by_hand():
@@ -154,10 +166,10 @@ def test_rms_error_by_hand():
 
 def test_rms_errors_of_the_halves_are_not_mixed():
     errors = {"sine-010hz": -1.0, "sine-020hz": 2.0, "sine-060hz": -7.0}
-    found = summarise(compare_cells(ClaimEvidence()), (), {"sine-060hz"}, errors)
-    assert found["calibrated"]["largest_rms_error_percent"] == 2
-    assert found["held_out"]["largest_rms_error_percent"] == 7
-    assert found["rms_error_percent"] == errors
+    found = summed(ClaimEvidence(records=off_by(errors)), {"sine-060hz"})
+    assert found["calibrated"]["largest_rms_error_percent"] == pytest.approx(2)
+    assert found["held_out"]["largest_rms_error_percent"] == pytest.approx(7)
+    assert found["rms_error_percent"] == pytest.approx(errors)
 
 
 def test_reproduced_claims_are_counted_by_where_they_hold():
@@ -183,7 +195,7 @@ def test_reproduced_claims_are_counted_by_where_they_hold():
 
 
 def test_re_and_table_4_do_not_count_among_the_filters():
-    found = summarise(compare_cells(ClaimEvidence()), ())
+    found = summed()
     assert found["cells_published"] == sum(p.table != 4 for p in PAIRS)
 
 
@@ -223,11 +235,11 @@ def test_claim_counts_by_hand():
 def test_the_rms_of_a_drawn_signal_counts_as_used():
     errors = {"sine-010hz": -1.0, "sine-060hz": -7.0, "sine-120hz": 2.0}
     held_out = {"sine-060hz", "sine-120hz"}
-    found = summarise(
-        compare_cells(ClaimEvidence()), (), held_out, errors, rms_used={"sine-060hz"}
-    )
-    assert found["calibrated"]["largest_rms_error_percent"] == 7
-    assert found["held_out"]["largest_rms_error_percent"] == 2
+    records = off_by(errors)
+    drawn = {"sine-060hz": Drawn({}, (float(records["sine-060hz"].y[0]),))}
+    found = summed(ClaimEvidence(records=records, drawn=drawn), held_out)
+    assert found["calibrated"]["largest_rms_error_percent"] == pytest.approx(7)
+    assert found["held_out"]["largest_rms_error_percent"] == pytest.approx(2)
 
 
 def test_a_drawn_signal_has_the_median_and_the_range_of_its_draws():
@@ -257,11 +269,7 @@ def test_orderings_of_the_halves_are_apart():
         (sine, model): value
         for model, value in zip(ranked, sorted(ours.values())[::-1], strict=True)
     }
-    found = summarise(
-        compare_cells(ClaimEvidence(runs=published_runs(worst))),
-        (),
-        {sine, "sine-120hz"},
-    )
+    found = summed(ClaimEvidence(runs=published_runs(worst)), {sine, "sine-120hz"})
     assert found["held_out"]["orderings"]["agree"] == 6
     assert found["held_out"]["orderings"]["compared"] == 12
     calibrated = found["calibrated"]["orderings"]

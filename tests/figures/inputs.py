@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from hystbench.compare.beside import EDGE_COLUMNS, Edge
 from hystbench.compare.cells import ComparedCell
-from hystbench.compare.edges import COLUMNS, Edge
 from hystbench.compare.rows import four_digits, names_of, or_empty, write_fields
 from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.files import write_json
@@ -89,7 +89,7 @@ def write_step_edges(path: Path) -> None:
         for model in MODELS[:4]
     ]
     edges[-1] = replace(edges[-1], edge=None)
-    write_fields(path, COLUMNS, edges, four_digits)
+    write_fields(path, EDGE_COLUMNS, edges, four_digits)
 
 
 def write_cells(path: Path) -> None:

@@ -10,7 +10,7 @@ from hystbench.adaptive import make_filter, run_filter
 from hystbench.commands.jobs.twin_fits import twin_fits
 from hystbench.commands.jobs.twin_runs import twin_runs
 from hystbench.commands.jobs.twins import twins
-from hystbench.compare.twins import read_holdings, read_spreads
+from hystbench.compare.beside import read_holdings, read_spreads
 from hystbench.errors import InputError
 from hystbench.twins.experiments import experiments, within_margin
 from hystbench.twins.fits import fit

@@ -8,9 +8,7 @@ import pytest
 from hystbench.commands.jobs.constants import constants
 from hystbench.commands.jobs.random_sum import random_sum
 from hystbench.commands.jobs.step_sweep import step_sweep
-from hystbench.compare.constants import Ranking
-from hystbench.compare.draws import read_draws
-from hystbench.compare.edges import Edge
+from hystbench.compare.beside import Edge, Ranking, read_draws
 from hystbench.compare.rows import read_items
 from hystbench.compare.summary import pairs_in_order
 from hystbench.twins.read import read_twins

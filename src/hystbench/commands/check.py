@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated
 
 import click
 
@@ -11,17 +12,18 @@ from hystbench.dataset import load_dataset
 from hystbench.files import write_text
 from hystbench.inspection import screen
 from hystbench.inspection.check import check as look
+from hystbench.signature import DatasetFile, command
 
 
-@click.command()
-@click.argument("dataset", type=options.DATASET)
-@click.option("--out", type=options.NEW_FILE, help="Write a page (HTML) too.")
-@click.option(
-    "--effects/--no-effects",
-    default=True,
-    help="Whether to simulate effects; long records take minutes.",
-)
-def check(dataset: Path, out: Path | None, effects: bool) -> None:
+@command
+def check(
+    dataset: DatasetFile,
+    *,
+    out: Annotated[Path | None, options.NEW_FILE, "Write a page (HTML) too."] = None,
+    effects: Annotated[
+        bool, "Whether to simulate effects; long records take minutes."
+    ] = True,
+) -> None:
     """Say what the records of DATASET are like and which effects they can reveal.
 
     Prints one screen: rates, jitter, periods, stuck channels, missing samples, delays,

@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
 
+from hystbench.signature import Folder, command
 from hystbench.written import remove_below
 
 #: Files that stay and are named; the others are counted.
 NAMED = 3
 
 
-@click.command()
-@click.argument(
-    "folders",
-    nargs=-1,
-    required=True,
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
-)
-def clean(folders: tuple[Path, ...]) -> None:
+@command
+def clean(folders: tuple[Folder, ...]) -> None:
     """Remove all in FOLDERS that hystbench wrote and that nobody changed since.
 
     Folders that are empty then go as well. What stays is told.

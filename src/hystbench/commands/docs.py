@@ -6,11 +6,15 @@ import csv
 import re
 from functools import partial
 from pathlib import Path
+from typing import Annotated
 
 import click
 
 from hystbench.errors import InputError, nearest
 from hystbench.files import atomic_path, markdown_table, write_text
+from hystbench.signature import command
+
+Page = Annotated[Path, click.Path(exists=True, dir_okay=False, path_type=Path)]
 
 #: What stands between the two lines is what the named file holds.
 BLOCK = re.compile(
@@ -37,11 +41,8 @@ MAKERS = (
 NOT_SHIPPED = ("results/blind/elsewhere",)
 
 
-@click.command()
-@click.argument(
-    "pages", nargs=-1, type=click.Path(exists=True, dir_okay=False, path_type=Path)
-)
-def docs(pages: tuple[Path, ...]) -> None:
+@command
+def docs(pages: tuple[Page, ...] = ()) -> None:
     """Fill PAGES (README.md and docs/*.md where none are named) from results.
 
     A block ``<!-- from FILE -->`` to ``<!-- end -->`` gets the text of FILE. Of a CSV

@@ -4,22 +4,24 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Annotated, Literal
 
 import click
 
 from hystbench import options
-from hystbench.blocks.held import HOLDS, Hold
+from hystbench.blocks.held import Hold
 from hystbench.blocks.step import LARGEST_POINTS, Sampling
 from hystbench.dataset import read_input
 from hystbench.errors import InputError
 from hystbench.export import c, fmu, python
 from hystbench.export.described import Described, describe, exact_delay
 from hystbench.export.inverse import describe_inverse
-from hystbench.export.parts import PARTS, Part, check_alone, part_of
+from hystbench.export.parts import Part, check_alone, part_of
 from hystbench.export.past import begun, begun_inverse
 from hystbench.files import atomic_path, whole_folder, write_text
 from hystbench.model import Model, load_model
 from hystbench.record import FloatArray, column_name
+from hystbench.signature import In, InputHigh, InputLow, OutFolder, command
 
 
 class Delay(click.ParamType[int | None]):
@@ -46,87 +48,65 @@ class Delay(click.ParamType[int | None]):
 EXACT = "exact"
 
 
-@click.command()
-@click.argument("model", type=options.FILE)
-@click.option(
-    "--to",
-    type=click.Choice(["c", "python", "fmu"]),
-    required=True,
-    help="C99 source and header, the same with a Python module that compiles and calls "
-    "it, or a source FMU.",
-)
-@click.option(
-    "--fmi",
-    type=click.Choice(list(fmu.VERSIONS)),
-    help="Version of FMI, with --to fmu: 3 unless you say 2, which more tools read.",
-)
-@click.option("--dt", type=float, required=True, help="Sampling interval in seconds.")
-@click.option(
-    "--points",
-    type=click.IntRange(2, LARGEST_POINTS),
-    default=6,
-    show_default=True,
-    help="Samples through which a curve goes where the model wants its input between "
-    "samples or its rate; fewer for an input with noise.",
-)
-@click.option(
-    "--delay",
-    type=Delay(),
-    default=0,
-    help="Samples by which the output may be late: values between samples, and rates, "
-    "are then taken with samples on both sides. 'exact': as many as make the code the "
-    "simulation of a whole record.",
-)
-@click.option(
-    "--duration", type=float, help="Length in seconds of the record of a path of drift."
-)
-@click.option(
-    "--past",
-    type=options.FILE,
-    help="CSV file with time_s and the input, such as current_A: the code starts as "
-    "the simulation of this record, where MODEL says 'start: settled', 'moving' or "
-    "'repeating'.",
-)
-@click.option(
-    "--compare",
-    type=options.FILE,
-    help="CSV file with time_s and the input: say how far the code is from the "
-    "simulation of this record.",
-)
-@click.option(
-    "--hold",
-    type=click.Choice(HOLDS),
-    help="How the input moves between samples where MODEL does not say.",
-)
-@click.option(
-    "--part",
-    type=click.Choice(PARTS),
-    help="What stands before, or behind, a simulator of your own in MODEL: that runs "
-    "between the two.",
-)
-@click.option(
-    "--inverse",
-    is_flag=True,
-    help="Write code that turns a wanted output into the input; give both limits.",
-)
-@options.input_limits
-@options.out_folder
+@command
 def export(
-    model: Path,
-    to: str,
-    fmi: str | None,
-    dt: float,
-    points: int,
-    delay: int | None,
-    duration: float | None,
-    past: Path | None,
-    compare: Path | None,
-    hold: Hold | None,
-    part: Part | None,
-    inverse: bool,
-    limit_low: float | None,
-    limit_high: float | None,
-    out: Path,
+    model: In,
+    *,
+    to: Annotated[
+        Literal["c", "python", "fmu"],
+        "C99 source and header, the same with a Python module that compiles and calls "
+        "it, or a source FMU.",
+    ],
+    fmi: Annotated[
+        Literal["2", "3"] | None,
+        "Version of FMI, with --to fmu: 3 unless you say 2, which more tools read.",
+    ] = None,
+    dt: Annotated[float, "Sampling interval in seconds."],
+    points: Annotated[
+        int,
+        click.IntRange(2, LARGEST_POINTS),
+        "Samples through which a curve goes where the model wants its input between "
+        "samples or its rate; fewer for an input with noise.",
+        {"show_default": True},
+    ] = 6,
+    delay: Annotated[
+        int | None,
+        Delay(),
+        "Samples by which the output may be late: values between samples, and rates, "
+        "are then taken with samples on both sides. 'exact': as many as make the code "
+        "the simulation of a whole record.",
+    ] = 0,
+    duration: Annotated[
+        float | None, "Length in seconds of the record of a path of drift."
+    ] = None,
+    past: Annotated[
+        Path | None,
+        options.FILE,
+        "CSV file with time_s and the input, such as current_A: the code starts as the "
+        "simulation of this record, where MODEL says 'start: settled', 'moving' or "
+        "'repeating'.",
+    ] = None,
+    compare: Annotated[
+        Path | None,
+        options.FILE,
+        "CSV file with time_s and the input: say how far the code is from the "
+        "simulation of this record.",
+    ] = None,
+    hold: Annotated[
+        Hold | None, "How the input moves between samples where MODEL does not say."
+    ] = None,
+    part: Annotated[
+        Part | None,
+        "What stands before, or behind, a simulator of your own in MODEL: that runs "
+        "between the two.",
+    ] = None,
+    inverse: Annotated[
+        bool,
+        "Write code that turns a wanted output into the input; give both limits.",
+    ] = False,
+    limit_low: InputLow | None = None,
+    limit_high: InputHigh | None = None,
+    out: OutFolder,
 ) -> None:
     """Write MODEL as code that is called once a sample and needs no hystbench.
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from functools import partial
+from typing import Annotated, Any
 
 import click
 
@@ -13,43 +14,35 @@ from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import will_write, write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary, in_words
 from hystbench.interface.gap import find_gap
+from hystbench.options import SearchOptions
+from hystbench.signature import DatasetFile, OutFolder, command, of_class
 
 
-@click.command()
-@click.argument("dataset", type=options.DATASET)
-@click.option(
-    "--model",
-    required=True,
-    help="Model file, gpi, linear, column, or package.module:function.",
-)
-@options.out_folder
-@options.vocabulary
-@options.write_experiment
-@options.limits
-@options.unnamed_share
-@options.calls
-@click.option(
-    "--cache/--no-cache",
-    default=True,
-    help="Whether what the search computes is kept in the user's cache folder, so that "
-    "another one on the same records is quicker.",
-)
-@click.option("--report/--no-report", default=True, help="Whether to write the page.")
+@partial(command, also=of_class(SearchOptions))
 def gap(
-    dataset: Path,
-    model: str,
-    out: Path,
-    without: tuple[str, ...],
-    with_: tuple[str, ...],
-    write_experiment: Path | None,
-    limit_low: float | None,
-    limit_high: float | None,
-    limit_rate: float | None,
-    unnamed_share: float,
-    calls: int | None,
-    keep_calls: bool,
-    cache: bool,
-    report: bool,
+    dataset: DatasetFile,
+    *,
+    model: Annotated[
+        str, "Model file, gpi, linear, column, or package.module:function."
+    ],
+    out: OutFolder,
+    calls: Annotated[
+        int | None,
+        click.IntRange(min=1),
+        "Calls of a function that are made at most; the search then ends.",
+    ] = None,
+    keep_calls: Annotated[
+        bool,
+        "Whether outputs of a slow function are kept in the user's cache folder, so "
+        "that another run need not call it again.",
+    ] = True,
+    cache: Annotated[
+        bool,
+        "Whether what the search computes is kept in the user's cache folder, so that "
+        "another one on the same records is quicker.",
+    ] = True,
+    report: Annotated[bool, "Whether to write the page."] = True,
+    **search: Any,
 ) -> None:
     """Find what MODEL lacks beside the measurements in DATASET.
 
@@ -60,20 +53,21 @@ def gap(
     def say(line: str) -> None:
         click.echo(line, err=True)
 
-    asked = options.asked_limits(limit_low, limit_high, limit_rate)
+    asked = SearchOptions(**search)
+    limits = asked.limits
     check_base(model)
-    Vocabulary.of(without, with_)  # refuses, before a file is read
+    Vocabulary.of(asked.without, asked.with_)  # refuses, before a file is read
     evidence = load_evidence(dataset)
     options.warn(evidence.warnings)
-    Limits.of(evidence.fit, asked)  # refuses, before work is paid
+    Limits.of(evidence.fit, limits)  # refuses, before work is paid
     will_write(out, evidence)
     found = find_gap(
         dataset,
         model,
-        without=without,
-        with_=with_,
-        limits=asked,
-        unnamed_share=unnamed_share,
+        without=asked.without,
+        with_=asked.with_,
+        limits=limits,
+        unnamed_share=asked.unnamed_share,
         calls=calls,
         keep_calls=keep_calls,
         cache=cache,
@@ -82,10 +76,10 @@ def gap(
     )
     found.save(out, report)
     say(f"{found.verdict}: {found.content['reason']}")  # once all is written
-    if write_experiment is not None:
-        decision = found.closed.decision
-        click.echo(write_next_experiment(decision, evidence.input, write_experiment))
+    if asked.write_experiment is not None:
+        given = found.closed.decision, evidence.input, asked.write_experiment
+        click.echo(write_next_experiment(*given))
     effects = [in_words(effect.name) for effect in found.effects]
     named = f": {', '.join(effects)}" if effects else ""
-    put_in = f" (you put in {', '.join(with_)})" if with_ else ""
+    put_in = f" (you put in {', '.join(asked.with_)})" if asked.with_ else ""
     click.echo(f"{out / 'gap.json'}: {found.verdict}{named}{put_in}")

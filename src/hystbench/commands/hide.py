@@ -3,45 +3,33 @@
 from __future__ import annotations
 
 from pathlib import Path
-
-import click
+from typing import Annotated
 
 from hystbench import options
 from hystbench.challenge.make import make
 from hystbench.challenge.spec import CaseSpec, draw_spec, kind_of
 from hystbench.challenge.writing import check_places, write_case
 from hystbench.errors import InputError
+from hystbench.signature import OutFolder, command
 
 
-@click.command()
-@click.option(
-    "--effect", "effects", multiple=True, help="Name of an effect; may be repeated."
-)
-@click.option(
-    "--kind",
-    help="single, pair, triple, none or unlisted: draw the effects, or say none.",
-)
-@click.option(
-    "--family",
-    default="gpi",
-    help="gpi, preisach, jiles-atherton, mass-spring, free-mass, ...",
-)
-@click.option("--ratio-db", type=float, default=20.0, help="Gap over noise, in dB.")
-@click.option("--seed", type=int, required=True)
-@click.option("--spread", type=float, default=1.0, help="Factor on the ranges.")
-@click.option("--campaign", default="standard", help="standard or other records.")
-@options.out_folder
-@click.option("--truth", type=options.NEW_FILE, required=True)
+@command
 def hide(
-    effects: tuple[str, ...],
-    kind: str | None,
-    family: str,
-    ratio_db: float,
+    *,
+    effects: tuple[Annotated[str, "Name of an effect; may be repeated."], ...] = (),
+    kind: Annotated[
+        str | None,
+        "single, pair, triple, none or unlisted: draw the effects, or say none.",
+    ] = None,
+    family: Annotated[
+        str, "gpi, preisach, jiles-atherton, mass-spring, free-mass, ..."
+    ] = "gpi",
+    ratio_db: Annotated[float, "Gap over noise, in dB."] = 20.0,
     seed: int,
-    spread: float,
-    campaign: str,
-    out: Path,
-    truth: Path,
+    spread: Annotated[float, "Factor on the ranges."] = 1.0,
+    campaign: Annotated[str, "standard or other records."] = "standard",
+    out: OutFolder,
+    truth: Annotated[Path, options.NEW_FILE],
 ) -> None:
     """Write DIR/dataset and DIR/model.yaml for a solver, and the truth elsewhere."""
     if effects or kind == "none":

@@ -4,51 +4,36 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import click
 
 from hystbench import options
-from hystbench.device_kinds import DEVICE_KINDS
 from hystbench.errors import InputError
 from hystbench.files import write_text
 from hystbench.inspection.columns import Flags
 from hystbench.inspection.draft import Draft, draft
+from hystbench.inspection.excitation import excitation_of
 from hystbench.inspection.writing import yaml_text
+from hystbench.signature import In, command, of_class
 from hystbench.written import writes
 
 PLACE = "dataset.yaml"
 
 
-@click.command()
-@click.argument("files", type=options.FILE, nargs=-1, required=True)
-@click.option("--input", help="Column of the input.")
-@click.option("--output", help="Column of the output.")
-@click.option("--time", help="Column of time.")
-@click.option("--input-unit", help="Its unit, such as A; '-' for none.")
-@click.option("--output-unit", help="Its unit, such as um; '-' for none.")
-@click.option("--time-unit", help="Its unit; seconds where the file tells none.")
-@click.option(
-    "--sampling-frequency",
-    "sampling_frequency_hz",
-    type=float,
-    help="In Hz, where no column is time.",
-)
-@click.option("--hold-out", multiple=True, help="Name of a record to hold out.")
-@click.option(
-    "--missing",
-    type=click.Choice(["interpolate", "split"]),
-    help="What to do where samples are missing.",
-)
-@click.option("--device", type=click.Choice(DEVICE_KINDS), help="Kind of the device.")
-@click.option("--name", help="Name of the dataset; by default that of its folder.")
-@click.option(
-    "--out",
-    type=options.NEW_FILE,
-    help="The dataset.yaml to write; by default beside the first file.",
-)
-def init(files: Sequence[Path], out: Path | None, **given: Any) -> None:
+@partial(command, also=of_class(Flags))
+def init(
+    files: tuple[In, ...],
+    *,
+    out: Annotated[
+        Path | None,
+        options.NEW_FILE,
+        "The dataset.yaml to write; by default beside the first file.",
+    ] = None,
+    **given: Any,
+) -> None:
     """Propose a dataset.yaml for FILES: CSV, MATLAB, HDF5, Parquet, TDMS, .npz, WAV.
 
     Columns, units, periods and roles are found; what cannot be found is asked, or has
@@ -94,11 +79,11 @@ def _said(place: Path, found: Draft) -> list[str]:
     ]
     width = max(len(record.name) for record in found.records)
     for record in found.records:
-        item = found.inputs[record.name]
+        kind = excitation_of(record.u, record.dt).kind
         period = record.period_samples
         lines.append(
             f"  {record.name:{width}}  {record.use:8}  {len(record)} samples at "
-            f"{1 / record.dt:.6g} Hz, {item.kind}, "
+            f"{1 / record.dt:.6g} Hz, {kind}, "
             + (f"period_samples: {period}" if period else "no period")
         )
     lines += [f"  note: {note}" for note in found.notes]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated
 
 import click
 import numpy as np
@@ -18,41 +19,33 @@ from hystbench.inverse.bandwidth import HOLDS, Invert, bandwidth, holds_to
 from hystbench.inverse.feedforward import BAND_SHARE, Limits, feedforward
 from hystbench.model import Model, load_model
 from hystbench.record import FloatArray, column_name
+from hystbench.signature import In, InputHigh, InputLow, Out, command
 
 
-@click.command()
-@click.argument("model", type=options.FILE)
-@click.option(
-    "--reference",
-    type=options.FILE,
-    help="CSV file with time_s and the output that is wanted, such as displacement_um.",
-)
-@click.option("--dt", type=float, help="Sampling interval in seconds; no reference.")
-@click.option("--stroke", type=float, help="Peak-to-peak of sines; no reference.")
-@click.option(
-    "--band",
-    type=float,
-    help="Correct errors up to this frequency in Hz; by default a tenth of the "
-    "sampling rate.",
-)
-@options.input_limits
-@click.option(
-    "--sampled",
-    is_flag=True,
-    help="Invert sample by sample, as exported code does, which knows no reference to "
-    "come; give both limits.",
-)
-@options.out
+@command
 def invert(
-    model: Path,
-    reference: Path | None,
-    dt: float | None,
-    stroke: float | None,
-    band: float | None,
-    limit_low: float | None,
-    limit_high: float | None,
-    sampled: bool,
-    out: Path,
+    model: In,
+    *,
+    reference: Annotated[
+        Path | None,
+        options.FILE,
+        "CSV file with time_s and the output that is wanted, such as displacement_um.",
+    ] = None,
+    dt: Annotated[float | None, "Sampling interval in seconds; no reference."] = None,
+    stroke: Annotated[float | None, "Peak-to-peak of sines; no reference."] = None,
+    band: Annotated[
+        float | None,
+        "Correct errors up to this frequency in Hz; by default a tenth of the "
+        "sampling rate.",
+    ] = None,
+    limit_low: InputLow | None = None,
+    limit_high: InputHigh | None = None,
+    sampled: Annotated[
+        bool,
+        "Invert sample by sample, as exported code does, which knows no reference to "
+        "come; give both limits.",
+    ] = False,
+    out: Out,
 ) -> None:
     """Find the input that makes the output of MODEL follow a reference.
 

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
-import click
-
 from hystbench import options
 from hystbench.dataset import load_dataset
 from hystbench.doubts import doubts
 from hystbench.errors import InputError, nearest
+from hystbench.signature import DatasetFile, Out, command
 
 
-@click.command()
-@click.argument("dataset", type=options.DATASET)
-@click.argument("name")
-@options.out
-def load(dataset: Path, name: str, out: Path) -> None:
+@command
+def load(dataset: DatasetFile, name: str, *, out: Out) -> None:
     """Read the record NAME of DATASET (a dataset.yaml or its folder).
 
     Warnings that concern it are shown; for them the other records are read too.

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import importlib
 from pathlib import Path
-
-import click
+from typing import Annotated
 
 from hystbench import options
 from hystbench.entrants.task import read, write
 from hystbench.errors import InputError, nearest
+from hystbench.signature import DatasetFile, OutFolder, command
 from hystbench.written import writes
 
 #: Modules of hystbench.entrants by the rivals' names.
@@ -19,12 +19,14 @@ RIVALS = {
 }
 
 
-@click.command()
-@click.argument("name")
-@click.argument("dataset", type=options.DATASET)
-@click.option("--model", type=options.FILE, required=True, help="Model file (YAML).")
-@options.out_folder
-def rival(name: str, dataset: Path, model: Path, out: Path) -> None:
+@command
+def rival(
+    name: str,
+    dataset: DatasetFile,
+    *,
+    model: Annotated[Path, options.FILE, "Model file (YAML)."],
+    out: OutFolder,
+) -> None:
     """Let the rival NAME write a gap.json for DATASET.
 
     naive fits every effect by itself; random draws a name.

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import zipfile
 from pathlib import Path
-from typing import NamedTuple, cast
+from typing import Annotated, NamedTuple, cast
 
 import click
 import numpy as np
 
 from hystbench import options
-from hystbench.blocks.held import HOLDS, Hold
+from hystbench.blocks.held import Hold
 from hystbench.dataset import load_dataset, read_input
 from hystbench.errors import InputError, nearest
 from hystbench.files import write_columns
 from hystbench.model import check_bounded, load_model
 from hystbench.record import Channel, FloatArray, Record, column_name, load_record
 from hystbench.signals import load_signal
+from hystbench.signature import In, Out, command
 from hystbench.units import check_same_unit
 
 
@@ -31,22 +32,20 @@ class Task(NamedTuple):
     column: str | None = None
 
 
-@click.command()
-@click.argument("model", type=options.FILE)
-@click.argument("record", type=options.FILE)
-@click.option(
-    "--dataset",
-    type=options.DATASET,
-    help="The dataset.yaml of a CSV record; by default the one beside it.",
-)
-@click.option(
-    "--hold",
-    type=click.Choice(HOLDS),
-    help="How the input moves between samples where MODEL does not say.",
-)
-@options.out
+@command
 def simulate(
-    model: Path, record: Path, dataset: Path | None, hold: Hold | None, out: Path
+    model: In,
+    record: In,
+    *,
+    dataset: Annotated[
+        Path | None,
+        options.DATASET,
+        "The dataset.yaml of a CSV record; by default the one beside it.",
+    ] = None,
+    hold: Annotated[
+        Hold | None, "How the input moves between samples where MODEL does not say."
+    ] = None,
+    out: Out,
 ) -> None:
     """Run MODEL on RECORD and write time, input, measured and simulated output.
 

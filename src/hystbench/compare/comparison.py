@@ -7,15 +7,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from hystbench.compare.beside import write_margins
+from hystbench.compare.cells import COLUMNS as CELL_COLUMNS
 from hystbench.compare.cells import ComparedCell, compare_cells
-from hystbench.compare.claims import judge_all, write_claims
+from hystbench.compare.claims import COLUMNS as CLAIM_COLUMNS
+from hystbench.compare.claims import judge_all
 from hystbench.compare.claims.claim import Judgement
-from hystbench.compare.edges import Edge, write_margins
-from hystbench.compare.evidence import ClaimEvidence, Run, read_evidence
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.measured import COLUMNS, errors_table
-from hystbench.compare.off import OffCell, off_cells, write_off
+from hystbench.compare.off import COLUMNS as OFF_COLUMNS
+from hystbench.compare.off import OffCell, off_cells
 from hystbench.compare.rows import or_diverged, write_fields
-from hystbench.compare.summary import rms_error_percent, summarise
+from hystbench.compare.summary import summarise
 from hystbench.compare.tables import PrintedTable, paper_tables
 from hystbench.compare.verdict import (
     first_result,
@@ -26,46 +29,45 @@ from hystbench.files import write_json, write_text
 from hystbench.published import load_errors, signals
 from hystbench.published.audit import write_audit
 
-__all__ = ["Comparison", "compare", "compare_evidence", "read_evidence"]
-
 WRITTEN = (
     *("cells.csv", "off.csv", "claims.csv", "audit.csv", "summary.json", "margins.csv"),
     *("first.md", "verdict.rst", "verdict.md", "tables.txt", "tables/table-*"),
     *("added.csv", "tables/added.*"),
 )
 """Files of a comparison, as names or patterns."""
-CELL_COLUMNS = (
-    *("table", "signal", "model", "metric", "half", "published", "ours"),
-    *("spread_low", "spread_high", "draws_low", "draws_high", "log10_ratio"),
-    *("published_consistent", "status"),
-)
 
 
 @dataclass(frozen=True)
 class Comparison:
     """All that a comparison finds."""
 
+    evidence: ClaimEvidence
+    held_out: frozenset[str]
     cells: tuple[ComparedCell, ...]
     off: tuple[OffCell, ...]
     claims: tuple[Judgement, ...]
     summary: dict[str, Any]
     tables: tuple[PrintedTable, ...]
-    edges: tuple[Edge, ...]
-    held_out: frozenset[str]
-    added: tuple[Run, ...] = ()
 
     def text(self) -> str:
         """Give the comparison for a terminal."""
         return print_tables(self.tables, self.claims, self.summary)
 
     def write(self, out_dir: str | Path) -> None:
-        """Write what was found into a folder; see :func:`compare`."""
+        """Write what was found into a folder.
+
+        These are ``cells.csv``, ``off.csv``, ``claims.csv``, ``audit.csv``,
+        ``margins.csv``, ``summary.json``, ``verdict.rst``, ``verdict.md``,
+        ``first.md`` for the README, ``tables.txt`` for the terminal and ``tables/``
+        (Tables 1-4 as CSV, Markdown and LaTeX); and where models or signals ran that
+        the paper does not have, ``added.csv`` and ``tables/added``.
+        """
         out = Path(out_dir)
-        write_cells(self.cells, out / "cells.csv")
-        write_off(self.off, out / "off.csv")
-        write_claims(self.claims, out / "claims.csv")
+        write_fields(out / "cells.csv", CELL_COLUMNS, self.cells, or_diverged)
+        write_fields(out / "off.csv", OFF_COLUMNS, self.off)
+        write_fields(out / "claims.csv", CLAIM_COLUMNS, self.claims)
         write_audit(out / "audit.csv")
-        write_margins(self.edges, self.held_out, out / "margins.csv")
+        write_margins(self.evidence.edges, self.held_out, out / "margins.csv")
         write_json(out / "summary.json", self.summary)
         write_text(out / "verdict.rst", verdict_page(self.summary, "rst"))
         write_text(out / "verdict.md", verdict_page(self.summary, "pipe"))
@@ -73,13 +75,8 @@ class Comparison:
         write_text(out / "tables.txt", self.text())
         for table in self.tables:
             table.write(out / "tables")
-        if self.added:
-            write_fields(out / "added.csv", COLUMNS, self.added, or_diverged)
-
-
-def write_cells(cells: Iterable[ComparedCell], path: str | Path) -> None:
-    """Write the cells as CSV; a cell without a finite run has no ours."""
-    write_fields(path, CELL_COLUMNS, cells, or_diverged)
+        if added := self.evidence.added:
+            write_fields(out / "added.csv", COLUMNS, added, or_diverged)
 
 
 def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:
@@ -91,37 +88,30 @@ def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:
 def compare_evidence(
     evidence: ClaimEvidence, held_out: Iterable[str] = ()
 ) -> Comparison:
-    """Compare evidence that is already read; ``held_out`` as in ``summarise``.
+    """Compare evidence with the paper.
 
     Models and signals that the paper does not have stand in a table of their own;
     neither claims nor summary are of such models.
+
+    Parameters
+    ----------
+    evidence : ClaimEvidence
+    held_out : iterable of str
+        Signals whose published errors were not used in choosing the twin; the summary
+        then tells both groups apart.
     """
-    unseen = set(held_out)
-    whole, evidence = evidence, evidence.of_the_paper
-    cells = compare_cells(evidence, unseen)
-    claims = judge_all(evidence, unseen)
+    unseen, own = frozenset(held_out), evidence.of_the_paper
+    cells = compare_cells(own, unseen)
+    claims = judge_all(own, unseen)
+    counts = {name: drawn.count for name, drawn in own.drawn.items()}
     return Comparison(
-        cells=cells,
-        off=off_cells(cells, evidence),
-        claims=claims,
-        summary=summarise(
-            cells,
-            claims,
-            unseen,
-            rms_error_percent(evidence),
-            rms_used=evidence.drawn,
-            edges=evidence.edges,
-            constants=evidence.constants,
-        ),
-        tables=(
-            *paper_tables(
-                cells, {name: drawn.count for name, drawn in evidence.drawn.items()}
-            ),
-            *_added_table(whole),
-        ),
-        edges=whole.edges,
-        held_out=frozenset(unseen),
-        added=whole.added,
+        evidence,
+        unseen,
+        cells,
+        off_cells(cells, own),
+        claims,
+        summarise(own, cells, claims, unseen),
+        (*paper_tables(cells, counts), *_added_table(evidence)),
     )
 
 
@@ -136,40 +126,3 @@ def _added_table(evidence: ClaimEvidence) -> list[PrintedTable]:
     why = f"The paper has no numbers for {', '.join((*models, *names))}."
     runs = list(evidence.runs.values()) if models else list(evidence.added)
     return [errors_table("added", "Our errors on the twin.", why, runs)]
-
-
-def compare(
-    out_dir: str | Path,
-    runs: Iterable[str | Path],
-    records: Iterable[str | Path] = (),
-    held_out: Iterable[str] = (),
-    **files: str | Path | None,
-) -> Comparison:
-    """Read the files of the runs, compare them with the paper, write what came out.
-
-    Parameters
-    ----------
-    out_dir : path
-        Folder for ``cells.csv``, ``off.csv``, ``claims.csv``, ``audit.csv``,
-        ``margins.csv``, ``summary.json``, ``verdict.rst``, ``verdict.md``,
-        ``first.md`` for the README, ``tables.txt`` for the terminal and ``tables/``
-        (Tables 1-4 as CSV, Markdown and LaTeX); and where models or signals ran that
-        the paper does not have, for ``added.csv`` and ``tables/added``.
-    runs : iterable of paths
-        One JSON file for each signal and model.
-    records : iterable of paths
-        Records of the signals.
-    held_out : iterable of str
-        Signals whose published errors were not used in choosing the twin; the
-        summary then tells both groups apart.
-    **files : path or None
-        As for :func:`read_evidence`; claims on what is left out are not testable.
-
-    Raises
-    ------
-    InputError
-        If a file is not what it should be.
-    """
-    found = compare_evidence(read_evidence(runs, records, **files), held_out)
-    found.write(out_dir)
-    return found

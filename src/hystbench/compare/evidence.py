@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -10,13 +9,16 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from hystbench.compare.constants import Ranking
-from hystbench.compare.draws import Drawn, read_draws
-from hystbench.compare.edges import Edge
+from hystbench.compare.beside import (
+    Drawn,
+    Edge,
+    Holding,
+    Ranking,
+    read_draws,
+    read_holdings,
+    read_spreads,
+)
 from hystbench.compare.rows import finite_or_infinite, read_items, read_rows
-from hystbench.compare.twins import Holding, read_holdings, read_spreads
 from hystbench.errors import InputError, nearest
 from hystbench.files import read_json
 from hystbench.order_errors import OrderError
@@ -30,7 +32,7 @@ from hystbench.published import (
     load_text,
     signals,
 )
-from hystbench.record import FloatArray, Record, load_record
+from hystbench.record import Record, load_record
 
 Cell = tuple[str, str]
 """Signal and model."""
@@ -106,27 +108,14 @@ class Run:
 
 
 @dataclass(frozen=True)
-class IdentifiedLoop:
-    """Result of Algorithm 1 on the slow loop."""
-
-    envelope: dict[str, float]
-    thresholds: FloatArray
-    weights: FloatArray
-    sums: FloatArray
-    epsilon: float
-    reached: bool
-    relative_error: float
-    published_relative_error: float
-
-
-@dataclass(frozen=True)
 class ClaimEvidence:
     """All that the claims are judged by; what was not run is missing here.
 
     ``spreads`` and ``holdings`` are what other twins say, and ``constants`` what the
     ranking is with other constants; no claim is judged by them. Errors of a signal in
     ``drawn`` are the medians over its draws. ``order_sweep_other`` is the order
-    sweep with one step size for all orders.
+    sweep with one step size for all orders. ``identification`` is what Algorithm 1
+    found on the slow loop, as its file has it.
     """
 
     published: tuple[Pair, ...] = field(default_factory=load_errors)
@@ -135,7 +124,7 @@ class ClaimEvidence:
     records: Mapping[str, Record] = field(default_factory=dict)
     order_sweep: tuple[OrderError, ...] = ()
     order_sweep_other: tuple[OrderError, ...] = ()
-    identification: IdentifiedLoop | None = None
+    identification: Mapping[str, Any] | None = None
     envelope_errors: Mapping[Cell, float] = field(default_factory=dict)
     spreads: Mapping[tuple[str, str, Metric], tuple[float, float]] = field(
         default_factory=dict
@@ -177,6 +166,24 @@ class ClaimEvidence:
             edges=tuple(edge for edge in self.edges if edge.model in MODELS),
         )
 
+    def on_signals(self, signals: Iterable[str]) -> ClaimEvidence:
+        """Keep what is said on some signals, the published errors among it."""
+        kept = set(signals)
+
+        def of(found: Mapping[Any, Any]) -> dict[Any, Any]:
+            """Keep what stands under a signal, or a signal and something else."""
+            alone = {key: key if isinstance(key, str) else key[0] for key in found}
+            return {key: found[key] for key, signal in alone.items() if signal in kept}
+
+        return replace(
+            self,
+            published=tuple(p for p in self.published if p.signal in kept),
+            runs=of(self.runs),
+            records=of(self.records),
+            envelope_errors=of(self.envelope_errors),
+            drawn=of(self.drawn),
+        )
+
 
 def _need(content: Mapping[str, Any], key: str, path: str | Path) -> Any:
     """Take a key of a file or say which is missing."""
@@ -186,10 +193,7 @@ def _need(content: Mapping[str, Any], key: str, path: str | Path) -> Any:
 
 
 def _content(path: str | Path) -> dict[str, Any]:
-    try:
-        content = read_json(path)
-    except (OSError, json.JSONDecodeError) as error:
-        raise InputError(f"{path}: not a readable JSON file ({error})") from error
+    content = read_json(path)
     if not isinstance(content, dict):
         raise InputError(f"{path}: expected a JSON object")
     return content
@@ -233,6 +237,10 @@ def read_run(path: str | Path) -> Run:
 
 _STATUSES = ("finite", "diverged")
 _PARAMETERS = tuple(f"a{j}" for j in range(8))
+_IDENTIFIED = (
+    *("envelope", "thresholds", "weights", "J", "epsilon", "reached"),
+    *("relative_error", "published_relative_error"),
+)
 _KEPT = (
     *("signal", "model", "origin", "error_kind", "convergence_s"),
     *("mse", "re", "mse_after_transient", "re_after_transient"),
@@ -248,28 +256,14 @@ def read_envelope_errors(path: str | Path) -> dict[Cell, float]:
     }
 
 
-def read_identification(path: str | Path) -> IdentifiedLoop:
+def read_identification(path: str | Path) -> dict[str, Any]:
     """Read the result of Algorithm 1."""
-    return identification_of(_content(path), path)
-
-
-def identification_of(content: Mapping[str, Any], path: str | Path) -> IdentifiedLoop:
-    """Make the result of Algorithm 1 from what its file at a path holds."""
-
-    def array(key: str) -> FloatArray:
-        return np.asarray(_need(content, key, path), dtype=float)
-
-    envelope = _need(content, "envelope", path)
-    return IdentifiedLoop(
-        envelope={key: float(_need(envelope, key, path)) for key in _PARAMETERS},
-        thresholds=array("thresholds"),
-        weights=array("weights"),
-        sums=array("J"),
-        epsilon=_need(content, "epsilon", path),
-        reached=_need(content, "reached", path),
-        relative_error=_need(content, "relative_error", path),
-        published_relative_error=_need(content, "published_relative_error", path),
-    )
+    content = _content(path)
+    for key in _IDENTIFIED:
+        _need(content, key, path)
+    for key in _PARAMETERS:
+        _need(content["envelope"], key, path)
+    return content
 
 
 FILES: dict[str, tuple[str, Callable[[str | Path], Any]]] = {

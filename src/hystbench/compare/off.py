@@ -7,16 +7,15 @@ what causes it.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.compare.rows import write_fields
 from hystbench.compare.summary import FACTOR, rms_error_percent
 from hystbench.published import FILTERS
 
+#: Columns of off.csv.
 COLUMNS = (
     *("table=cell.table", "signal=cell.signal", "model=cell.model", "half=cell.half"),
     *("published=cell.published", "ours=cell.ours", "ratio"),
@@ -48,11 +47,6 @@ def off_cells(
     mse = [cell for cell in cells if cell.metric == "mse" and cell.ran]
     off = [cell for cell in mse if cell.distance > math.log10(FACTOR)]
     return tuple(OffCell(cell, _sentence(cell, mse, evidence)) for cell in off)
-
-
-def write_off(off: Iterable[OffCell], path: str | Path) -> None:
-    """Write the cells that are off as CSV; see ``COLUMNS``."""
-    write_fields(path, COLUMNS, off)
 
 
 def _sentence(

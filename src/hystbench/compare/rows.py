@@ -22,14 +22,11 @@ def read_rows(path: str | Path, columns: tuple[str, ...]) -> list[dict[str, str]
     Raises
     ------
     InputError
-        If it cannot be read or a column is missing.
+        If a column is missing.
     """
-    try:
-        with Path(path).open(encoding="utf-8", newline="") as stream:
-            reader = csv.DictReader(stream)
-            rows = list(reader)
-    except OSError as error:
-        raise InputError(f"{path}: not readable ({error})") from error
+    with Path(path).open(encoding="utf-8", newline="") as stream:
+        reader = csv.DictReader(stream)
+        rows = list(reader)
     for column in columns:
         if column not in (reader.fieldnames or ()):
             known = nearest(column, reader.fieldnames or ())

@@ -8,17 +8,16 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import combinations
 from statistics import median
 from typing import Any, get_args
 
 import numpy as np
 
+from hystbench.compare.beside import Edge, Ranking
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.claims.claim import Basis, Judgement, Verdict
-from hystbench.compare.constants import Ranking
-from hystbench.compare.edges import Edge
 from hystbench.compare.evidence import Cell, ClaimEvidence
 from hystbench.published import FILTERS
 from hystbench.published.consistency import check
@@ -149,8 +148,8 @@ def eq19_finding(edges: Sequence[Edge]) -> dict[str, Any] | None:
     """
     if not edges:
         return None
-    inside = [e for e in edges if e.edge is not None and e.edge < e.at_trace]
-    worst = min(inside, key=lambda e: (e.edge or 0) / e.at_trace, default=None)
+    inside = [edge for edge in edges if edge.inside]
+    worst = min(inside, key=lambda edge: edge.edge_over_trace or 0, default=None)
     return {
         "edges": len(edges),
         "inside": len(inside),
@@ -216,33 +215,23 @@ def _where(judgements: Iterable[Judgement]) -> dict[str, int]:
 
 
 def summarise(
+    evidence: ClaimEvidence,
     cells: Sequence[ComparedCell],
-    judgements: Iterable[Judgement],
-    held_out: Iterable[str] = (),
-    rms_errors: Mapping[str, float] | None = None,
-    *,
-    rms_used: Iterable[str] = (),
-    edges: Sequence[Edge] = (),
-    constants: Sequence[Ranking] = (),
+    judgements: Iterable[Judgement] = (),
+    held_out: Collection[str] = (),
 ) -> dict[str, Any]:
     """Sum up a comparison.
 
     Parameters
     ----------
+    evidence : ClaimEvidence
     cells : sequence of ComparedCell
         All cells, of both metrics.
     judgements : iterable of Judgement
         The ledger of claims.
-    held_out : iterable of str
+    held_out : collection of str
         Signals whose published errors were not used in choosing the twin and its
         step sizes. The filters' cells are split by them where there are any.
-    rms_errors : mapping of str to float, optional
-        As :func:`rms_error_percent` gives them.
-    rms_used : iterable of str
-        Held-out signals whose RMS displacement was used nevertheless: it counts with
-        the calibrated ones.
-    edges, constants : sequence
-        Edges of the step sizes, and the ranking with other constants.
 
     Returns
     -------
@@ -254,25 +243,28 @@ def summarise(
     filters = [cell for cell in mse if cell.model in FILTERS]
     sure = [c for c in filters if c.published_consistent == "yes"]
     not_refuted = [c for c in filters if c.published_consistent != "no"]
+    rms_errors = rms_error_percent(evidence)
     return {
         "metric": "MSE",
         **nearness(filters),
-        "per_model": {
-            model: nearness([c for c in filters if c.model == model])
-            for model in FILTERS
-        },
+        "per_model": _per_model(filters),
         "orderings": orderings(filters),
-        **_split(filters, set(held_out), rms_errors or {}, set(rms_used)),
-        "rms_error_percent": dict(rms_errors or {}),
+        **_split(filters, held_out, rms_errors, evidence.drawn),
+        "rms_error_percent": rms_errors,
         "without_inconsistent": {
             "without_no": nearness(not_refuted),
             "without_no_and_undecided": nearness(sure),
         },
         "rdgpi": nearness([cell for cell in mse if cell.model == "rdgpi"]),
-        "eq19": eq19_finding(edges),
-        "constant_tap": constant_tap_finding(constants),
+        "eq19": eq19_finding(evidence.edges),
+        "constant_tap": constant_tap_finding(evidence.constants),
         **claim_counts(judgements),
     }
+
+
+def _per_model(cells: Iterable[ComparedCell]) -> dict[str, dict[str, Any]]:
+    listed = list(cells)
+    return {m: nearness([c for c in listed if c.model == m]) for m in FILTERS}
 
 
 def rms_error_percent(evidence: ClaimEvidence) -> dict[str, float]:
@@ -300,25 +292,23 @@ def rms_error_percent(evidence: ClaimEvidence) -> dict[str, float]:
 
 def _split(
     cells: Sequence[ComparedCell],
-    held_out: set[str],
+    held_out: Collection[str],
     rms_errors: Mapping[str, float],
-    rms_used: set[str],
+    drawn: Collection[str],
 ) -> dict[str, Any]:
     """Sum up both halves apart, with a median for each model.
 
-    A signal whose RMS was used counts with the calibrated ones in that alone.
+    The RMS of a signal that is drawn many times was used, so it counts with the
+    calibrated ones in that alone.
     """
-    if not held_out:
-        return {}
     halves = {}
-    for key, inside in (("calibrated", False), ("held_out", True)):
+    parts = {"calibrated": False, "held_out": True} if held_out else {}
+    for key, inside in parts.items():
         half = [c for c in cells if (c.signal in held_out) is inside]
         found = nearness(half)
-        unseen = held_out - rms_used
+        unseen = set(held_out) - set(drawn)
         sizes = [abs(v) for s, v in rms_errors.items() if (s in unseen) is inside]
-        per_model = {
-            model: nearness([c for c in half if c.model == model]) for model in FILTERS
-        }
+        per_model = _per_model(half)
         halves[key] = found | {
             "per_model": per_model,
             "median_abs_log10_ratio": {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,6 +28,11 @@ TITLES = {
 METRIC_NAMES: dict[Metric, str] = {"mse": "MSE (um^2)", "re": "RE"}
 
 
+def grid(frame: pd.DataFrame, style: str) -> str:
+    """Write a table of text in one of the styles of tabulate."""
+    return str(frame.to_markdown(index=False, tablefmt=style, disable_numparse=True))
+
+
 @dataclass(frozen=True)
 class PrintedTable:
     """A table with its caption and what its marks mean.
@@ -52,10 +56,7 @@ class PrintedTable:
 
     def grid(self, style: str) -> str:
         """Give the cells alone in one of the styles of tabulate."""
-        told = self.frame.to_markdown(
-            index=False, tablefmt=style, disable_numparse=True
-        )
-        return str(told)
+        return grid(self.frame, style)
 
     def csv(self) -> str:
         """Give the table as CSV, with the caption in a column of its own."""
@@ -73,64 +74,48 @@ class PrintedTable:
     def latex(self) -> str:
         """Give the table as a LaTeX float for the package booktabs."""
         text = self.frame.rename(columns=_escape).map(_escape)
-        body = text.to_latex(
+        made = text.to_latex(
             index=False,
             escape=False,
             column_format="ll" + "r" * (len(text.columns) - 2),
-        ).strip()
-        return "\n".join(
-            (
-                r"\begin{table}",
-                rf"\caption{{{_escape(self.caption)}}}",
-                rf"\label{{tab:{self.name}}}",
-                body,
-                *([rf"\par\small {_escape(self.legend)}"] if self.legend else []),
-                r"\end{table}",
-                "",
-            )
+            caption=_escape(self.caption),
+            label=f"tab:{self.name}",
         )
+        legend = rf"\par\small {_escape(self.legend)}" + "\n" if self.legend else ""
+        body, end, _ = made.rpartition(r"\end{table}")
+        return f"{body}{legend}{end}\n"
 
-    def write(self, folder: str | Path) -> list[Path]:
-        """Write the table in all three formats; give the paths."""
-        written = []
-        for suffix, text in (
-            (".csv", self.csv()),
-            (".md", self.markdown()),
-            (".tex", self.latex()),
-        ):
-            path = Path(folder) / f"{self.name}{suffix}"
-            write_text(path, text)
-            written.append(path)
-        return written
+    def write(self, folder: str | Path) -> None:
+        """Write the table in all three formats."""
+        texts = {"csv": self.csv(), "md": self.markdown(), "tex": self.latex()}
+        for suffix, text in texts.items():
+            write_text(Path(folder) / f"{self.name}.{suffix}", text)
 
 
-_LATEX = {
-    "\\": r"\textbackslash{}",
-    "&": r"\&",
-    "%": r"\%",
-    "$": r"\$",
-    "#": r"\#",
-    "_": r"\_",
-    "{": r"\{",
-    "}": r"\}",
-    "~": r"\textasciitilde{}",
-    "†": r"$^\dagger$",
-    "‡": r"$^\ddagger$",
-    "<": r"$<$",
-    ">": r"$>$",
-    "^": r"\textasciicircum{}",
-}
-
-
-_SPECIAL = re.compile(r"um\^2|" + "|".join(map(re.escape, _LATEX)))
+_LATEX = str.maketrans(
+    {
+        "\\": r"\textbackslash{}",
+        "&": r"\&",
+        "%": r"\%",
+        "$": r"\$",
+        "#": r"\#",
+        "_": r"\_",
+        "{": r"\{",
+        "}": r"\}",
+        "~": r"\textasciitilde{}",
+        "†": r"$^\dagger$",
+        "‡": r"$^\ddagger$",
+        "<": r"$<$",
+        ">": r"$>$",
+        "^": r"\textasciicircum{}",
+    }
+)
 
 
 def _escape(text: str) -> str:
     """Write text for LaTeX."""
-    return _SPECIAL.sub(
-        lambda found: _LATEX.get(found[0], r"\textmu m$^2$"),
-        text,
-    )
+    parts = (part.translate(_LATEX) for part in text.split("um^2"))
+    return r"\textmu m$^2$".join(parts)
 
 
 def _number(value: float) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 import pandas as pd
 
 from hystbench.compare.claims.claim import Judgement
-from hystbench.compare.tables import PrintedTable
+from hystbench.compare.tables import PrintedTable, grid
 
 #: Results that may stand on held-out signals, in words.
 SHORTLY = {
@@ -118,9 +118,8 @@ def verdict_page(summary: Mapping[str, Any], style: str) -> str:
 
 
 def _grid(lines: Sequence[Sequence[str]], headers: Sequence[str], style: str) -> str:
-    """Write a table of text in one of the styles of tabulate."""
-    frame = pd.DataFrame(lines, columns=list(headers), dtype=str)
-    return str(frame.to_markdown(index=False, tablefmt=style, disable_numparse=True))
+    """Write lines of text in one of the styles of tabulate."""
+    return grid(pd.DataFrame(lines, columns=list(headers), dtype=str), style)
 
 
 def print_tables(

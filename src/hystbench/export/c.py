@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -35,18 +35,12 @@ def files(model: Described) -> dict[str, str]:
 
 def header(model: Described) -> str:
     """Write the header: the state, and the two functions that use it."""
-    states = [*model.all_states()] or [NO_STATE]
-    sides = f"{model.output.label} of {model.input.label}"
-    return filled(
-        "model.h",
-        told=_comment([f"{model.title}: {model.about}.", *model.differences]),
-        name=model.name,
-        NAME=model.name.upper(),
-        dt=repr(model.sampling.dt),
-        states="\n".join(f"    double {state}[{size}];" for state, size in states),
-        begins=_comment([model.begins]),
-        next=_comment([f"The next sample: {sides}."]),
-    )
+    return filled("model.h", model=model, states=states(model), comment=_comment)
+
+
+def states(model: Described) -> list[tuple[str, int]]:
+    """Give the name and length of every state, of which C wants one."""
+    return [*model.all_states()] or [NO_STATE]
 
 
 def source(model: Described) -> str:
@@ -81,121 +75,20 @@ def _needed(chunks: dict[str, str], wanted: set[str]) -> str:
 
 def body(model: Described) -> str:
     """Write the constants of a model, and its own functions."""
-    parts = [
-        _array(f"{model.name}_{piece.label}_{key}", value)
+    arrays = {
+        f"{piece.label}_{key}": value
         for piece in model.all_pieces()
         for key, value in piece.step.constants.items()
         if isinstance(value, np.ndarray)
-    ]
-    parts += [
-        _array(f"{model.name}_{state}_start", value)
-        for state, value in model.starts.items()
-    ]
-    for piece in model.pieces:
-        parts += [_wrapped(model, part) for part in piece.all_inside() if piece.inner]
-    lines = [
-        f"    hb_remember({piece.step.constants['points']}, s->{piece.history}, input);"
-        for piece in model.watching
-    ]
-    if model.sampling.delay:
-        lines += [
-            "    const double call = *s->calls;",
-            f"    if (call < {model.sampling.delay}) *s->calls += 1;",
-        ]
-    for piece in model.pieces:
-        call = _call if piece.inner is None else _own
-        given = ["y"] + ["1"] * piece.step.grows
-        lines.append(f"    y = {call(model, piece, given)};")
-        if piece.wait:
-            lines.append(f"    if (call < {piece.wait}) return 0; /* none yet */")
-    used = [] if any(model.all_states()) else ["    (void)s;"]
-    name = model.name
-    begun = [
-        f"    memcpy(s->{state}, {name}_{state}_start, sizeof s->{state});"
-        for state in model.starts
-    ]
-    parts += [
-        "\n".join(
-            [
-                f"void {name}_init({name}_state *s)",
-                "{",
-                "    memset(s, 0, sizeof *s);",
-                *begun,
-                "}",
-            ]
-        ),
-        "\n".join(
-            [
-                f"double {name}_step({name}_state *s, double input)",
-                "{",
-                "    double y = input;",
-                *used,
-                *lines,
-                "    return y;",
-                "}",
-            ]
-        ),
-    ]
-    return "\n\n".join(parts) + "\n"
-
-
-def _wrapped(model: Described, piece: Piece) -> str:
-    """Write the function of hysteresis that is wrapped, or of what wraps it."""
-    inner = piece.inner
-    if inner is not None and piece.step.undoes:
-        return _searched(model, piece, inner)
-    declared = ", ".join(f"double {name}" for name in piece.takes)
-    name = f"{model.name}_{piece.label}"
-    opening = f"static double {name}({model.name}_state *s, {declared})"
-    step = _call(model, piece, piece.takes)
-    if inner is not None:  # what is inside is called once
-        step = f"{_own(model, inner, inner.takes)} + {step}"
-    lines = [f"    return {step};"]
-    if inner is not None and piece.step.drives:
-        each = _own(model, inner, [f"{name}s[i]" for name in inner.takes])
-        call = _call(model, piece, [*piece.takes, "vs", "growths"])
-        lines = [
-            f"    double vs[{piece.step.drives}], growths[{piece.step.drives}], y = 0;",
-            f"    const int count = {call};",
-            f"    for (int i = 0; i < count; i++) y = {each};",
-            "    return y;",
-        ]
-    return "\n".join([opening, "{", *lines, "}"])
-
-
-def _searched(model: Described, piece: Piece, inner: Piece) -> str:
-    """Write the function that looks for the input of what is inside.
-
-    Another tries an input, and puts back all that is remembered inside.
-    """
-    name, output = f"{model.name}_{piece.label}", f"{model.name}_{piece.label}_output"
-    growth = f", s->{piece.label}_pace[3]" if inner.step.grows else ""
-    inside = f"{model.name}_{inner.label}"
-    states = [
-        f"{part.label}_{state}"
-        for part in inner.all_inside()
-        for state in part.step.states
-    ]
-    call = _call(model, piece, [output, "s", "v"])
-    return "\n".join(
-        [
-            f"static double {output}(void *model, double v)",
-            "{",
-            f"    {model.name}_state *s = model;",
-            *(f"    double {key}[sizeof s->{key} / sizeof(double)];" for key in states),
-            *(f"    memcpy({key}, s->{key}, sizeof s->{key});" for key in states),
-            f"    const double y = {inside}(s, v{growth});",
-            *(f"    memcpy(s->{key}, {key}, sizeof s->{key});" for key in states),
-            "    return y;",
-            "}",
-            "",
-            f"static double {name}({model.name}_state *s, double v)",
-            "{",
-            f"    const double found = {call};",
-            f"    {inside}(s, found{growth});",
-            "    return found;",
-            "}",
-        ]
+    }
+    arrays |= {f"{state}_start": value for state, value in model.starts.items()}
+    return filled(
+        "model.c",
+        model=model,
+        arrays={f"{model.name}_{name}": values for name, values in arrays.items()},
+        array=_array,
+        call=partial(_call, model),
+        own_call=partial(_own, model),
     )
 
 

@@ -55,6 +55,20 @@ class Piece:
         """Name what it takes inside another: a signal, and a factor on thresholds."""
         return ["v"] + ["growth"] * self.step.grows
 
+    @property
+    def each(self) -> list[str]:
+        """Name the same where what is around it drives it several times a sample."""
+        return [f"{name}s[i]" for name in self.takes]
+
+    @property
+    def states_inside(self) -> list[str]:
+        """Name the states of the piece and of what is inside it."""
+        return [
+            f"{part.label}_{state}"
+            for part in self.all_inside()
+            for state in part.step.states
+        ]
+
     def all_inside(self) -> Iterator[Piece]:
         """Give the piece and what is inside it, the innermost first."""
         if self.inner is not None:

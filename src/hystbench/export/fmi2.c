@@ -1,3 +1,4 @@
+{% set fmi, instance, state = "fmi2", "Component", "state" %}
 /* A model of hystbench as an FMU of FMI 2.0 for co-simulation.
  *
  * The FMI headers are the importing tool's.
@@ -25,10 +26,7 @@ static fmi2Status refuse(const Instance *self, const char *why)
     return fmi2Error;
 }
 
-static fmi2Status done(const Instance *self, const char *wrong)
-{
-    return wrong ? refuse(self, wrong) : fmi2OK;
-}
+{% include "fmi_shared.c" %}
 
 const char *fmi2GetVersion(void) { return fmi2Version; }
 
@@ -80,13 +78,6 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return fmi2OK; }
 
 fmi2Status fmi2Terminate(fmi2Component c) { return fmi2OK; }
 
-fmi2Status fmi2Reset(fmi2Component c)
-{
-    Instance *self = c;
-    begin(&self->now);
-    return fmi2OK;
-}
-
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                        fmi2Real value[])
 {
@@ -107,26 +98,6 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint,
 {
     Instance *self = c;
     advance(&self->now, currentCommunicationPoint + communicationStepSize);
-    return fmi2OK;
-}
-
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
-{
-    const Instance *self = c;
-    return done(self, keep(&self->now, FMUstate));
-}
-
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate)
-{
-    Instance *self = c;
-    memcpy(&self->now, FMUstate, sizeof(Values));
-    return fmi2OK;
-}
-
-fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
-{
-    free(*FMUstate);
-    *FMUstate = NULL;
     return fmi2OK;
 }
 
@@ -151,12 +122,11 @@ NO_STATUS(fmi2GetStringStatus, fmi2String)
         return nvr == 0 ? fmi2OK : refuse(c, #name ": all variables are of Real"); \
     }
 
-NO_VARIABLES(fmi2GetInteger, fmi2Integer)
-NO_VARIABLES(fmi2GetBoolean, fmi2Boolean)
-NO_VARIABLES(fmi2GetString, fmi2String)
-NO_VARIABLES(fmi2SetInteger, const fmi2Integer)
-NO_VARIABLES(fmi2SetBoolean, const fmi2Boolean)
-NO_VARIABLES(fmi2SetString, const fmi2String)
+{% for way, changed in (("Get", ""), ("Set", "const ")) %}
+{% for type in ("Integer", "Boolean", "String") %}
+NO_VARIABLES(fmi2@way@@type@, @changed@fmi2@type@)
+{% endfor %}
+{% endfor %}
 
 /* What an FMU must have, and this one has no use for. */
 #define ABSENT(name, ...)                                    \

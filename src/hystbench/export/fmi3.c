@@ -1,3 +1,4 @@
+{% set fmi, instance, state = "fmi3", "Instance", "State" %}
 /* A model of hystbench as an FMU of FMI 3.0 for co-simulation.
  *
  * The FMI headers are the importing tool's.
@@ -20,10 +21,7 @@ static fmi3Status refuse(const Instance *self, const char *why)
     return fmi3Error;
 }
 
-static fmi3Status done(const Instance *self, const char *wrong)
-{
-    return wrong ? refuse(self, wrong) : fmi3OK;
-}
+{% include "fmi_shared.c" %}
 
 const char *fmi3GetVersion(void) { return fmi3Version; }
 
@@ -94,13 +92,6 @@ fmi3Status fmi3EnterStepMode(fmi3Instance instance) { return fmi3OK; }
 
 fmi3Status fmi3Terminate(fmi3Instance instance) { return fmi3OK; }
 
-fmi3Status fmi3Reset(fmi3Instance instance)
-{
-    Instance *self = instance;
-    begin(&self->now);
-    return fmi3OK;
-}
-
 fmi3Status fmi3GetFloat64(fmi3Instance instance,
                           const fmi3ValueReference valueReferences[],
                           size_t nValueReferences, fmi3Float64 values[], size_t nValues)
@@ -136,26 +127,6 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
     return fmi3OK;
 }
 
-fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
-{
-    const Instance *self = instance;
-    return done(self, keep(&self->now, FMUState));
-}
-
-fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState FMUState)
-{
-    Instance *self = instance;
-    memcpy(&self->now, FMUState, sizeof(Values));
-    return fmi3OK;
-}
-
-fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
-{
-    free(*FMUState);
-    *FMUState = NULL;
-    return fmi3OK;
-}
-
 /* Some importers ask for no variable of a type: that much there is. */
 #define NO_VARIABLES(name, type)                                                      \
     fmi3Status name(fmi3Instance instance, const fmi3ValueReference valueReferences[], \
@@ -166,28 +137,15 @@ fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
                    : refuse(instance, #name ": all variables are of Float64");        \
     }
 
-NO_VARIABLES(fmi3GetFloat32, fmi3Float32)
-NO_VARIABLES(fmi3GetInt8, fmi3Int8)
-NO_VARIABLES(fmi3GetUInt8, fmi3UInt8)
-NO_VARIABLES(fmi3GetInt16, fmi3Int16)
-NO_VARIABLES(fmi3GetUInt16, fmi3UInt16)
-NO_VARIABLES(fmi3GetInt32, fmi3Int32)
-NO_VARIABLES(fmi3GetUInt32, fmi3UInt32)
-NO_VARIABLES(fmi3GetInt64, fmi3Int64)
-NO_VARIABLES(fmi3GetUInt64, fmi3UInt64)
-NO_VARIABLES(fmi3GetBoolean, fmi3Boolean)
-NO_VARIABLES(fmi3GetString, fmi3String)
-NO_VARIABLES(fmi3SetFloat32, const fmi3Float32)
-NO_VARIABLES(fmi3SetInt8, const fmi3Int8)
-NO_VARIABLES(fmi3SetUInt8, const fmi3UInt8)
-NO_VARIABLES(fmi3SetInt16, const fmi3Int16)
-NO_VARIABLES(fmi3SetUInt16, const fmi3UInt16)
-NO_VARIABLES(fmi3SetInt32, const fmi3Int32)
-NO_VARIABLES(fmi3SetUInt32, const fmi3UInt32)
-NO_VARIABLES(fmi3SetInt64, const fmi3Int64)
-NO_VARIABLES(fmi3SetUInt64, const fmi3UInt64)
-NO_VARIABLES(fmi3SetBoolean, const fmi3Boolean)
-NO_VARIABLES(fmi3SetString, const fmi3String)
+{% for way, changed in (("Get", ""), ("Set", "const ")) %}
+{% for type in ("Float32", "Boolean", "String") %}
+NO_VARIABLES(fmi3@way@@type@, @changed@fmi3@type@)
+{% endfor %}
+{% for bits in (8, 16, 32, 64) %}
+NO_VARIABLES(fmi3@way@Int@bits@, @changed@fmi3Int@bits@)
+NO_VARIABLES(fmi3@way@UInt@bits@, @changed@fmi3UInt@bits@)
+{% endfor %}
+{% endfor %}
 
 /* What an FMU must have, and this one has no use for. */
 #define ABSENT(name, ...)                                             \

@@ -1,22 +1,24 @@
-@told@
-#ifndef HB_@NAME@_H
-#define HB_@NAME@_H
+@comment([model.title ~ ": " ~ model.about ~ "."] + model.differences)@
+#ifndef HB_@model.name | upper@_H
+#define HB_@model.name | upper@_H
 
-#define @NAME@_DT @dt@ /* s */
+#define @model.name | upper@_DT @model.sampling.dt@ /* s */
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 typedef struct {
-@states@
-} @name@_state;
+{% for state, size in states %}
+    double @state@[@size@];
+{% endfor %}
+} @model.name@_state;
 
-@begins@
-void @name@_init(@name@_state *state);
+@comment([model.begins])@
+void @model.name@_init(@model.name@_state *state);
 
-@next@
-double @name@_step(@name@_state *state, double input);
+@comment(["The next sample: " ~ model.output.label ~ " of " ~ model.input.label ~ "."])@
+double @model.name@_step(@model.name@_state *state, double input);
 
 #ifdef __cplusplus
 }

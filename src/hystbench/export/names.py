@@ -8,7 +8,8 @@ from __future__ import annotations
 import keyword
 import re
 import sys
-from pathlib import Path
+from functools import cache
+from typing import Any
 
 #: Keywords of C and C++ that a model may be called, and the standard headers.
 C_WORDS = """
@@ -33,10 +34,26 @@ TAKEN = (
 )
 
 
-def filled(file: str, **words: str) -> str:
-    """Read a file beside this module, with words in the places of their ``@names@``."""
-    text = Path(__file__).with_name(file).read_text(encoding="utf-8")
-    return re.sub("@(\\w+)@", lambda found: words[found[1]], text)
+def filled(file: str, **words: Any) -> str:
+    """Fill a template beside this module: ``@name@`` is an expression of Jinja."""
+    text: str = _templates().get_template(file).render(words)
+    return text
+
+
+@cache
+def _templates() -> Any:
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    return Environment(
+        loader=PackageLoader(__package__, ""),
+        undefined=StrictUndefined,
+        variable_start_string="@",
+        variable_end_string="@",
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,  # noqa: S701 - it makes code
+    )
 
 
 def identifier(name: str) -> str:

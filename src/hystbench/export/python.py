@@ -25,17 +25,7 @@ def module(model: Described) -> str:
     """Write the module: a class ``Model`` that keeps the state of the C."""
     told = [f"{model.title}: {model.about}.", *model.differences]
     lines = [_quoted(line) for said in told for line in wrap(said, WIDTH - 4)]
-    states = [*model.all_states()] or [c.NO_STATE]
-    return filled(
-        "module.txt",
-        told="\n".join(lines),
-        name=model.name,
-        dt=repr(model.sampling.dt),
-        begins=model.begins,
-        states="\n".join(
-            f'        ("{state}", ctypes.c_double * {size}),' for state, size in states
-        ),
-    )
+    return filled("module.txt", model=model, told=lines, states=c.states(model))
 
 
 def loaded(model: Described) -> Any:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from matplotlib.figure import Figure
 from hystbench.errors import InputError
 from hystbench.figures import style
 from hystbench.figures.data import last_cycles, read_one
+from hystbench.files import read_json
 
 
 def draw(*, records: Sequence[Path], table: Path) -> Figure:
@@ -39,7 +39,7 @@ def draw(*, records: Sequence[Path], table: Path) -> Figure:
             f"{table}: {len(before)} rows; expected the {len(record)} samples of "
             f"record {record.name}"
         )
-    gap = json.loads((table.parents[1] / "gap.json").read_text(encoding="utf-8"))
+    gap = read_json(table.parents[1] / "gap.json")
     names = " and ".join(item["name"] for item in gap["effects"]) or "nothing added"
     part = last_cycles(record, 1)
     figure = Figure(figsize=(style.PAGE, 3.0))

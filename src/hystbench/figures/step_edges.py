@@ -7,7 +7,7 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hystbench.compare.edges import Edge
+from hystbench.compare.beside import Edge
 from hystbench.compare.rows import read_items
 from hystbench.errors import InputError
 from hystbench.figures import style

@@ -13,12 +13,13 @@ import numpy as np
 from hystbench.dataset import Dataset
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
+from hystbench.gap.fitting.base_on_records import run_base
 from hystbench.gap.records.floor import Floor, noise_floor
 from hystbench.gap.records.scored_samples import Compared, rms
 from hystbench.inspection.base import loop_of_plays
 from hystbench.inspection.facts import Facts, facts_of, late
 from hystbench.inspection.flat import flats
-from hystbench.inspection.visible import Seen, runs, seen_effects
+from hystbench.inspection.visible import Seen, seen_effects
 from hystbench.inspection.writing import entry_text
 from hystbench.model import Model
 from hystbench.record import Record
@@ -113,7 +114,7 @@ def check(dataset: Dataset, effects: bool = True) -> Check:
     fit = [record for record in records if record.use == "fit"]
     base = loop_of_plays(fit)
     hold = dataset.about["input"].get("hold", "band-limited")
-    outputs = runs(base, records, hold)
+    outputs = run_base(base, records, hold)
     compared = [Compared(*pair) for pair in zip(records, outputs, strict=True)]
     facts = tuple(facts_of(dataset, item) for item in compared)
     compared = [

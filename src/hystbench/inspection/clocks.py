@@ -23,20 +23,6 @@ LOOSEST = 0.5
 """Of a step: what dataset.yaml may tolerate at most."""
 
 
-class Clock(NamedTuple):
-    """What a column of time counts.
-
-    Parameters
-    ----------
-    unit : str
-    words : str
-        What it is taken for, with the date of the first sample.
-    """
-
-    unit: str
-    words: str
-
-
 class _Count(NamedTuple):
     unit: str
     seconds: float
@@ -57,7 +43,7 @@ _COUNTS = (
 )
 
 
-def clock_of(values: FloatArray) -> Clock | None:
+def clock_of(values: FloatArray) -> tuple[str, str] | None:
     """Tell what a column of time counts, where its values can only be dates.
 
     Parameters
@@ -67,8 +53,9 @@ def clock_of(values: FloatArray) -> Clock | None:
 
     Returns
     -------
-    Clock or None
-        None of small numbers, which count from the start of a record.
+    tuple of (str, str) or None
+        The unit, and what it is taken for, with the date of the first sample. None of
+        small numbers, which count from the start of a record.
     """
     there = values[np.isfinite(values)]
     if not len(there):
@@ -84,7 +71,7 @@ def clock_of(values: FloatArray) -> Clock | None:
             since = (float(there[0]) - count.number) * count.seconds
             date = count.zero + dt.timedelta(seconds=round(since, 3))
             told = date.isoformat(" ", "milliseconds")
-            return Clock(count.unit, f"{count.words}, from {told} on")
+            return count.unit, f"{count.words}, from {told} on"
     return None
 
 

@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -13,7 +14,13 @@ from hystbench.device_kinds import DeviceKind
 from hystbench.errors import InputError, nearest
 from hystbench.formats import Column, Table
 from hystbench.inspection.clocks import clock_of
-from hystbench.inspection.names import choose, is_simulated, is_time, split_unit
+from hystbench.inspection.names import (
+    choose,
+    is_known,
+    is_simulated,
+    is_time,
+    split_unit,
+)
 from hystbench.record import FloatArray
 from hystbench.units import NONE, check_known, plain
 
@@ -30,35 +37,28 @@ there are, if any, and the flag that answers it."""
 
 @dataclass(frozen=True)
 class Flags:
-    """What flags say already.
+    """What flags say already, each with its help."""
 
-    Parameters
-    ----------
-    name : str, optional
-        Of the dataset.
-    time, input, output : str, optional
-        Names of columns.
-    time_unit, input_unit, output_unit : str, optional
-    sampling_frequency_hz : float, optional
-    hold_out : tuple of str
-        Names of records to hold out.
-    missing : {"interpolate", "split"}, optional
-        What to do where samples are missing.
-    device : str, optional
-        Kind of the device.
-    """
-
-    name: str | None = None
-    time: str | None = None
-    input: str | None = None
-    output: str | None = None
-    time_unit: str | None = None
-    input_unit: str | None = None
-    output_unit: str | None = None
-    sampling_frequency_hz: float | None = None
-    hold_out: tuple[str, ...] = ()
-    missing: str | None = None
-    device: DeviceKind | None = None
+    input: Annotated[str | None, "Column of the input."] = None
+    output: Annotated[str | None, "Column of the output."] = None
+    time: Annotated[str | None, "Column of time."] = None
+    input_unit: Annotated[str | None, "Its unit, such as A; '-' for none."] = None
+    output_unit: Annotated[str | None, "Its unit, such as um; '-' for none."] = None
+    time_unit: Annotated[str | None, "Its unit; seconds where the file tells none."] = (
+        None
+    )
+    sampling_frequency: Annotated[float | None, "In Hz, where no column is time."] = (
+        None
+    )
+    hold_out: tuple[Annotated[str, "Name of a record to hold out."], ...] = ()
+    missing: Annotated[
+        Literal["interpolate", "split"] | None,
+        "What to do where samples are missing.",
+    ] = None
+    device: Annotated[DeviceKind | None, "Kind of the device."] = None
+    name: Annotated[
+        str | None, "Name of the dataset; by default that of its folder."
+    ] = None
 
 
 @dataclass(frozen=True)
@@ -187,9 +187,8 @@ def signals_of(parts: Sequence[Part], given: Flags, ask: Ask) -> ChosenColumns:
         units[key] = plain(unit) or "-"
     unit_of_time = given.time_unit or (told[time][1] if time else None)
     if time is not None and unit_of_time is None:
-        clock = clock_of(first.columns[time].values)
-        unit_of_time = clock.unit if clock else "s"
-        taken = clock.words if clock else "seconds"
+        counted = clock_of(first.columns[time].values)
+        unit_of_time, taken = counted or ("s", "seconds")
         notes.append(f"time {time!r}: no unit is told; taken for {taken} (--time-unit)")
     return ChosenColumns(
         time,
@@ -213,13 +212,8 @@ def _common(parts: Sequence[Part]) -> list[str]:
 def _told(name: str, column: Column) -> tuple[str, str | None]:
     """Give a column's name without its unit, and its unit, if one is told and known."""
     words, unit = split_unit(name)
-    own = column.unit
-    if own is not None:
-        try:
-            check_known("", own)
-        except InputError:
-            return words, unit
-        return words, plain(own)
+    if column.unit is not None and is_known(column.unit):
+        return words, plain(column.unit)
     return words, unit
 
 
@@ -233,7 +227,7 @@ def _time(
     """Name the column of time: the one asked for, or one that is called so."""
     if given.time is not None:
         return given.time
-    if given.sampling_frequency_hz is not None:
+    if given.sampling_frequency is not None:
         return None
     called = [name for name in told if is_time(*told[name])]
     rising = [name for name in told if _rises(part.columns[name].values)]

@@ -28,7 +28,6 @@ from hystbench.inspection.entries import (
     missing_in,
     with_roles,
 )
-from hystbench.inspection.excitation import Excitation, excitation_of
 from hystbench.periods import find_period
 from hystbench.record import Record
 from hystbench.written import sha256
@@ -43,8 +42,6 @@ class Draft:
     dataset : Dataset
         Checked: each record can be read.
     records : tuple of Record
-    inputs : mapping of str to Excitation
-        By the record's name.
     notes : tuple of str
         What was found and what was taken for what, one line each.
     warnings : tuple of str
@@ -53,7 +50,6 @@ class Draft:
 
     dataset: Dataset
     records: tuple[Record, ...]
-    inputs: Mapping[str, Excitation]
     notes: tuple[str, ...]
     warnings: tuple[str, ...] = ()
 
@@ -77,8 +73,8 @@ def draft(files: Sequence[Path], place: Path, given: Flags, ask: Ask) -> Draft:
         If a file cannot be read, no column can be time, input or output, or a record
         cannot be used.
     """
-    if given.sampling_frequency_hz is not None:
-        checked_frequency(given.sampling_frequency_hz)
+    if given.sampling_frequency is not None:
+        checked_frequency(given.sampling_frequency)
     notes: list[str] = []
     parts: list[Part] = []
     for file in files:
@@ -137,14 +133,8 @@ def draft(files: Sequence[Path], place: Path, given: Flags, ask: Ask) -> Draft:
         )
         for entry, record in zip(entries, records, strict=True)
     ]
-    inputs = {item.name: excitation_of(item.u, item.dt) for item in records}
-    return Draft(
-        dataset,
-        tuple(records),
-        inputs,
-        tuple(notes),
-        (*warnings, *doubts(dataset, records)),
-    )
+    warnings += doubts(dataset, records)
+    return Draft(dataset, tuple(records), tuple(notes), tuple(warnings))
 
 
 def _read(

@@ -125,8 +125,8 @@ def _frequency(
     notes: list[str],
 ) -> None:
     """Write a sampling frequency, unless each file tells its own when it is read."""
-    if given.sampling_frequency_hz is not None:
-        about["sampling_frequency_hz"] = given.sampling_frequency_hz
+    if given.sampling_frequency is not None:
+        about["sampling_frequency_hz"] = given.sampling_frequency
         return
     told = [
         part.table.sampling_frequency(

@@ -45,7 +45,7 @@ def split_unit(name: str) -> tuple[str, str | None]:
     """
     for form in (_BRACKET, _SLASH, _COMMA):
         found = form.match(name)
-        if found and _is_known(found["unit"]):
+        if found and is_known(found["unit"]):
             return found["name"].strip(), plain(found["unit"])
     found = _SUFFIX.match(name)
     if found and _is_simple(plain(found["unit"])):
@@ -53,7 +53,8 @@ def split_unit(name: str) -> tuple[str, str | None]:
     return name.replace("_", " ").strip(), None
 
 
-def _is_known(unit: str) -> bool:
+def is_known(unit: str) -> bool:
+    """Tell whether a unit is one that is known."""
     try:
         check_known("", unit)
     except InputError:
@@ -114,12 +115,11 @@ def choose(
         best = max((wanted * lean for lean in leans), default=0)
         places = [k for k, lean in enumerate(leans) if wanted * lean == best > 0]
         found.append(places[0] if len(places) == 1 else None)
-    if len(columns) == 2:
-        if found == [None, 0] or found == [0, None]:
-            found = [1 if at is None else at for at in found]
-        elif found == [None, 1] or found == [1, None]:
-            found = [0 if at is None else at for at in found]
-    return found[0], found[1]
+    one, two = found
+    if len(columns) == 2:  # one that is told leaves the other
+        one = 1 - two if one is None and two is not None else one
+        two = 1 - one if two is None and one is not None else two
+    return one, two
 
 
 def _has(name: str, known: Sequence[str]) -> bool:

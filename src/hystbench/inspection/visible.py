@@ -20,10 +20,9 @@ from hystbench.gap.fitting.score import record_weight
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.reshape import orthonormal, products, reshapings
-from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import PARAMETER, PAYS
 from hystbench.inspection.shapes import Shape, shapes_of
-from hystbench.model import Model, check_bounded
+from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 
 TENTH = 0.1
@@ -356,17 +355,3 @@ def _words(shape: Shape) -> str:
     if shape.scaled:
         parts += [f"{name} {value:.3g}" for name, value in shape.values.items()]
     return ", ".join(parts)
-
-
-def runs(base: Model, records: Sequence[Record], hold: str) -> tuple[FloatArray, ...]:
-    """Simulate a base on records.
-
-    Raises
-    ------
-    InputError
-        If an output is not finite.
-    """
-    outputs = Simulation(base.chain, tuple(records), hold).output  # type: ignore[arg-type]
-    for record, output in zip(records, outputs, strict=True):
-        check_bounded(base.name, output, record.dt, record.name)
-    return outputs

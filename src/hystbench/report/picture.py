@@ -67,12 +67,9 @@ def embedded(
     Raises
     ------
     InputError
-        If it cannot be read or tells no size in points.
+        If it tells no size in points.
     """
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: not readable ({error.strerror})") from error
+    content = path.read_bytes()
     head = content[:2000].decode("utf-8", "replace")
     tag = _TAG.search(head)
     size = dict(_SIZE.findall(tag[0])) if tag else {}

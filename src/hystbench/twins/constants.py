@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from statistics import geometric_mean
 from typing import Any
 
-from hystbench.compare.constants import Ranking
+from hystbench.compare.beside import Ranking
 from hystbench.compare.evidence import Cell
 from hystbench.compare.summary import pairs_in_order
 from hystbench.published import FILTERS

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.compare.draws import Draw
+from hystbench.compare.beside import Draw
 from hystbench.rdgpi import RateDependentGPI
 from hystbench.twins.fits import run_rdgpi
 from hystbench.twins.read import Twin

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.adaptive import make_filter, steps_of, with_steps
-from hystbench.compare.edges import Edge
+from hystbench.compare.beside import Edge
 from hystbench.filters import AdaptiveFilter, run_many
 from hystbench.metrics import (
     mean_square_error,

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from hystbench.compare.beside import TwinClaim, TwinError
 from hystbench.compare.claims import CLAIMS
-from hystbench.compare.claims.claim import Claim
-from hystbench.compare.claims.halves import holds
+from hystbench.compare.claims.claim import Claim, holds
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import names_of, or_empty, write_fields
-from hystbench.compare.twins import TwinClaim, TwinError
 from hystbench.twins.experiments import CONFIGURED
 from hystbench.twins.parts import Outcome
 

@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from hystbench.compare.evidence import ClaimEvidence, Run, identification_of
+from hystbench.compare.evidence import ClaimEvidence, Run
 from hystbench.errors import InputError, nearest
 from hystbench.files import finite_or_none
 from hystbench.order_errors import OrderError, filters_by_order, order_errors
@@ -140,7 +140,7 @@ def join(
         own = [[each, *each["experiments"]][number] for each in filters]
         evidence = ClaimEvidence(
             records=records_of(twin, experiment, settings),
-            identification=identification_of(fitted["identified"], twin.place),
+            identification=fitted["identified"],
             runs={
                 (given["signal"], given["model"]): Run(**given)
                 for each in (fitted, *own)

@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from hystbench.challenge.contest.elsewhere import beside, rows, told
+from hystbench.challenge.contest.elsewhere import beside, told
 from hystbench.challenge.contest.frames import frame
 from hystbench.challenge.contest.score import write_rows
 from hystbench.gap.schema import SCHEMA
@@ -74,7 +74,7 @@ def test_a_gap_is_closed_above_the_noise_and_the_error_of_the_base(tmp_path):
 
 def one(tmp_path, elsewhere):
     """The rows of the table, by figure."""
-    table = beside(frame([]), frame(rows(elsewhere, SCHEMA)))
+    table = beside(frame([]), frame(told(case, SCHEMA) for case in elsewhere))
     return table.set_index("figure").to_dict("index")
 
 
@@ -88,7 +88,7 @@ def test_both_plants_stand_side_by_side(tmp_path):
         case(tmp_path / "f", "pair", ["creep", "drift"], ["drift", "creep"], "ja"),
     ]
     own, out = tmp_path / "own.csv", tmp_path / "score.csv"
-    write_rows(own, rows(cases[:1], SCHEMA))
+    write_rows(own, [told(cases[0], SCHEMA)])
     words = ["job", "blind-elsewhere", *map(str, cases), "--own", str(own)]
     run_hystbench(*words, "--out", str(out))
     table = pd.read_csv(out).set_index("figure").to_dict("index")

@@ -15,7 +15,7 @@ from hystbench.challenge.contest.summary import (
     reach,
     summary,
 )
-from hystbench.challenge.contest.wilson import wilson
+from hystbench.challenge.contest.tables import wilson
 from hystbench.challenge.contest.writing import write_score
 from hystbench.gap.schema import SCHEMA
 

@@ -1,4 +1,4 @@
-"""A chunk of a contest: its cases made for solvers, and made again for the judge.
+"""A chunk of a contest: its cases, made again for the judge.
 
 A case follows from its seed alone. So the judge makes it anew when the answers are
 there, and while solvers run there is no file of the truth at all.
@@ -21,15 +21,6 @@ from hystbench.challenge.writing import write_folder
 from hystbench.errors import InputError
 from hystbench.files import digest
 from hystbench.plain_fits import within_noise
-
-WRITTEN = ("*/model.yaml", "*/dataset/*")
-"""Files of a chunk, as patterns."""
-
-
-def make_chunk(entries: Iterable[Entry], folder: Path) -> None:
-    """Write what solvers get of some cases, a folder each."""
-    for entry in entries:
-        write_folder(make(entry.spec), folder / entry.name)
 
 
 def judge_chunk(

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from hystbench.challenge.contest.frames import CONFIDENT
-from hystbench.challenge.contest.score import Row, given, judge
-from hystbench.challenge.contest.summary import FAMILIES, HIDDEN, figures, of
-from hystbench.challenge.contest.tables import calibration_error, middle
+from hystbench.challenge.contest.frames import sure
+from hystbench.challenge.contest.score import Row, judge
+from hystbench.challenge.contest.summary import figures
 from hystbench.files import read_json
 from hystbench.yaml_files import load_yaml
 
@@ -76,11 +75,6 @@ def told(case: Path, schema: Mapping[str, Any]) -> Row:
     return judge("gap", place, ours, answer, schema, lambda members: members)
 
 
-def rows(cases: Sequence[Path], schema: Mapping[str, Any]) -> list[Row]:
-    """Judge cases, folders as for :func:`told`."""
-    return [told(case, schema) for case in cases]
-
-
 def beside(own: pd.DataFrame, elsewhere: pd.DataFrame) -> pd.DataFrame:
     """Put the figures of both plants side by side.
 
@@ -97,44 +91,17 @@ def beside(own: pd.DataFrame, elsewhere: pd.DataFrame) -> pd.DataFrame:
     both = [_with_names(cases) for cases in (own, elsewhere)]
     found: list[tuple[Any, ...]] = []
     for figure in figures("elsewhere"):
-        here, there = map(figure.share, both)
+        here, there = map(figure.of, both)
         found.append((figure.name, figure.asked, here.share, here.cases, *there))
-    for name, families, asked in (
-        ("gap closed, median, exact base", FAMILIES["gpi"], ">= 0.95"),
-        ("gap closed, median, foreign base", FAMILIES["foreign"], ">= 0.85"),
-    ):
-        chosen = [of(x[x["family"].isin(families)], HIDDEN) for x in both]
-        found.append(
-            _number(name, asked, chosen, [middle(x, "shrink") for x in chosen])
-        )
-    apart = [calibration_error(x) if len(x) else None for x in both]
-    found.append(_number("stated confidence off by", "<= 0.05", both, apart))
     return pd.DataFrame(found, columns=list(COLUMNS)).round(4)
-
-
-def _number(
-    name: str,
-    asked: str,
-    cases: Sequence[pd.DataFrame],
-    values: Sequence[float | None],
-) -> tuple[Any, ...]:
-    """Give the row of a number that is no share, and has no interval."""
-    (own, elsewhere), (here, there) = map(len, cases), values
-    return (name, asked, here, own, there, None, None, elsewhere)
 
 
 def _with_names(cases: pd.DataFrame) -> pd.DataFrame:
     """Add whether no name is given, one surely, and a wrong one surely."""
-    names = [
-        given(verdict, words)
-        for verdict, words in zip(cases["verdict"], cases["confidences"], strict=True)
-    ]
-    hidden = [str(truth).split() for truth in cases["truth"]]
+    both = zip(cases["given"], cases["truth"].str.split(), strict=True)
+    wrong = [{x: y for x, y in names.items() if x not in true} for names, true in both]
     return cases.assign(
-        no_name=[not x for x in names],
-        confident=[any(sure > CONFIDENT for sure in x.values()) for x in names],
-        wrongly=[
-            any(sure > CONFIDENT and name not in true for name, sure in x.items())
-            for x, true in zip(names, hidden, strict=True)
-        ],
+        no_name=[not names for names in cases["given"]],
+        confident=list(map(sure, cases["given"])),
+        wrongly=list(map(sure, wrong)),
     )

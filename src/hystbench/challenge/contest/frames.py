@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple, fields
 from pathlib import Path
 
 import pandas as pd
 
-from hystbench.challenge.contest.score import COLUMNS, Row, stated
+from hystbench.challenge.contest.score import COLUMNS, Row
 from hystbench.errors import InputError
 from hystbench.files import write_csv
 
@@ -36,8 +36,10 @@ def read_rows(paths: Sequence[Path]) -> pd.DataFrame:
 def frame(rows: Iterable[Row]) -> pd.DataFrame:
     """Give judged cases as a data frame: a row a case, a column a field of Row.
 
-    Figures that mean nothing for a case are missing. ``confident`` is added: whether an
-    effect is named with more than :data:`CONFIDENT`.
+    Figures that mean nothing for a case are missing. Added are ``stated``, the effects
+    named with the confidence of each; ``given``, the same where the verdict is
+    ``named``, as names beside another do not count; and ``confident``, whether one is
+    stated with more than :data:`CONFIDENT`.
     """
     told = [["" if v is None else str(v) for v in astuple(row)] for row in rows]
     return _typed(pd.DataFrame(told, columns=list(COLUMNS), dtype=str))
@@ -59,7 +61,20 @@ def _typed(table: pd.DataFrame) -> pd.DataFrame:
             numbers = pd.to_numeric(column.replace("", None))
             dtype = pd.Int64Dtype() if kind.startswith("int") else pd.Float64Dtype()
             table[item.name] = numbers.astype(dtype)
-    told = map(stated, table["confidences"])
-    highest = [max(names.values(), default=0.0) for names in told]
-    table["confident"] = pd.array([x > CONFIDENT for x in highest], dtype="boolean")
+    table["stated"] = table["confidences"].map(_stated).astype(object)
+    named = table["verdict"] == "named"
+    given = [x if y else {} for x, y in zip(table["stated"], named, strict=True)]
+    table["given"] = pd.Series(given, index=table.index, dtype=object)
+    table["confident"] = pd.array(list(map(sure, table["stated"])), dtype="boolean")
     return table
+
+
+def _stated(confidences: str) -> dict[str, float]:
+    """Give the stated confidence of each name, as a row has them."""
+    parts = (word.rpartition("=") for word in confidences.split())
+    return {name: float(confidence) for name, _, confidence in parts}
+
+
+def sure(names: Mapping[str, float]) -> bool:
+    """Tell whether a name is stated with more than :data:`CONFIDENT`."""
+    return any(confidence > CONFIDENT for confidence in names.values())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from statistics import NormalDist, median
 from typing import Any
 
@@ -13,36 +12,9 @@ from hystbench.challenge.contest import table
 WIDTH = NormalDist().inv_cdf(0.975)
 
 
-@dataclass(frozen=True)
-class Recovered:
-    """Numbers of a case that have a true value.
-
-    Parameters
-    ----------
-    errors : tuple of float
-        Relative errors.
-    intervals, covered : int
-        Numbers with a standard error, and those whose 95 % interval holds the truth.
-    """
-
-    errors: tuple[float, ...]
-    intervals: int
-    covered: int
-
-    @property
-    def compared(self) -> int:
-        """How many numbers there are."""
-        return len(self.errors)
-
-    @property
-    def median_error(self) -> float | None:
-        """Median of the relative errors."""
-        return median(self.errors) if self.errors else None
-
-
 def recovered(
     hidden: Sequence[Mapping[str, Any]], named: Sequence[Mapping[str, Any]]
-) -> Recovered:
+) -> dict[str, Any]:
     """Compare the parameters of effects that are hidden and named.
 
     Parameters
@@ -51,6 +23,13 @@ def recovered(
         The truth's effects.
     named : sequence of mapping
         The effects of gap.json.
+
+    Returns
+    -------
+    dict
+        As a judged case has them: how many ``parameters`` there are with a true value,
+        ``intervals`` with a standard error, and ``covered``, those whose 95 % interval
+        holds the truth; and ``parameter_error``, the median relative error.
     """
     errors, intervals, covered = [], 0, 0
     by_name = {effect["name"]: effect for effect in named}
@@ -70,7 +49,12 @@ def recovered(
                 if error is not None:
                     intervals += 1
                     covered += abs(value - true) <= WIDTH * error
-    return Recovered(tuple(errors), intervals, covered)
+    return {
+        "parameters": len(errors),
+        "intervals": intervals,
+        "covered": covered,
+        "parameter_error": median(errors) if errors else None,
+    }
 
 
 def _word(name: str, answer: Mapping[str, Any]) -> str | None:

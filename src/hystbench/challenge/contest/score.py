@@ -166,7 +166,6 @@ def judge(
     if tolerated:
         members = tuple(name for name in members if name != SHAPE)
     confirmed = confirm(members) if single and len(members) > 1 else members
-    found = recovered(truth["effects"], effects)
     # An effect outside the vocabulary has no name to be called by.
     right, right_strict = _right(kind, hidden, gap["verdict"], named, strict)
     views = gap["where"]
@@ -209,10 +208,7 @@ def judge(
         if single and machine
         else None,
         shrink=_shrink(truth, gap["gap"]) if hidden else None,
-        parameters=found.compared,
-        intervals=found.intervals,
-        covered=found.covered,
-        parameter_error=found.median_error,
+        **recovered(truth["effects"], effects),
         seconds=answer["seconds"],
         cpu_seconds=answer["cpu_seconds"],
     )
@@ -221,20 +217,6 @@ def judge(
 def write_rows(path: Path, rows: Iterable[Row]) -> None:
     """Write judged cases as CSV; what means nothing for a case is an empty cell."""
     write_csv(path, COLUMNS, (astuple(row) for row in rows))
-
-
-def stated(confidences: str) -> dict[str, float]:
-    """Give the stated confidence of each name, as a row has them."""
-    parts = (word.rpartition("=") for word in confidences.split())
-    return {name: float(confidence) for name, _, confidence in parts}
-
-
-def given(verdict: str, confidences: str) -> dict[str, float]:
-    """Give the names that an answer gives, with what they are stated with.
-
-    Names beside another verdict than ``named`` do not count.
-    """
-    return stated(confidences) if verdict == "named" else {}
 
 
 _NOTHING: dict[str, Any] = {"verdict": "", "effects": [], "where": [], "gap": None}

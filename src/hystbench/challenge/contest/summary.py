@@ -6,13 +6,13 @@ All take a data frame of :func:`hystbench.challenge.contest.frames.frame`.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import pandas as pd
 
 from hystbench.challenge.contest import table
 from hystbench.challenge.contest.tables import (
+    Share,
     brier,
     calibration_error,
     coverage,
@@ -20,7 +20,6 @@ from hystbench.challenge.contest.tables import (
     middle,
     shares,
 )
-from hystbench.challenge.contest.wilson import Share
 from hystbench.challenge.plant.inside import MACHINES
 
 FAMILIES = {
@@ -31,49 +30,78 @@ FAMILIES = {
     "machines": MACHINES,
 }
 HIDDEN = ("single", "pair", "triple")
-SEVERAL = ("pair", "triple")
+KINDS = {"hidden": HIDDEN, "several": ("pair", "triple")}
+"""Kinds of cases by one word; every other word is a kind."""
 
 
-@dataclass(frozen=True)
-class Figure:
-    """A share of some cases, and what the project asks of its own solver.
+class Figure(NamedTuple):
+    """A figure of some cases, and what the project asks of its own solver.
 
     Parameters
     ----------
     name : str
     column : str
-        The figure of a case, true or false.
+        The share of cases of which this is true; or, before the name of a column, what
+        is made of it, as :data:`MADE` has it.
     kind, family : str
-        ``all``, or a kind of case and one of :data:`FAMILIES`.
+        ``all``, or a kind of case (or of :data:`KINDS`) and one of :data:`FAMILIES`.
     ratio_db : float or None
         None for all.
     sense, bound
-        What is asked: ``>=`` or ``<=``, and of what.
+        What is asked: ``>=`` or ``<=``, and of what; or ``to`` between two ends.
     """
 
     name: str
     column: str
-    kind: str
+    kind: str = "all"
     family: str = "all"
     ratio_db: float | None = None
     sense: str = ""
-    bound: float = 0.0
+    bound: Any = 0.0
 
     @property
     def asked(self) -> str:
         """What is asked, in words; empty where nothing is."""
+        if self.sense == "to":
+            return "{:g} to {:g}".format(*self.bound)
         return f"{self.sense} {self.bound:g}" if self.sense else ""
 
-    def share(self, cases: pd.DataFrame) -> Share:
-        """Compute the share over the cases that it is about."""
-        chosen = pd.Series(data=True, index=cases.index)
+    def met(self, value: float | None) -> bool | None:
+        """Tell whether a value is what is asked; None where there is none."""
+        if value is None:
+            return None
+        if self.sense == "to":
+            return bool(self.bound[0] <= value <= self.bound[1])
+        return bool(value >= self.bound if self.sense == ">=" else value <= self.bound)
+
+    def of(self, cases: pd.DataFrame) -> Share:
+        """Compute it over the cases that it is about; a number has no interval."""
         if self.kind != "all":
-            chosen &= cases["kind"] == self.kind
+            cases = of(cases, KINDS.get(self.kind, (self.kind,)))
         if self.family != "all":
-            chosen &= cases["family"].isin(FAMILIES[self.family])
+            cases = cases[cases["family"].isin(FAMILIES[self.family])]
         if self.ratio_db is not None:
-            chosen &= (cases["ratio_db"] == self.ratio_db).fillna(False)
-        return shares(cases[chosen], self.column)
+            cases = cases[(cases["ratio_db"] == self.ratio_db).fillna(False)]
+        if self.column == "coverage":
+            return coverage(cases)
+        made, _, column = self.column.rpartition(" ")
+        if not made:
+            return shares(cases, column)
+        if made == "known median":
+            made, cases = "median", cases.dropna(subset=column)
+        return Share(MADE[made](cases, column), None, None, len(cases))
+
+
+MADE: dict[str, Callable[[pd.DataFrame, str], float | None]] = {
+    "mean": mean,
+    "median": middle,
+    "distance": lambda cases, _: calibration_error(cases),
+    "square": lambda cases, _: brier(cases),
+}
+"""What is made of a column: of stated confidence, how far it is from what happened.
+
+``known median`` counts those cases alone of which the column is known.
+"""
 
 
 def figures(name: str) -> list[Figure]:
@@ -81,11 +109,10 @@ def figures(name: str) -> list[Figure]:
     return [Figure(*row) for row in table(name)]
 
 
-TOP1_20 = Figure("transfer top1 20 dB", "top1", "single", "all", 20.0)
+TOP1_20 = Figure("transfer top1 20 dB", "top1", "single", "all", 20.0, ">=")
 
 
-@dataclass(frozen=True)
-class Asked:
+class Asked(NamedTuple):
     """A figure that was asked for, and what was reached."""
 
     figure: str
@@ -117,7 +144,7 @@ def summary(cases: pd.DataFrame) -> dict[str, Any]:
         "lost": int((cases["lost"] != "").sum()),
         "where_hit": {
             **_by_ratio(of(cases, ("single",)), "where_hit"),
-            "several": _share(of(cases, SEVERAL), "where_hit"),
+            "several": _share(of(cases, KINDS["several"]), "where_hit"),
             "unlisted": _share(of(cases, ("unlisted",)), "where_hit"),
         },
         **{
@@ -142,20 +169,15 @@ def reach(cases: pd.DataFrame, transfer: pd.DataFrame) -> list[Asked]:
     cases, transfer : DataFrame
         Of the published set and of the transfer set; the second may be empty.
     """
-    hidden = of(cases, HIDDEN)
-    covered = coverage(hidden)
-    met = None if covered.share is None else 0.90 <= covered.share <= 0.98
-    shrink, seconds = middle(hidden, "shrink"), middle(cases, "cpu_seconds")
-    apart = calibration_error(cases)
-    found = [
-        *(_asked(f.name, f.sense, f.bound, f.share(cases)) for f in figures("asked")),
-        _asked("shrink_median", ">=", 0.95, _number(shrink, hidden)),
-        _asked("stated confidence off by", "<=", 0.05, _number(apart, cases)),
-        Asked("coverage of 95 % intervals", "0.9 to 0.98", *covered, met),
-        _asked("seconds_per_case", "<=", 1.0, _number(seconds, cases)),
-    ]
+    found = [_asked(figure, figure.of(cases)) for figure in figures("asked")]
     if len(transfer):
-        found.append(_transferred(TOP1_20.share(cases), TOP1_20.share(transfer)))
+        here, there = TOP1_20.of(cases).share, TOP1_20.of(transfer)
+        if here is None or there.share is None:
+            found.append(Asked(TOP1_20.name, "", None, None, None, there.cases, None))
+        else:
+            asked = TOP1_20._replace(bound=here - 0.05)
+            words = f">= {asked.bound:.3f}"
+            found.append(_asked(asked, there)._replace(asked=words))
     return found
 
 
@@ -172,24 +194,7 @@ def further(cases: pd.DataFrame) -> list[tuple[str, Any, Any, Any, int]]:
     list of (str, float or None, float or None, float or None, int)
         A figure, what was reached, its interval where it is a share, and the cases.
     """
-    singles = of(cases, ("single",))
-    at_20 = singles[(singles["ratio_db"] == 20.0).fillna(False)]
-    known = of(cases, HIDDEN).dropna(subset="parameter_error")
-    several = shares(of(cases, SEVERAL), "where_hit")
-    unlisted = shares(of(cases, ("unlisted",)), "where_hit")
-    error = middle(known, "parameter_error")
-    numbers = [
-        ("set_size at 20 dB, mean", mean(at_20, "set_size"), at_20),
-        ("set_size_raw at 20 dB, mean", mean(at_20, "set_size_raw"), at_20),
-        ("brier", brier(cases), cases),
-        ("relative error of parameters, median", error, known),
-    ]
-    return [
-        *((figure.name, *figure.share(cases)) for figure in figures("further")),
-        ("where_hit of several effects", *several),
-        ("where_hit of unlisted effects", *unlisted),
-        *((name, *_number(value, among)) for name, value, among in numbers),
-    ]
+    return [(figure.name, *figure.of(cases)) for figure in figures("further")]
 
 
 def of(cases: pd.DataFrame, kinds: Sequence[str]) -> pd.DataFrame:
@@ -224,23 +229,5 @@ _SUMS: dict[str, Callable[[pd.DataFrame, str], Any]] = {
 }
 
 
-def _number(value: float | None, cases: pd.DataFrame) -> Share:
-    """Give a number that is no share, and has no interval."""
-    return Share(value, None, None, len(cases))
-
-
-def _asked(name: str, sense: str, bound: float, reached: Share) -> Asked:
-    value = reached.share
-    met = None
-    if value is not None:
-        met = value >= bound if sense == ">=" else value <= bound
-    return Asked(name, f"{sense} {bound:g}", *reached, met)
-
-
-def _transferred(here: Share, there: Share) -> Asked:
-    """Hold top-1 at 20 dB on the transfer set against the published set's."""
-    name = TOP1_20.name
-    if here.share is None or there.share is None:
-        return Asked(name, "", None, None, None, there.cases, None)
-    least = here.share - 0.05
-    return Asked(name, f">= {least:.3f}", *there, there.share >= least)
+def _asked(figure: Figure, reached: Share) -> Asked:
+    return Asked(figure.name, figure.asked, *reached, figure.met(reached.share))

@@ -8,15 +8,16 @@ from __future__ import annotations
 import itertools
 from collections import Counter
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from hystbench.challenge.contest import table
-from hystbench.challenge.contest.score import SHAPE, stated
-from hystbench.challenge.contest.wilson import Share, wilson
+from hystbench.challenge.contest.score import SHAPE
 
+#: Of an interval.
+CONFIDENCE = 0.95
 #: Edges of the bins of stated confidence.
 CONFIDENCES = (0.0, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0)
 #: First answers that are no effect.
@@ -25,6 +26,35 @@ NO_EFFECT = ("no-gap", "unnamed", "parameters", "lost")
 UNKNOWN = "none written down"
 #: Kinds of cases in which at most one effect is hidden, in the order they are told.
 ONE = ("single", "unlisted", "none")
+
+
+class Share(NamedTuple):
+    """A share of cases with its interval; all None where there are no cases."""
+
+    share: float | None
+    low: float | None
+    high: float | None
+    cases: int
+
+
+def wilson(hits: int, cases: int) -> Share:
+    """Compute a share and its 95 % score interval.
+
+    Parameters
+    ----------
+    hits, cases : int
+
+    References
+    ----------
+    .. [1] E. B. Wilson, "Probable inference, the law of succession, and statistical
+       inference", Journal of the American Statistical Association 22 (1927) 209-212.
+    """
+    from scipy.stats import binomtest  # late: not needed to make cases
+
+    if cases == 0:
+        return Share(None, None, None, 0)
+    interval = binomtest(hits, cases).proportion_ci(CONFIDENCE, method="wilson")
+    return Share(hits / cases, float(interval.low), float(interval.high), cases)
 
 
 def confusion(cases: pd.DataFrame) -> list[tuple[Any, ...]]:
@@ -150,8 +180,8 @@ def _outcomes(cases: pd.DataFrame) -> list[tuple[float, bool]]:
     """Give the stated confidence of each effect named, and whether it is hidden."""
     return [
         (confidence, name in truth.split())
-        for truth, words in zip(cases["truth"], cases["confidences"], strict=True)
-        for name, confidence in stated(words).items()
+        for truth, stated in zip(cases["truth"], cases["stated"], strict=True)
+        for name, confidence in stated.items()
     ]
 
 

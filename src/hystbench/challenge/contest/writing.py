@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
@@ -54,7 +53,7 @@ def write_score(
     asked = [*reach(own, transfer), *_off(carried)]
     found: dict[str, Iterable[Sequence[Any]]] = {
         "contest.csv": _held(own, transfer, about),
-        "reach.csv": map(astuple, asked),
+        "reach.csv": asked,
         "further.csv": further(own),
         "transfer.csv": carried,
         "confusion.csv": tables.confusion(own),
@@ -77,7 +76,7 @@ def write_score(
             **about,
             **summary(own),
             "transfer": summary(transfer) if len(transfer) else None,
-            "reach": [item.__dict__ for item in asked],
+            "reach": [item._asdict() for item in asked],
         },
     )
 

@@ -1,10 +1,10 @@
 """``hystbench job blind-elsewhere``: the score of cases that another plant made."""
 
 from hystbench.files import atomic_path
-from hystbench.job import DatasetFile, In, Out, job
+from hystbench.signature import DatasetFile, In, Out, command
 
 
-@job
+@command
 def blind_elsewhere(
     cases: tuple[DatasetFile, ...], *, own: tuple[In, ...] = (), out: Out
 ) -> None:
@@ -12,11 +12,13 @@ def blind_elsewhere(
 
     OWN are cases of the contest, as judged.
     """
-    from hystbench.challenge.contest.elsewhere import beside, rows  # late: pandas
+    from hystbench.challenge.contest.elsewhere import beside, told  # late: pandas
     from hystbench.challenge.contest.frames import frame, read_rows
     from hystbench.gap.schema import SCHEMA
 
     mine = read_rows(own)
-    table = beside(mine[mine["solver"] == "gap"], frame(rows(cases, SCHEMA)))
+    table = beside(
+        mine[mine["solver"] == "gap"], frame(told(case, SCHEMA) for case in cases)
+    )
     with atomic_path(out) as fresh:
         table.to_csv(fresh, index=False)

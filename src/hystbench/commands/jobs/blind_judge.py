@@ -4,10 +4,10 @@ from hystbench.challenge.contest.chunk import judge_chunk
 from hystbench.challenge.contest.plan import chunks, plan
 from hystbench.challenge.contest.score import write_rows
 from hystbench.gap.schema import SCHEMA
-from hystbench.job import Json, Out, Settings, job
+from hystbench.signature import Json, Out, Settings, command
 
 
-@job
+@command
 def blind_judge(answers: tuple[Json, ...], *, settings: Settings, out: Out) -> None:
     """Judge the ANSWERS of all solvers to a chunk, a row a case and solver."""
     entries = chunks(plan(**settings["plan"]), settings["size"])

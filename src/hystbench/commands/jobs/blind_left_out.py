@@ -1,10 +1,10 @@
 """``hystbench job blind-left-out``: the score of effects that could not be named."""
 
 from hystbench.files import atomic_path
-from hystbench.job import In, Out, job
+from hystbench.signature import In, Out, command
 
 
-@job
+@command
 def blind_left_out(judged: tuple[In, ...], *, out: Out) -> None:
     """Sum up JUDGED cases, each solved without the effect that is hidden in it."""
     from hystbench.challenge.contest.frames import read_rows  # late: pandas

@@ -1,14 +1,19 @@
 """``hystbench job blind-make``: the cases of a chunk, as solvers get them."""
 
-from hystbench.challenge.contest.chunk import WRITTEN, make_chunk
 from hystbench.challenge.contest.plan import chunks, plan
+from hystbench.challenge.make import make
+from hystbench.challenge.writing import write_folder
 from hystbench.files import whole_folder
-from hystbench.job import OutFolder, Settings, job
+from hystbench.signature import OutFolder, Settings, command
+
+#: Files of a chunk, as patterns.
+WRITTEN = ("*/model.yaml", "*/dataset/*")
 
 
-@job
+@command
 def blind_make(*, settings: Settings, out: OutFolder) -> None:
     """Write a folder a case; no truth is written anywhere."""
     entries = chunks(plan(**settings["plan"]), settings["size"])
     with whole_folder(out, WRITTEN) as fresh:
-        make_chunk(entries[settings["chunk"]], fresh)
+        for entry in entries[settings["chunk"]]:
+            write_folder(make(entry.spec), fresh / entry.name)

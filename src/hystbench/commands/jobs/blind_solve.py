@@ -1,10 +1,10 @@
 """``hystbench job blind-solve``: one solver on the cases of a chunk."""
 
 from hystbench.entrants.answers import Solver, answer_all
-from hystbench.job import Folder, Out, Settings, job
+from hystbench.signature import Folder, Out, Settings, command
 
 
-@job
+@command
 def blind_solve(cases: Folder, *, settings: Settings, out: Out) -> None:
     """Run a solver on each folder in CASES and write all its answers."""
     solver = Solver(

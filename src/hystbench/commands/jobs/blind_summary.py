@@ -4,10 +4,10 @@ from hystbench.challenge.contest.frames import read_rows
 from hystbench.challenge.contest.plan import DEVELOPMENT_SEEDS, RETIRED_SEEDS, plan
 from hystbench.challenge.contest.writing import WRITTEN, write_score
 from hystbench.files import whole_folder
-from hystbench.job import In, OutFolder, Settings, job
+from hystbench.signature import In, OutFolder, Settings, command
 
 
-@job
+@command
 def blind_summary(
     judged: tuple[In, ...],
     *,

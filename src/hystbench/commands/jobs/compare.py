@@ -3,12 +3,12 @@
 from functools import partial
 
 from hystbench.compare import comparison
-from hystbench.compare.evidence import FILES
+from hystbench.compare.evidence import FILES, read_evidence
 from hystbench.files import whole_folder
-from hystbench.job import In, OutFolder, Settings, job
+from hystbench.signature import In, OutFolder, Settings, command
 
 
-@partial(job, also=FILES)
+@partial(command, also=dict.fromkeys(FILES, (In, None)))
 def compare(
     *,
     runs: tuple[In, ...] = (),
@@ -20,4 +20,5 @@ def compare(
     """Compare runs with the paper: cells, claims, audit, summary and tables."""
     held_out = comparison.held_out_signals(settings["calibrated"])
     with whole_folder(out, comparison.WRITTEN) as fresh:
-        comparison.compare(fresh, runs, records, held_out, **files)
+        evidence = read_evidence(runs, records, **files)
+        comparison.compare_evidence(evidence, held_out).write(fresh)

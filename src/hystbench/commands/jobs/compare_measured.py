@@ -2,10 +2,10 @@
 
 from hystbench.compare import measured
 from hystbench.files import whole_folder
-from hystbench.job import In, OutFolder, job
+from hystbench.signature import In, OutFolder, command
 
 
-@job
+@command
 def compare_measured(
     dataset: str, *, runs: tuple[In, ...] = (), out: OutFolder
 ) -> None:

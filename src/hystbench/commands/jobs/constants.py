@@ -1,14 +1,14 @@
 """``hystbench job constants``: the ranking with other constants."""
 
-from hystbench.compare.constants import Ranking
+from hystbench.compare.beside import Ranking
 from hystbench.compare.rows import four_digits, names_of, write_fields
-from hystbench.job import In, Json, Out, Settings, job
 from hystbench.published import load_errors
+from hystbench.signature import In, Json, Out, Settings, command
 from hystbench.twins.constants import vary_constants
 from hystbench.twins.read import read_twins
 
 
-@job
+@command
 def constants(
     twins: tuple[In, ...],
     *,

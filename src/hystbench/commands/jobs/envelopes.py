@@ -2,13 +2,13 @@
 
 from hystbench.adaptive import make_filter, run_filter
 from hystbench.files import write_csv
-from hystbench.job import In, Json, Out, Settings, job
 from hystbench.record import load_record
+from hystbench.signature import In, Json, Out, Settings, command
 
 COLUMNS = ["signal", "envelopes", "mse", "re", "status"]
 
 
-@job
+@command
 def envelopes(
     records: tuple[In, ...],
     *,

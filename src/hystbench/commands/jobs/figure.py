@@ -5,10 +5,10 @@ from typing import Any
 
 from hystbench.errors import InputError
 from hystbench.figures import drawer
-from hystbench.job import In, Out, job
+from hystbench.signature import In, Out, command
 
 
-@job
+@command
 def figure(
     name: str,
     *,

@@ -1,12 +1,12 @@
 """``hystbench job filter``: run one LMS filter on one record."""
 
 from hystbench.adaptive import make_filter, run_filter
-from hystbench.job import In, Json, Out, Settings, job
 from hystbench.record import load_record
 from hystbench.results import save_run
+from hystbench.signature import In, Json, Out, Settings, command
 
 
-@job
+@command
 def filter(  # noqa: A001  (the command's name)
     record: In,
     *,

@@ -8,10 +8,10 @@ from hystbench.gap.bases.kinds import IDENTIFIED, check_base
 from hystbench.gap.bases.load import given_base
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.evidence import load_evidence
-from hystbench.job import DatasetFile, Out, job
+from hystbench.signature import DatasetFile, Out, command
 
 
-@job
+@command
 @options.kept_calls
 def gap_check(dataset: DatasetFile, *, model: str, out: Out | None = None) -> None:
     """Check all records of DATASET, those held out too, and the base MODEL on them.

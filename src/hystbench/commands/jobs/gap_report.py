@@ -2,10 +2,10 @@
 
 from hystbench.gap.report import write_report
 from hystbench.gap.report.tables import write_gallery
-from hystbench.job import Folder, job
+from hystbench.signature import Folder, command
 
 
-@job
+@command
 def gap_report(folder: Folder) -> None:
     """Write report.html from what is in FOLDER.
 

@@ -4,11 +4,11 @@ from hystbench import options
 from hystbench.gap.bases.load import checked_base
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import show_in
-from hystbench.job import DatasetFile, In, OutFolder, job
 from hystbench.model import load_model
+from hystbench.signature import DatasetFile, In, OutFolder, command
 
 
-@job
+@command
 @options.kept_calls
 def gap_show(dataset: DatasetFile, *, base: In, out: OutFolder) -> None:
     """Show on the hold-out records of DATASET how far the gap shrinks.

@@ -1,11 +1,11 @@
 """``hystbench job gap-summary``: the verdicts on several datasets as tables."""
 
 from hystbench.gap.report.tables import write_adds, write_table
-from hystbench.job import In, Json, Out, job
 from hystbench.model import load_model
+from hystbench.signature import In, Json, Out, command
 
 
-@job
+@command
 def gap_summary(
     gaps: tuple[Json, ...] = (),
     *,

@@ -2,11 +2,11 @@
 
 from hystbench.files import whole_folder
 from hystbench.gap.example import WRITTEN, write_example
-from hystbench.job import In, Json, OutFolder, job
 from hystbench.record import load_record
+from hystbench.signature import In, Json, OutFolder, command
 
 
-@job
+@command
 def gap_twin(
     *,
     fit: tuple[In, ...],

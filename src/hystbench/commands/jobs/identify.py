@@ -3,12 +3,12 @@
 import click
 
 from hystbench.files import write_json
-from hystbench.job import In, Out, Settings, job
 from hystbench.record import load_record
+from hystbench.signature import In, Out, Settings, command
 from hystbench.slow_loop import identify_slow_loop
 
 
-@job
+@command
 def identify(record: In, *, settings: Settings, out: Out) -> None:
     """Identify envelope functions, thresholds and weights on the slow RECORD."""
     slow = load_record(record)

@@ -1,12 +1,12 @@
 """``hystbench job measure``: simulate a model on a signal and record it."""
 
 from hystbench import measurement
-from hystbench.job import In, Out, Settings, job
 from hystbench.model import load_model
 from hystbench.signals import load_signal
+from hystbench.signature import In, Out, Settings, command
 
 
-@job
+@command
 def measure(signal: In, *, model: In, settings: Settings, out: Out) -> None:
     """Simulate a MODEL on SIGNAL and write the record."""
     plant = load_model(model)

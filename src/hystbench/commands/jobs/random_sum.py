@@ -1,17 +1,17 @@
 """``hystbench job random-sum``: the random sum drawn many times."""
 
-from hystbench.compare.draws import Draw
+from hystbench.compare.beside import Draw
 from hystbench.compare.rows import names_of, or_empty, write_fields
 from hystbench.files import write_csv
-from hystbench.job import In, Json, Out, Settings, job
 from hystbench.published import load_errors
 from hystbench.published.consistency import check
 from hystbench.rdgpi import RateDependentGPI
+from hystbench.signature import In, Json, Out, Settings, command
 from hystbench.twins import draws as drawing
 from hystbench.twins.read import read_twins
 
 
-@job
+@command
 def random_sum(
     twin: In,
     *,

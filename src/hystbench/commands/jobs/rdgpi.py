@@ -1,12 +1,12 @@
 """``hystbench job rdgpi``: simulate the RDGPI model on one record."""
 
-from hystbench.job import In, Json, Out, Settings, job
 from hystbench.rdgpi import RateDependentGPI
 from hystbench.record import load_record
 from hystbench.results import run_result, save_run
+from hystbench.signature import In, Json, Out, Settings, command
 
 
-@job
+@command
 def rdgpi(
     record: In, *, identified: Json, settings: Settings, out: Out, arrays: Out
 ) -> None:

@@ -1,12 +1,12 @@
 """``hystbench job rdgpi-identify``: fit the RDGPI model to records."""
 
 from hystbench.files import write_json
-from hystbench.job import In, Out, Settings, job
 from hystbench.rdgpi import identify_rdgpi
 from hystbench.record import load_record
+from hystbench.signature import In, Out, Settings, command
 
 
-@job
+@command
 def rdgpi_identify(records: tuple[In, ...], *, settings: Settings, out: Out) -> None:
     """Fit the RDGPI model to all RECORDS at once, in free run."""
     fit = identify_rdgpi([load_record(path) for path in records], **settings)

@@ -1,15 +1,15 @@
 """``hystbench job rdgpi-published``: the RDGPI model with the published values."""
 
 from hystbench.files import write_csv
-from hystbench.job import In, Out, job
 from hystbench.metrics import mean_square_error, relative_error
 from hystbench.rdgpi import PUBLISHED_RDGPI
 from hystbench.record import load_record
+from hystbench.signature import In, Out, command
 
 COLUMNS = ["signal", "error_kind", "mse", "re", "largest_output", "largest_reference"]
 
 
-@job
+@command
 def rdgpi_published(records: tuple[In, ...], *, out: Out) -> None:
     """Simulate the published values, under our reading of the model, on RECORDS."""
     rows = []

@@ -1,12 +1,12 @@
 """``hystbench job report``: the front page of the results."""
 
 from hystbench.files import write_text
-from hystbench.job import Folder, In, Out, Settings, job
 from hystbench.report.reproduction.page import page
 from hystbench.report.reproduction.read import read_content
+from hystbench.signature import Folder, In, Out, Settings, command
 
 
-@job
+@command
 def report(
     compare: Folder,
     *,

@@ -1,12 +1,12 @@
 """``hystbench job twin-runs``: one filter on several twins."""
 
 from hystbench.files import write_json
-from hystbench.job import In, Json, Out, Settings, job
+from hystbench.signature import In, Json, Out, Settings, command
 from hystbench.twins.parts import run
 from hystbench.twins.read import read_twins
 
 
-@job
+@command
 def twin_runs(
     twins: tuple[In, ...], *, fits: Json, settings: Settings, out: Out
 ) -> None:

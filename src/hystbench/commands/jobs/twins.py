@@ -1,12 +1,12 @@
 """``hystbench job twins``: errors and claims on several twins."""
 
-from hystbench.job import In, Json, Out, Settings, job
+from hystbench.signature import In, Json, Out, Settings, command
 from hystbench.twins.judge import write_twins
 from hystbench.twins.parts import join
 from hystbench.twins.read import read_twins
 
 
-@job
+@command
 def twins(
     twins: tuple[In, ...],
     *,

@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
-from functools import partial
+from dataclasses import fields, replace
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
 from hystbench.compare.claims import (
@@ -23,16 +21,12 @@ from hystbench.compare.claims import (
 )
 from hystbench.compare.claims.claim import (
     Claim,
-    Condition,
     Judgement,
-    NotTestable,
-    Numbers,
     Test,
+    about_signals,
     judge,
 )
-from hystbench.compare.claims.halves import about_signals, on_signals
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.compare.rows import write_fields
 from hystbench.yaml_files import parse_yaml
 
 MEASURES = {
@@ -42,7 +36,7 @@ MEASURES = {
     if inspect.isfunction(function) and function.__module__ == module.__name__
 }
 
-#: Columns of the ledger; of a renamed one also the attribute of a Judgement.
+#: Columns of claims.csv; of a renamed one also the attribute of a Judgement.
 COLUMNS = (
     *("id=claim.id", "claim=claim.claim", "where=claim.where", "kind=claim.kind"),
     *("basis=claim.basis", "reading=claim.reading", "verdict"),
@@ -51,17 +45,13 @@ COLUMNS = (
 )
 
 
-def _cannot(_: ClaimEvidence, reason: str) -> Numbers:
-    raise NotTestable(reason)
-
-
 def _test(row: Mapping[str, Any]) -> Test:
     if "untestable" in row:
-        return Test(partial(_cannot, reason=row["untestable"]))
+        return Test(None, says=row["untestable"])
     return Test(
         measure=MEASURES[row["measure"]],
         arguments=row.get("with", {}),
-        holds=tuple(map(Condition, row["holds"])),
+        holds=tuple(compile(text, text, "eval") for text in row["holds"]),
         says=row["says"],
         otherwise=row.get("otherwise", ""),
     )
@@ -76,16 +66,9 @@ def read_claim(row: Mapping[str, Any]) -> Claim:
     if "theirs" in row:
         arguments = {**row.get("with", {}), **row["theirs"].get("with", {})}
         theirs = _test({**row, **row["theirs"], "with": arguments})
-    return Claim(
-        id=row["id"],
-        claim=row["claim"],
-        where=row["where"],
-        kind=row["kind"],
-        reading=row.get("reading", ""),
-        basis=row.get("basis", ""),
-        ours=_test(row),
-        theirs=theirs,
-    )
+    own = [item.name for item in fields(Claim) if item.name != "theirs"]
+    told = {name: row[name] for name in own if name in row}
+    return Claim(**{"reading": "", "basis": "", **told}, ours=_test(row), theirs=theirs)
 
 
 _TABLE = files(__package__).joinpath("claims.yaml").read_text(encoding="utf-8")
@@ -104,7 +87,7 @@ def judge_all(
         Signals that no fit has read. A claim that is judged by them and by others is
         also judged on them alone.
     """
-    alone = on_signals(evidence, held_out)
+    alone = evidence.on_signals(held_out)
     return tuple(_judge(claim, evidence, alone) for claim in CLAIMS)
 
 
@@ -116,8 +99,3 @@ def _judge(claim: Claim, evidence: ClaimEvidence, alone: ClaimEvidence) -> Judge
     if verdict == "refuted by the paper" != judged.verdict:
         return judged  # not even the paper's own errors show it on so few signals
     return replace(judged, held_out_verdict=verdict)
-
-
-def write_claims(judgements: Iterable[Judgement], path: str | Path) -> None:
-    """Write the ledger as CSV; see ``COLUMNS``."""
-    write_fields(path, COLUMNS, judgements)

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-import operator
-import re
 import string
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from types import CodeType
 from typing import Any, Literal
 
+from hystbench.compare.beside import Holding, holding_text
 from hystbench.compare.cells import twin_runs
 from hystbench.compare.evidence import Cell, ClaimEvidence, Run
-from hystbench.compare.twins import Holding, holding_text
 from hystbench.published import FILTERS
 
 Verdict = Literal[
@@ -36,15 +35,6 @@ Numbers = Mapping[str, Any]
 Measure = Callable[..., Numbers]
 """Finds numbers in evidence; takes the arguments of a row of the table as well."""
 
-PREDICATES: dict[str, Callable[[Any, Any], bool]] = {
-    "<": operator.lt,
-    "<=": operator.le,
-    "==": operator.eq,
-    ">=": operator.ge,
-    ">": operator.gt,
-}
-_CONDITION = re.compile(r"(?:(\S+) \* )?(\w+) (<=|<|==|>=|>) (?:(\S+) \* )?(\S+)")
-
 
 @dataclass(frozen=True)
 class Tested:
@@ -56,47 +46,6 @@ class Tested:
 
 class NotTestable(Exception):  # noqa: N818 - it is no error but a verdict
     """A claim lacks what it needs; the message says what."""
-
-
-@dataclass(frozen=True)
-class Condition:
-    """A comparison of a measured number with a limit: ``2 * better >= both``.
-
-    Parameters
-    ----------
-    text : str
-        ``name predicate limit``. The predicate is one of ``PREDICATES``; the limit is
-        a number or the name of another measured number. A factor may stand before
-        each name.
-
-    Raises
-    ------
-    ValueError
-        If the text is no such comparison.
-    """
-
-    text: str
-
-    def __post_init__(self) -> None:
-        """Refuse what cannot be read."""
-        self._parts()
-
-    def _parts(self) -> tuple[str | Any, ...]:
-        found = _CONDITION.fullmatch(self.text)
-        if found is None:
-            raise ValueError(f"{self.text!r}: expected 'name <= limit' or alike")
-        return found.groups()
-
-    def holds(self, numbers: Numbers) -> bool:
-        """Tell whether the numbers fulfil it; NaN fulfils none."""
-        times, name, predicate, limit_times, limit = self._parts()
-        left = _scaled(times, numbers[name])
-        known = numbers[limit] if limit in numbers else float(limit)
-        return bool(PREDICATES[predicate](left, _scaled(limit_times, known)))
-
-
-def _scaled(factor: str | None, value: Any) -> Any:
-    return value if factor is None else float(factor) * value
 
 
 class Sentence(string.Formatter):
@@ -126,20 +75,22 @@ class Test:
 
     Parameters
     ----------
-    measure : callable
+    measure : callable or None
+        None where nothing can judge it: the sentence says why.
     arguments : mapping of str to object
         What the measure takes beside the evidence.
-    holds : tuple of Condition
-        The claim holds where all of them do.
+    holds : tuple of code
+        Comparisons of the numbers by name, compiled: the claim holds where all of them
+        do. NaN fulfils none.
     says : str
         Sentence with the numbers in braces.
     otherwise : str
         The sentence where the claim does not hold; empty for the same.
     """
 
-    measure: Measure
+    measure: Measure | None
     arguments: Mapping[str, Any] = field(default_factory=dict)
-    holds: tuple[Condition, ...] = ()
+    holds: tuple[CodeType, ...] = ()
     says: str = ""
     otherwise: str = ""
 
@@ -151,8 +102,11 @@ class Test:
         NotTestable
             If the evidence lacks what the measure needs.
         """
+        if self.measure is None:
+            raise NotTestable(self.says)
         numbers = self.measure(evidence, **self.arguments)
-        holds = all(condition.holds(numbers) for condition in self.holds)
+        # The comparisons are of the package's own table.
+        holds = all(eval(each, {}, dict(numbers)) for each in self.holds)  # noqa: S307
         text = self.says if holds or not self.otherwise else self.otherwise
         return Tested(holds, Sentence().vformat(text, (), numbers))
 
@@ -228,6 +182,20 @@ def judge(claim: Claim, evidence: ClaimEvidence) -> Judgement:
     if not printed.holds:
         verdict = "refuted by the paper"
     return Judgement(claim, verdict, sentence, born_out, printed.evidence, holdings)
+
+
+def holds(claim: Claim, evidence: ClaimEvidence) -> bool | None:
+    """Tell whether a claim holds; None where it cannot be tested."""
+    try:
+        return claim.ours(evidence).holds
+    except NotTestable:
+        return None
+
+
+def about_signals(claim: Claim, restricted: ClaimEvidence) -> bool:
+    """Tell whether a claim can be judged on some signals, and only with them."""
+    without = replace(restricted, runs={}, records={}, envelope_errors={}, drawn={})
+    return holds(claim, without) is None and holds(claim, restricted) is not None
 
 
 def need_runs(cells: Iterable[Cell], there: Iterable[Cell]) -> None:

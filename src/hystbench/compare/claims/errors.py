@@ -2,88 +2,71 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pandas as pd
 
 from hystbench.compare.cells import twin_runs
 from hystbench.compare.claims.claim import NotTestable, Numbers, need_runs, number
 from hystbench.compare.claims.statistics import rank_correlation
-from hystbench.compare.evidence import ClaimEvidence
-from hystbench.published import (
-    FILTERS,
-    METRICS,
-    MODELS,
-    Metric,
-    Pair,
-    signals,
-    sine_frequency,
-)
+from hystbench.compare.evidence import Cell, ClaimEvidence
+from hystbench.published import FILTERS, MODELS, Metric, sine_frequency
+from hystbench.published import signals as signals_of
 
 TABLES = {"sines": (1,), "chirp": (2,), "sums": (3,), "all": (1, 2, 3)}
 """Tables of the paper that hold a sort of signals."""
 
 
-@dataclass(frozen=True)
-class Errors:
-    """Errors by signal and model, ours or the paper's, behind one look-up.
+def errors_on(
+    signals: Sequence[str],
+    models: Iterable[str],
+    evidence: ClaimEvidence,
+    of: str,
+    metric: Metric = "mse",
+) -> pd.DataFrame:
+    """Give errors, a row a signal and a column a model; infinite of a diverged run.
 
-    A diverged run has infinite errors.
+    They are of the twin, or the published ones.
+
+    Raises
+    ------
+    NotTestable
+        If there is no signal, or any of the runs is missing; the message counts and
+        names them.
     """
-
-    values: Mapping[tuple[str, str, Metric], float]
-    published: tuple[Pair, ...]
-
-    def of(self, signal: str, model: str, metric: Metric = "mse") -> float:
-        """Give one error."""
-        return self.values[signal, model, metric]
-
-    def need(self, signals: Iterable[str], models: Iterable[str]) -> None:
-        """Stop the test of a claim where a run is missing.
-
-        Raises
-        ------
-        NotTestable
-            If there is no signal to test it on, or any of the runs is missing; the
-            message counts and names them.
-        """
-        listed = list(models)
-        cells = [(signal, model) for signal in signals for model in listed]
-        if not cells:
-            raise NotTestable("none of the signals that it is about is asked for")
-        need_runs(cells, {(signal, model) for signal, model, _ in self.values})
-
-    def signals(self, *tables: int) -> tuple[str, ...]:
-        """List the signals of tables of the paper."""
-        return signals(self.published, *tables)
-
-    @property
-    def sines(self) -> dict[str, float]:
-        """Frequencies of the sines of Table 1 in Hz, rising."""
-        found = {
-            pair.signal: frequency
-            for pair in self.published
-            if (frequency := sine_frequency(pair.signal)) is not None
-        }
-        return dict(sorted(found.items(), key=lambda sine: sine[1]))
-
-
-def read_errors(evidence: ClaimEvidence, of: str) -> Errors:
-    """Look up the errors of the twin, or the published ones."""
-    values: dict[tuple[str, str, Metric], float] = {}
+    models = list(models)
+    if not signals:
+        raise NotTestable("none of the signals that it is about is asked for")
+    found: dict[Cell, float]
     if of == "published":
-        for pair in evidence.published:
-            for metric in METRICS:
-                values[pair.signal, pair.model, metric] = pair.printed(metric).value
-        return Errors(values, evidence.published)
-    for (signal, model), run in twin_runs(evidence.runs).items():
-        for metric in METRICS:
-            values[signal, model, metric] = run.error(metric)
-    for signal, drawn in evidence.drawn.items():
-        for model, metric in drawn.errors:
-            if (signal, model, metric) in values:
-                values[signal, model, metric] = drawn.median(model, metric)
-    return Errors(values, evidence.published)
+        found = {
+            (pair.signal, pair.model): pair.printed(metric).value
+            for pair in evidence.published
+        }
+    else:
+        runs = twin_runs(evidence.runs)
+        found = {cell: run.error(metric) for cell, run in runs.items()}
+        for signal, drawn in evidence.drawn.items():
+            for model, each in drawn.errors:
+                if each == metric and (signal, model) in found:
+                    found[signal, model] = drawn.median(model, metric)
+    need_runs([(signal, model) for signal in signals for model in models], found)
+    values = [[found[signal, model] for model in models] for signal in signals]
+    return pd.DataFrame(values, index=list(signals), columns=models)
+
+
+def sines(evidence: ClaimEvidence, up_to_hz: float = np.inf) -> dict[str, float]:
+    """Give the frequencies of the sines of Table 1 in Hz, rising."""
+    found = {
+        pair.signal: frequency
+        for pair in evidence.published
+        if (frequency := sine_frequency(pair.signal)) is not None
+        and frequency <= up_to_hz
+    }
+    return dict(sorted(found.items(), key=lambda sine: sine[1]))
 
 
 def least(
@@ -94,70 +77,61 @@ def least(
     of: str = "twin",
 ) -> Numbers:
     """Count how often a model has not the smallest MSE on a sort of signals."""
-    errors = read_errors(evidence, of)
-    return _least(errors, errors.signals(*TABLES[signals]), winner, models)
+    asked = signals_of(evidence.published, *TABLES[signals])
+    return _least(errors_on(asked, dict.fromkeys((winner, *models)), evidence, of))
 
 
-def _least(
-    errors: Errors, signals: Sequence[str], winner: str, models: Iterable[str]
-) -> Numbers:
-    rivals = [model for model in models if model != winner]
-    errors.need(signals, (winner, *rivals))
+def _least(errors: pd.DataFrame) -> dict[str, Any]:
+    """Hold the first column against the others."""
+    winner, *names = errors
+    own, rivals = errors[winner], errors[names]
     beaten = [
-        f"{rival} {number(errors.of(s, rival))} against {winner} "
-        f"{number(errors.of(s, winner))} on {s}"
-        for s in signals
-        for rival in rivals
-        if errors.of(s, rival) <= errors.of(s, winner)
+        f"{rival} {number(there[rival])} against {winner} {number(there[winner])} "
+        f"on {signal}"
+        for signal, there in errors.to_dict("index").items()
+        for rival in names
+        if there[rival] <= there[winner]
     ]
     if beaten:
         told = (
-            f"{winner} is beaten in {len(beaten)} of {len(signals) * len(rivals)} "
-            f"comparisons of MSE: {beaten[0]}"
+            f"{winner} is beaten in {len(beaten)} of {rivals.size} comparisons of MSE: "
+            f"{beaten[0]}"
         )
         return {"beaten": len(beaten), "told": told}
-    margins = {
-        s: min(errors.of(s, rival) for rival in rivals) / errors.of(s, winner)
-        for s in signals
-    }
-    closest = min(margins, key=lambda s: margins[s])
+    margins = rivals.min(axis=1) / own
     told = (
-        f"{winner} has the smallest MSE on {len(signals)} of {len(signals)} signals; "
-        f"the closest rival has {number(margins[closest])} times its MSE, on {closest}"
+        f"{winner} has the smallest MSE on {len(own)} of {len(own)} signals; the "
+        f"closest rival has {number(margins.min())} times its MSE, on "
+        f"{margins.idxmin()}"
     )
     return {"beaten": 0, "told": told}
 
 
 def least_anywhere(evidence: ClaimEvidence, of: str = "twin") -> Numbers:
     """Compare the GPO filter with all models, where each of them has errors."""
-    errors = read_errors(evidence, of)
-    with_rdgpi = errors.signals(4)
-    without = [s for s in errors.signals(1, 2, 3) if s not in with_rdgpi]
-    first = _least(errors, with_rdgpi, "gpo", MODELS)
-    second = _least(errors, without, "gpo", FILTERS)
-    if first["beaten"]:
-        return first
-    if second["beaten"]:
-        return second
+    with_rdgpi = signals_of(evidence.published, 4)
+    others = signals_of(evidence.published, 1, 2, 3)
+    without = [signal for signal in others if signal not in with_rdgpi]
+    first = _least(errors_on(with_rdgpi, MODELS, evidence, of))
+    second = _least(errors_on(without, FILTERS, evidence, of))
+    for each in (first, second):
+        if each["beaten"]:
+            return each
     return {"beaten": 0, "told": f"{first['told']}; {second['told']}"}
 
 
 def advantage(evidence: ClaimEvidence, of: str = "twin") -> Numbers:
     """Follow the next best filter's MSE over the GPO's along the sines."""
-    errors = read_errors(evidence, of)
-    sines = list(errors.sines)
-    errors.need(sines, FILTERS)
-    ratios = [
-        min(errors.of(s, model) for model in FILTERS if model != "gpo")
-        / errors.of(s, "gpo")
-        for s in sines
-    ]
+    frequencies = sines(evidence)
+    errors = errors_on(list(frequencies), FILTERS, evidence, of)
+    ratios = list(errors.drop(columns="gpo").min(axis=1) / errors["gpo"])
+    hz = list(frequencies.values())
     return {
         "first": ratios[0],
         "last": ratios[-1],
-        "low": errors.sines[sines[0]],
-        "high": errors.sines[sines[-1]],
-        "trend": rank_correlation(list(errors.sines.values()), ratios),
+        "low": hz[0],
+        "high": hz[-1],
+        "trend": rank_correlation(hz, ratios),
     }
 
 
@@ -165,9 +139,9 @@ def along_sines(
     evidence: ClaimEvidence, model: str, metric: Metric, of: str = "twin"
 ) -> Numbers:
     """Follow an error from each sine to the next."""
-    errors = read_errors(evidence, of)
-    errors.need(errors.sines, [model])
-    points = [(hz, errors.of(s, model, metric)) for s, hz in errors.sines.items()]
+    frequencies = sines(evidence)
+    errors = errors_on(list(frequencies), [model], evidence, of, metric)[model]
+    points = list(zip(frequencies.values(), errors, strict=True))
     steps = list(pairwise(points))
     ends = points[0], points[-1]
     not_rising = [step for step in steps if step[1][1] <= step[0][1]]
@@ -192,19 +166,19 @@ def largest_at_low_sines(
     evidence: ClaimEvidence, model: str, up_to_hz: float, of: str = "twin"
 ) -> Numbers:
     """Compare the filters at the lowest sines."""
-    errors = read_errors(evidence, of)
-    low = [s for s, hz in errors.sines.items() if hz <= up_to_hz]
-    errors.need(low, FILTERS)
+    errors = errors_on(list(sines(evidence, up_to_hz)), FILTERS, evidence, of)
     worse = [
-        f"{other} {number(errors.of(s, other))} on {s}"
-        for s in low
+        f"{other} {number(there[other])} on {signal}"
+        for signal, there in errors.to_dict("index").items()
         for other in FILTERS
-        if other != model and errors.of(s, other) >= errors.of(s, model)
+        if other != model and there[other] >= there[model]
     ]
     return {
         "worse": len(worse),
         "first": worse[0] if worse else "",
-        "own": ", ".join(f"{number(errors.of(s, model))} on {s}" for s in low),
+        "own": ", ".join(
+            f"{number(error)} on {s}" for s, error in errors[model].items()
+        ),
     }
 
 
@@ -212,14 +186,12 @@ def chirp_and_sines(
     evidence: ClaimEvidence, model: str, up_to_hz: float, of: str = "twin"
 ) -> Numbers:
     """Hold the chirp against the sines of its band."""
-    errors = read_errors(evidence, of)
-    sines = [s for s, hz in errors.sines.items() if hz <= up_to_hz]
-    chirps = errors.signals(2)
-    errors.need(chirps, [model])
-    errors.need(sines, [model])
-    hardest = max(sines, key=lambda s: errors.of(s, model, "re"))
+    chirp, low = signals_of(evidence.published, 2), list(sines(evidence, up_to_hz))
+    on_chirp, on_sines = (
+        errors_on(each, [model], evidence, of, "re")[model] for each in (chirp, low)
+    )
     return {
-        "chirp": errors.of(chirps[0], model, "re"),
-        "sine": errors.of(hardest, model, "re"),
-        "hardest": hardest,
+        "chirp": on_chirp.iat[0],
+        "sine": on_sines.max(),
+        "hardest": on_sines.idxmax(),
     }

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from statistics import median
+from typing import Any
 
+from hystbench.compare.beside import Edge
 from hystbench.compare.claims.claim import NotTestable, Numbers, lms_runs
-from hystbench.compare.edges import Edge
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.order_errors import OrderError
 from hystbench.published import FILTERS
 
 ONE_STEP_SIZE = ("gpo", "backlash", "delayed")
 """Filters with one step size."""
-Curves = Mapping[str, Sequence[tuple[int, float]]]
-"""Order and MSE of each filter, by rising order."""
 
 
 def bound_and_eigenvalue(evidence: ClaimEvidence) -> Numbers:
@@ -41,17 +40,16 @@ def edges_and_bound(evidence: ClaimEvidence) -> Numbers:
     """Hold the measured edges against the bound, and against 1/max|H|^2."""
     edges = _edges(evidence)
     inside = [edge for edge in edges if edge.inside]
-    ratios = [edge.edge / edge.at_power for edge in edges if edge.edge is not None]
+    ratios = [e.edge_over_power for e in edges if e.edge_over_power is not None]
     power = (
         f"the edges lie at {min(ratios):.2f} to {max(ratios):.2f} times 1/max|H|^2, "
         f"{sum(0.8 <= ratio <= 1.25 for ratio in ratios)} of {len(edges)} within 25 %"
         if ratios
         else "no edge was reached"
     )
+    deepest = sorted(inside, key=lambda edge: edge.edge_over_trace or 0)[:3]
     told = ", ".join(
-        f"{e.model} on {e.signal} at {e.edge:.3g} of {e.at_trace:.3g}"
-        for e in sorted(inside, key=lambda e: (e.edge or 0) / e.at_trace)[:3]
-        if e.edge is not None
+        f"{e.model} on {e.signal} at {e.edge:.3g} of {e.at_trace:.3g}" for e in deepest
     )
     return {"inside": len(inside), "edges": len(edges), "told": told, "power": power}
 
@@ -113,74 +111,52 @@ def volterra_step_sizes(evidence: ClaimEvidence) -> Numbers:
     return {"sizes": len(set(steps.values())), "told": told}
 
 
-def fall_to_the_knee(evidence: ClaimEvidence) -> Numbers:
-    """Take the MSE at order 10 over that at the lowest order, the largest."""
-    return _under_each_rule(evidence, _fall)
+def about_the_knee(evidence: ClaimEvidence) -> Numbers:
+    """Tell how the MSE goes on to order 10 and beyond it; the worst filter counts.
 
-
-def slopes_about_the_knee(evidence: ClaimEvidence) -> Numbers:
-    """Take the MSE's change for each order beyond order 10 over that below it."""
-    return _under_each_rule(evidence, _change)
-
-
-def _under_each_rule(
-    evidence: ClaimEvidence, measure: Callable[[Curves, int], tuple[float, str]]
-) -> Numbers:
-    """Measure the order sweep under each rule for the step size; the worst counts."""
+    The order sweep is taken under each rule for the step size. The fall is the MSE at
+    order 10 over that at the lowest order; the change, that for each order beyond
+    order 10 over that below it.
+    """
     knee = evidence.text.order_sweep_knee
-    found = {
-        points[0].rule: measure(_curves(points, knee), knee)
-        for points in (evidence.order_sweep, evidence.order_sweep_other)
-        if points
-    }
+    sweeps = (evidence.order_sweep, evidence.order_sweep_other)
+    found = [_about(points, knee) for points in sweeps if points]
     if not found:
         raise NotTestable("not run: a sweep of orders")
-    told = "; ".join(
-        f"{f'mu {rule}: ' if rule else ''}{said}" for rule, (_, said) in found.items()
-    )
-    return {"worst": max(worst for worst, _ in found.values()), "told": told}
-
-
-def _curves(points: Sequence[OrderError], knee: int) -> Curves:
-    """Sort a sweep by order; each filter needs orders on both sides of the knee."""
-    found: dict[str, list[tuple[int, float]]] = {}
-    for point in sorted(points, key=lambda p: p.order):
-        found.setdefault(point.model, []).append((point.order, point.mse))
-    for model in FILTERS:
-        own = [order for order, _ in found.get(model, [])]
-        if not (own and own[0] < knee and knee in own and own[-1] > knee):
-            raise NotTestable(f"not run: orders of {model} below, at and above {knee}")
-    return {model: found[model] for model in FILTERS}
-
-
-def _fall(curves: Curves, knee: int) -> tuple[float, str]:
-    diverged = [model for model, points in curves.items() if math.isinf(points[0][1])]
-    if diverged:
-        return math.inf, f"diverged at the lowest order: {', '.join(diverged)}"
-    falls = {
-        model: _share(dict(points)[knee], points[0][1])
-        for model, points in curves.items()
+    return {
+        "fall": max(each["fall"] for each in found),
+        "falls": "; ".join(each["falls"] for each in found),
+        "change": max(each["change"] for each in found),
+        "changes": "; ".join(each["changes"] for each in found),
     }
+
+
+def _about(points: Sequence[OrderError], knee: int) -> dict[str, Any]:
+    """Measure a sweep; each filter needs orders on both sides of the knee."""
+    rule = f"mu {points[0].rule}: " if points[0].rule else ""
+    starts, falls, slopes = {}, {}, {}
+    for model in FILTERS:
+        mse = {p.order: p.mse for p in points if p.model == model}
+        if not mse or not (min(mse) < knee < max(mse) and knee in mse):
+            raise NotTestable(f"not run: orders of {model} below, at and above {knee}")
+        low, high = min(mse), max(mse)
+        starts[model] = mse[low]
+        falls[model] = _share(mse[knee], mse[low])
+        slopes[model] = (
+            (mse[low] - mse[knee]) / (knee - low),
+            (mse[knee] - mse[high]) / (high - knee),
+        )
+    diverged = [model for model, start in starts.items() if math.isinf(start)]
     told = ", ".join(f"{model} {ratio:.3g}" for model, ratio in falls.items())
-    said = f"MSE at order {knee} over MSE at the lowest order: {told}"
-    return max(falls.values()), said
-
-
-def _change(curves: Curves, knee: int) -> tuple[float, str]:
-    rates = {model: _slopes(points, knee) for model, points in curves.items()}
-    told = ", ".join(
-        f"{model} {before:.3g} then {after:.3g}"
-        for model, (before, after) in rates.items()
-    )
-    worst = max(_share(abs(after), abs(before)) for before, after in rates.values())
-    return worst, f"mean fall of the MSE for each order (um^2): {told}"
-
-
-def _slopes(points: Sequence[tuple[int, float]], knee: int) -> tuple[float, float]:
-    """Mean fall of the MSE for each order up to the knee and beyond it."""
-    middle = dict(points)[knee]
-    (first, start), (last, end) = points[0], points[-1]
-    return (start - middle) / (knee - first), (middle - end) / (last - knee)
+    rates = ", ".join(f"{m} {a:.3g} then {b:.3g}" for m, (a, b) in slopes.items())
+    return {
+        "fall": max(falls.values()),
+        "falls": f"{rule}diverged at the lowest order: {', '.join(diverged)}"
+        if diverged
+        else f"{rule}MSE at order {knee} over MSE at the lowest order: {told}",
+        "change": max(_share(abs(b), abs(a)) for a, b in slopes.values()),
+        "changes": f"{rule}mean fall of the MSE for each order (um^2): {rates}",
+    }
 
 
 def _share(part: float, whole: float) -> float:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from hystbench.compare.claims.claim import NotTestable, Numbers
-from hystbench.compare.evidence import ClaimEvidence, IdentifiedLoop
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.published.equations import Envelope, gamma_left, gamma_right
 from hystbench.record import FloatArray
 
 
-def identified(evidence: ClaimEvidence) -> IdentifiedLoop:
+def identified(evidence: ClaimEvidence) -> Mapping[str, Any]:
     """Give the identification.
 
     Raises
@@ -28,26 +30,26 @@ def identified(evidence: ClaimEvidence) -> IdentifiedLoop:
 def objective(evidence: ClaimEvidence) -> Numbers:
     """Follow J over the iterations to the end of Algorithm 1."""
     found = identified(evidence)
-    first, last = float(found.sums[0]), float(found.sums[-1])
+    sums, epsilon = found["J"], found["epsilon"]
     return {
-        "reached": found.reached,
-        "iterations": len(found.sums),
-        "first": first,
-        "last": last,
-        "epsilon": found.epsilon,
-        "limit": max(first, found.epsilon),
-        "re": found.relative_error,
+        "reached": found["reached"],
+        "iterations": len(sums),
+        "first": sums[0],
+        "last": sums[-1],
+        "epsilon": epsilon,
+        "limit": max(sums[0], epsilon),
+        "re": found["relative_error"],
     }
 
 
 def equal_steps(evidence: ClaimEvidence) -> Numbers:
     """Take the steps of the identified thresholds."""
     found = identified(evidence)
-    r = found.thresholds
+    r = found["thresholds"]
     steps = np.diff(r)
     return {
         "thresholds": len(r),
-        "weights": len(found.weights),
+        "weights": len(found["weights"]),
         "first": r[0],
         "step": steps.mean(),
         "uneven": float(np.ptp(steps) / steps.mean()),
@@ -59,9 +61,9 @@ def envelope_shape(evidence: ClaimEvidence) -> Numbers:
     found = identified(evidence)
     limit = evidence.text.amplitude_a
     return {
-        "apart": shape_difference(evidence.text.envelope, found.envelope, limit),
-        "re": found.relative_error,
-        "published_re": found.published_relative_error,
+        "apart": shape_difference(evidence.text.envelope, found["envelope"], limit),
+        "re": found["relative_error"],
+        "published_re": found["published_relative_error"],
     }
 
 

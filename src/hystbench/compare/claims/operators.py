@@ -88,7 +88,8 @@ def gpo_shape(evidence: ClaimEvidence) -> Numbers:
 def _envelope(evidence: ClaimEvidence, of: str) -> Envelope:
     if of == "published":
         return evidence.text.envelope
-    return identified(evidence).envelope
+    envelope: Envelope = identified(evidence)["envelope"]
+    return envelope
 
 
 def envelope_slopes(evidence: ClaimEvidence, of: str) -> Numbers:
@@ -149,9 +150,9 @@ def delay_line(evidence: ClaimEvidence) -> Numbers:
     slow, fast = (
         delay_line_difference(
             sine(limit, 2, round(rate / hz)),
-            found.thresholds,
-            found.weights,
-            found.envelope,
+            np.array(found["thresholds"]),
+            np.array(found["weights"]),
+            found["envelope"],
         )
         for hz in (1.0, 100.0)
     )

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 from hystbench.compare import measured, off
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.rows import headers, names_of, read_items, read_rows
 from hystbench.errors import InputError
+from hystbench.files import read_json
 from hystbench.published.discrepancies import AuditRow
-from hystbench.report.markup import first_sentence, inline
+from hystbench.report.markup import first_sentence, inline, paragraphs
 from hystbench.report.picture import Link, Picture, embedded
-from hystbench.report.reproduction.captions import caption
 
 Row = dict[str, str]
+
+#: Where a table's caption has another name than its file.
+_NAMES = {"published-parameters": "rdgpi-published"}
 
 #: Columns that the page cannot do without; others are shown as they are.
 _CLAIMS = ("id", "claim", "where", "kind", "basis", "verdict", "evidence")
@@ -96,11 +99,11 @@ def read_content(
     Raises
     ------
     InputError
-        If a file is missing or not as it should be.
+        If a file is not as it should be.
     """
 
     def told(name: str) -> str:
-        return caption(captions, name, settings)
+        return _caption(captions, name, settings)
 
     def shown(path: Path, text: str) -> Shown:
         return Shown(path.stem, read_rows(path, ()), text, _link(path, base))
@@ -117,7 +120,7 @@ def read_content(
                 shown(compare / "tables" / f"table-{number}.csv", "")
                 for number in (1, 2, 3, 4)
             ],
-            verdict=_text(compare / "verdict.md"),
+            verdict=(compare / "verdict.md").read_text(encoding="utf-8"),
         )
         names = ["cells", "claims", "off", "audit"]
     else:
@@ -150,17 +153,29 @@ def _link(path: Path, base: Path) -> Link:
     )
 
 
+def _caption(folder: Path, name: str, settings: Mapping[str, Any]) -> str:
+    """Read the caption of a figure or table, as one paragraph.
+
+    Captions are templates of Snakemake: ``snakemake.config`` and ``snakemake.input``
+    are given what they use, the settings of the order sweep and its record.
+    """
+    from jinja2 import Environment, StrictUndefined
+
+    text = (folder / f"{_NAMES.get(name, name)}.rst").read_text(encoding="utf-8")
+    sweep = settings["order_sweep"]
+    job = SimpleNamespace(
+        config={"order_sweep": sweep},
+        input=SimpleNamespace(record=[f"{sweep['signal']}.npz"]),
+    )
+    # It makes plain text, which is escaped where it is shown.
+    template = Environment(undefined=StrictUndefined).from_string(text)  # noqa: S701
+    return " ".join(paragraphs(template.render(snakemake=job)))
+
+
 def _on_held_out(path: Path) -> list[Row]:
     """Read the results that are judged on held-out signals alone."""
     try:
-        found: list[Row] = json.loads(_text(path))["claims_on_held_out"]
-    except (ValueError, KeyError, TypeError) as error:
+        found: list[Row] = read_json(path)["claims_on_held_out"]
+    except (KeyError, TypeError) as error:
         raise InputError(f"{path}: expected the summary of a comparison") from error
     return found
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"{path}: not readable ({error.strerror})") from error

@@ -1,16 +1,16 @@
-"""A job's parameters follow from its signature."""
+"""A command's parameters follow from its signature."""
 
 from functools import partial
 
 import pytest
 from click.testing import CliRunner
 
-from hystbench.job import In, Json, Out, Settings, SettingsType, job
+from hystbench.signature import In, Json, Out, Settings, SettingsType, command
 
 told = []
 
 
-@partial(job, also=("left", "right_side"))
+@partial(command, also=dict.fromkeys(("left", "right_side"), (In, None)))
 def made(
     first: In,
     others: tuple[In, ...] = (),

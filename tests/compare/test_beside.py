@@ -2,11 +2,12 @@
 
 import pytest
 
-from hystbench.compare.cells import compare_cells
-from hystbench.compare.claims import judge_all, write_claims
-from hystbench.compare.comparison import write_cells
+from hystbench.compare.beside import Holding, holding_text, read_holdings, read_spreads
+from hystbench.compare.cells import COLUMNS, compare_cells
+from hystbench.compare.claims import COLUMNS as CLAIM_COLUMNS
+from hystbench.compare.claims import judge_all
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.compare.twins import Holding, holding_text, read_holdings, read_spreads
+from hystbench.compare.rows import or_diverged, write_fields
 from hystbench.errors import InputError
 from tests.conftest import table
 
@@ -58,7 +59,12 @@ def test_one_twin_has_no_spread(tmp_path):
 
 def test_cells_carry_half_and_spread(spreads, tmp_path):
     evidence = ClaimEvidence(runs=published_runs(), spreads=spreads)
-    write_cells(compare_cells(evidence, ["sine-020hz"]), tmp_path / "cells.csv")
+    write_fields(
+        tmp_path / "cells.csv",
+        COLUMNS,
+        compare_cells(evidence, ["sine-020hz"]),
+        or_diverged,
+    )
     rows = {
         (row["signal"], row["model"], row["metric"]): row
         for row in table(tmp_path / "cells.csv")
@@ -81,7 +87,7 @@ def test_holdings_are_counted_by_family(holdings):
 
 def test_where_a_claim_holds_stands_beside_its_verdict(holdings, tmp_path):
     evidence = ClaimEvidence(runs=published_runs(), holdings=holdings)
-    write_claims(judge_all(evidence), tmp_path / "judged.csv")
+    write_fields(tmp_path / "judged.csv", CLAIM_COLUMNS, judge_all(evidence))
     rows = {row["id"]: row for row in table(tmp_path / "judged.csv")}
     assert rows["sums-gpo-best"]["verdict"] == "reproduced"
     assert rows["sums-gpo-best"]["holds_on"] == "gpi 1 of 2, preisach 0 of 1"
