@@ -195,7 +195,10 @@ def mixed():
                        "start_level": 0.5, "output": "outflow"}),
         ),
         "a long delay": chain_of(("input-delay", {"delay_s": 0.03})),
-        "a delay from rest": chain_of(("input-delay", {"delay_s": 0.03, "start": "rest"})),
+        "a delay from rest": chain_of(
+            ("gain", {"value": 1.0, "offset": 3.0}),
+            ("input-delay", {"delay_s": 0.03, "start": "rest"}),
+        ),
         "no delay": chain_of(("input-delay", {"delay_s": 0.0})),
     }  # fmt: skip
 
