@@ -56,7 +56,7 @@ class InputDelay(HeldBlock):
         """Compute the delayed input."""
         shift, place = (self.delay_s - self.lead_s) / dt, np.arange(len(z))
         if self.holding != "band-limited" or len(z) < 3:
-            v = np.interp(place - shift, place, z)
+            v: FloatArray = np.interp(place - shift, place, z)
         else:
             v = later(z, shift)
         v[place < shift] = z[0] if self.start == "settled" else 0.0

@@ -13,7 +13,7 @@ import numpy as np
 from hystbench.dataset import Dataset
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
-from hystbench.gap.fitting.base_on_records import run_base
+from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.floor import Floor, noise_floor
 from hystbench.gap.records.scored_samples import Compared, rms
 from hystbench.inspection.base import loop_of_plays
