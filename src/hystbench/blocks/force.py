@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, NamedTuple, TypeAlias
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -23,9 +23,6 @@ LAWS = (
 """Laws of the kernel, by the number that they have in kernels/forces.c."""
 ROW = 6
 """Numbers of a row of the kernel."""
-
-Near: TypeAlias = "tuple[Any, FloatArray, tuple[Force, ...]]"
-"""A host with numbers near, what drives it, and the forces inside it."""
 
 
 class Motion(NamedTuple):
@@ -48,7 +45,7 @@ class Host(HeldBlock):
         z: FloatArray,
         dt: float,
         forces: tuple[Force, ...],
-        others: Sequence[Near],
+        others: Sequence[tuple[Driven, FloatArray]],
     ) -> list[Motion]:
         """Compute how the coordinate moves, and how others with numbers near do.
 
@@ -59,7 +56,8 @@ class Host(HeldBlock):
         dt : float
             Sampling interval in seconds.
         forces : tuple of Force
-        others : sequence of (Host, ndarray, tuple of Force)
+        others : sequence of (Driven, ndarray)
+            Each with what drives it.
         """
 
     @abstractmethod
@@ -78,18 +76,6 @@ class Host(HeldBlock):
         """Compute the output with forces inside; NaN from where it has run away."""
         return self.given(self.motion(z, dt, forces))
 
-    def driven_near(
-        self,
-        z: FloatArray,
-        dt: float,
-        forces: tuple[Force, ...],
-        others: Sequence[Near],
-    ) -> list[FloatArray]:
-        """Compute the output, then those of others near, as :meth:`motions` does."""
-        found = self.motions(z, dt, forces, others)
-        hosts = (self, *(host for host, _, _ in others))
-        return [host.given(motion) for host, motion in zip(hosts, found, strict=True)]
-
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output without a force inside."""
         return self.driven(z, dt, ())
@@ -102,7 +88,8 @@ class Host(HeldBlock):
         others: Sequence[tuple[Host, FloatArray]],
     ) -> list[FloatArray]:
         """Compute the output, and those of others near, without a force inside."""
-        return self.driven_near(z, dt, (), [(host, own, ()) for host, own in others])
+        every = [(Driven(host), own) for host, own in others]
+        return Driven(self).near(z, u, dt, every)
 
     def step(self, sampling: Sampling) -> Step:
         """Say what it does at one sample without a force inside."""
@@ -145,7 +132,7 @@ class Force(AttachedBlock):
         """Let the force act inside the mechanism before."""
         if hasattr(before, "taking"):
             return before.taking(self)
-        if not hasattr(before, "driven"):
+        if not isinstance(before, Host):
             raise InputError(
                 "expected mechanism or impedance just before it, or another force "
                 f"inside one, got {getattr(before, 'name', 'none')}"
@@ -205,7 +192,7 @@ class Driven:
     """A mechanism or an impedance together with the forces inside it."""
 
     host: Host
-    forces: tuple[Force, ...]
+    forces: tuple[Force, ...] = ()
 
     hysteretic: ClassVar[bool] = False
     name: ClassVar[str] = "mechanism"
@@ -226,8 +213,9 @@ class Driven:
         others: Sequence[tuple[Driven, FloatArray]],
     ) -> list[FloatArray]:
         """Compute the output, and those of others with numbers near."""
-        every = [(other.host, own, other.forces) for other, own in others]
-        return self.host.driven_near(z, dt, self.forces, every)
+        motions = self.host.motions(z, dt, self.forces, others)
+        hosts = (self.host, *(other.host for other, _ in others))
+        return [host.given(motion) for host, motion in zip(hosts, motions, strict=True)]
 
     def step(self, sampling: Sampling) -> Step:
         """Say what both do at one sample, as :meth:`Block.step` does."""

@@ -20,7 +20,7 @@ from hystbench.blocks.curve import (
     through_samples,
     weighed,
 )
-from hystbench.blocks.force import Force, Host, Motion, Near, against, exported
+from hystbench.blocks.force import Driven, Force, Host, Motion, against, exported
 from hystbench.blocks.held import Hold
 from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
@@ -122,7 +122,7 @@ class Impedance(Host):
         z: FloatArray,
         dt: float,
         forces: tuple[Force, ...],
-        others: Sequence[Near],
+        others: Sequence[tuple[Driven, FloatArray]],
     ) -> list[Motion]:
         """Give the motion and the forces that it meets, and those of others.
 
@@ -132,11 +132,12 @@ class Impedance(Host):
         still = Motion(*self._moved(path, dt), np.zeros(len(path)))
         own = still._replace(force=self._met(still, path, dt, forces))
         found = [own]
-        for host, moved, laws in others:
+        for other, moved in others:
             if moved is not z:
-                found.append(host.motion(moved, dt, laws))
-            elif laws != forces:
-                found.append(own._replace(force=host._met(own, path, dt, laws)))
+                found.append(other.host.motion(moved, dt, other.forces))
+            elif other.forces != forces:
+                met = self._met(own, path, dt, other.forces)
+                found.append(own._replace(force=met))
             else:
                 found.append(own)
         return found

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil, sqrt
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.base import Place
 from hystbench.blocks.curve import held_lines
-from hystbench.blocks.force import Force, Host, Motion, Near, exported, rows
+from hystbench.blocks.force import Driven, Force, Host, Motion, exported, rows
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
 from hystbench.blocks.starts import PASTS, STARTS, path_from
 from hystbench.blocks.state_space import StateSpace, discretise
@@ -100,15 +100,16 @@ class Mechanism(Host):
         z: FloatArray,
         dt: float,
         forces: tuple[Force, ...],
-        others: Sequence[Near],
+        others: Sequence[tuple[Driven, FloatArray]],
     ) -> list[Motion]:
         """Compute how the coordinate moves, and how others with numbers near do.
 
         Each step of those is the tangent of this one's: right for small differences.
         """
-        hosts = (self, *(host for host, _, _ in others))
-        signals = (z, *(own for _, own, _ in others))
-        numbers = np.array([rows(own) for own in (forces, *(x for _, _, x in others))])
+        every = (Driven(self, forces), *(other for other, _ in others))
+        hosts: list[Any] = [each.host for each in every]
+        signals = (z, *(own for _, own in others))
+        numbers = np.array([rows(each.forces) for each in every])
         path, before = path_from(z, self.start)
         lines, fine = held_lines(path, self.holding)
         n, step, parts = len(lines), dt / fine, self._parts(dt / fine, forces)
