@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from hashlib import blake2b
+from typing import Protocol
 
 import numpy as np
 
@@ -25,7 +26,19 @@ EVERY = 5.0
 
 USED_UP = "the calls that --calls allows are used up"
 
-Call = Callable[[FloatArray, float], FloatArray]
+
+class Called(Protocol):
+    """A simulator of somebody's own."""
+
+    @property
+    def label(self) -> str:
+        """By which its outputs are known."""
+
+    def call(self, z: FloatArray, dt: float) -> FloatArray:
+        """Run it once, and check what it gives."""
+
+    def source(self) -> str:
+        """Digest of what it is made of, once it was called."""
 
 
 class CallsUsedUp(InputError):  # noqa: N818  (a bound that was asked for)
@@ -101,30 +114,18 @@ class Calls:
             return self.seconds
         return (self.seconds - self._first) / (self.made - 1)
 
-    def output(
-        self,
-        name: str,
-        z: FloatArray,
-        dt: float,
-        call: Call,
-        source: Callable[[], str],
-    ) -> FloatArray:
-        """Give what a function gives for samples, or what it gave for them before.
+    def output(self, simulator: Called, z: FloatArray, dt: float) -> FloatArray:
+        """Give what a simulator gives for samples, or what it gave for them before.
 
-        The first input of each function is called in any case, and what the disk has
-        of it is held against that: a function may read a file that has changed.
+        The first input of each one is called in any case, and what the disk has of it
+        is held against that: a simulator may read a file that has changed.
 
         Parameters
         ----------
-        name : str
-            ``package.module:function``, or what else names a simulator.
+        simulator : Called
         z : ndarray, shape (n,)
         dt : float
             Sampling interval in seconds.
-        call : callable
-            ``call(z, dt)`` calls the function and checks what it gives.
-        source : callable
-            Gives a digest of what the function is made of, once it was called.
 
         Returns
         -------
@@ -135,24 +136,25 @@ class Calls:
         CallsUsedUp
             If a call is needed, and no more are allowed.
         InputError
-            As ``call`` does.
+            As :meth:`Called.call` does.
         """
-        key = (name, blake2b(z.tobytes(), digest_size=16).digest(), len(z), dt)
+        digest = blake2b(z.tobytes(), digest_size=16).digest()
+        key = (simulator.label, digest, len(z), dt)
         if key not in self._memory:
-            self._remember(key, self._found_or_made(name, z, dt, call, source))
+            self._remember(key, self._found_or_made(simulator, z, dt))
         return self._memory[key].copy()
 
-    def fresh(self, name: str, z: FloatArray, dt: float, call: Call) -> FloatArray:
-        """Call a function, whatever it gave before; the output is not kept.
+    def fresh(self, simulator: Called, z: FloatArray, dt: float) -> FloatArray:
+        """Call a simulator, whatever it gave before; the output is not kept.
 
         Raises
         ------
         CallsUsedUp
             If no more calls are allowed.
         InputError
-            As ``call`` does.
+            As :meth:`Called.call` does.
         """
-        return self._made(name, z, dt, call)[0]
+        return self._made(simulator, z, dt)[0]
 
     def refused(self) -> bool:
         """Tell whether a call was needed that the bound did not allow."""
@@ -162,25 +164,19 @@ class Calls:
         """Allow the calls that were kept back."""
         self.reserve = 0
 
-    def _found_or_made(
-        self,
-        name: str,
-        z: FloatArray,
-        dt: float,
-        call: Call,
-        source: Callable[[], str],
-    ) -> FloatArray:
-        kept, first = self.kept, name not in self._begun
+    def _found_or_made(self, simulator: Called, z: FloatArray, dt: float) -> FloatArray:
+        kept, name = self.kept, simulator.label
+        first = name not in self._begun
         if kept is not None and not first:
             known = kept.get(name, z, dt)
             if known is not None:
                 self.found += 1
                 return known
-        y, took = self._made(name, z, dt, call)
+        y, took = self._made(simulator, z, dt)
         known = None
         if kept is not None and first:
             # Only now is all imported that the function is made of.
-            kept.open(name, source())
+            kept.open(name, simulator.source())
             known = kept.get(name, z, dt)
             if known is not None and not np.array_equal(known, y):
                 self.say(
@@ -196,16 +192,16 @@ class Calls:
         return y
 
     def _made(
-        self, name: str, z: FloatArray, dt: float, call: Call
+        self, simulator: Called, z: FloatArray, dt: float
     ) -> tuple[FloatArray, float]:
-        """Call a function, count the call and take its time."""
+        """Call a simulator, count the call and take its time."""
         if self.bound is not None and self.made >= self.bound - self.reserve:
             self._refused = True
             raise CallsUsedUp(
-                f"{name}: {USED_UP}: {self.bound}; expected a larger number"
+                f"{simulator.label}: {USED_UP}: {self.bound}; expected a larger number"
             )
         start = self.clock()
-        y = call(z, dt)
+        y = simulator.call(z, dt)
         end = self.clock()
         if not self.made:
             self._first = end - start

@@ -12,12 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hystbench.blocks.parameter import text
-from hystbench.blocks.simulator import (
-    Simulator,
-    digest_of,
-    file_of,
-    same_file,
-)
+from hystbench.blocks.simulator import FileSimulator, same_file
 from hystbench.errors import InputError, in_line, nearest
 from hystbench.libraries import library
 from hystbench.record import FloatArray
@@ -26,7 +21,7 @@ EXPECTED = "a Functional Mock-up Unit (.fmu)"
 
 
 @dataclass(frozen=True)
-class Fmu(Simulator):
+class Fmu(FileSimulator):
     """A Functional Mock-up Unit (FMI 1 to 3) in co-simulation, run by FMPy.
 
     One step of communication is one sampling interval. The input is set at the
@@ -39,6 +34,7 @@ class Fmu(Simulator):
     """
 
     name: ClassVar = "fmu"
+    expected: ClassVar = EXPECTED
 
     file: str = text(EXPECTED)
     input: str = text("variable that is the input; its only input by default", "")
@@ -50,13 +46,9 @@ class Fmu(Simulator):
         named = ":".join(filter(None, (self.input, self.output)))
         return f"{self.file}:{named}" if named else self.file
 
-    def source(self) -> str:
-        """Digest of the unit and the names."""
-        return digest_of(self.label, file_of(self.label, self.file, EXPECTED))
-
     def run(self, call: str, z: FloatArray, dt: float) -> np.ndarray:
         """Run the unit once, from its start."""
-        path = file_of(self.label, self.file, EXPECTED)
+        path = self.path
         fmpy = library("fmpy", "fmpy", self.label, "simulators")
         unit = _unpacked(fmpy, self.label, *same_file(path))
         given = _variable(unit, self.label, "input", self.input)

@@ -9,12 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hystbench.blocks.parameter import text
-from hystbench.blocks.simulator import (
-    Simulator,
-    digest_of,
-    file_of,
-    same_file,
-)
+from hystbench.blocks.simulator import FileSimulator, same_file
 from hystbench.errors import InputError, in_line
 from hystbench.libraries import library
 from hystbench.record import FloatArray
@@ -30,7 +25,7 @@ BATCH = ("batch", "n_batch", "batch_size", "n")
 
 
 @dataclass(frozen=True)
-class Onnx(Simulator):
+class Onnx(FileSimulator):
     """A graph of ONNX that maps a sequence u to a sequence y, run by onnxruntime.
 
     Its first input takes all n samples at once: one axis is free and is time, the
@@ -46,6 +41,7 @@ class Onnx(Simulator):
     """
 
     name: ClassVar = "onnx"
+    expected: ClassVar = EXPECTED
 
     file: str = text(EXPECTED)
 
@@ -54,13 +50,9 @@ class Onnx(Simulator):
         """The file."""
         return self.file
 
-    def source(self) -> str:
-        """Digest of the file."""
-        return digest_of(self.label, file_of(self.label, self.file, EXPECTED))
-
     def run(self, call: str, z: FloatArray, dt: float) -> np.ndarray:
         """Run the graph once."""
-        path = file_of(self.label, self.file, EXPECTED)
+        path = self.path
         runtime = library("onnxruntime", "onnxruntime", self.label, "simulators")
         session = _session(runtime, self.label, *same_file(path))
         first, *more = session.get_inputs()

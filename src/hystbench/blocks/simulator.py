@@ -82,7 +82,7 @@ class Simulator(Block):
         InputError
             As :meth:`call` does; or the calls that a user allows are used up.
         """
-        return current().output(self.label, z, dt, self.call, self.source)
+        return current().output(self, z, dt)
 
     def again(self, z: FloatArray, dt: float) -> FloatArray:
         """Run the simulator, whatever it gave before.
@@ -92,7 +92,7 @@ class Simulator(Block):
         InputError
             As :meth:`call` does; or the calls that a user allows are used up.
         """
-        return current().fresh(self.label, z, dt, self.call)
+        return current().fresh(self, z, dt)
 
 
 def checked(call: str, z: FloatArray, given: ArrayLike) -> FloatArray:
@@ -139,21 +139,35 @@ def digest_of(text: str, *files: Path) -> str:
     return whole.hexdigest()
 
 
-def file_of(label: str, path: str, expected: str) -> Path:
-    """Give a file that a simulator names.
+class FileSimulator(Simulator):
+    """A simulator that is a file, run by a library."""
 
-    Raises
-    ------
-    InputError
-        If there is none.
-    """
-    file = Path(path)
-    if not file.is_file():
-        raise InputError(
-            f"{label}: no file {path!r}, looked for from {Path.cwd()}; expected "
-            f"{expected}"
-        )
-    return file
+    expected: ClassVar[str]
+    """What the file is, for messages."""
+
+    file: str
+    """Its path; a subclass declares it."""
+
+    @property
+    def path(self) -> Path:
+        """The file.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        path = Path(self.file)
+        if not path.is_file():
+            raise InputError(
+                f"{self.label}: no file {self.file!r}, looked for from {Path.cwd()}; "
+                f"expected {self.expected}"
+            )
+        return path
+
+    def source(self) -> str:
+        """Digest of the file and of what it is called by."""
+        return digest_of(self.label, self.path)
 
 
 def same_file(path: Path) -> tuple[str, int, int]:
