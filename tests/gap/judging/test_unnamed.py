@@ -234,7 +234,7 @@ def test_windows_of_one_record_are_one_run():
     assert runs(whole) == ((0,), (1,))
     assert runs(cut) == (tuple(range(7)), tuple(range(7, 14)))
     state = state_of((GAIN,), cut, count=20)
-    strength = in_runs(state, 3)
+    strength = in_runs(state)
     assert strength.shape == (len(state.sample), 2 * 4)
     # Its slowest cosine falls from the first window of a run to the last one.
     slow = strength[: len(state.sample) // 2, 1]

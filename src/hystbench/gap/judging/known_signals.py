@@ -59,7 +59,7 @@ def generic_groups(base: ModelState, state: ModelState) -> dict[str, FloatArray]
     """
     before, after = base.simulation.output, state.simulation.output
     increments = [b - a for a, b in zip(before, after, strict=True)]
-    over_time = in_runs(state, SLOW_COSINES)
+    over_time = in_runs(state)
     groups = {}
     if any(x.any() for x in increments):
         groups["strength"] = state.sample.take(increments)[:, None] * over_time
@@ -109,16 +109,10 @@ def halves(state: ModelState, signals: FloatArray) -> FloatArray:
     return np.hstack(columns)
 
 
-def in_runs(state: ModelState, count: int) -> FloatArray:
+def in_runs(state: ModelState) -> FloatArray:
     """Give every run a constant and cosines of its own, zero in the others.
 
     Windows of one record are one run, over which a strength may change.
-
-    Parameters
-    ----------
-    state : ModelState
-    count : int
-        Cosines over a run.
 
     Returns
     -------
@@ -129,8 +123,8 @@ def in_runs(state: ModelState, count: int) -> FloatArray:
         ends = np.cumsum([0, *(len(state.records[k]) for k in own)])
         places = [state.sample.positions[k] + ends[n] for n, k in enumerate(own)]
         phase = np.pi * (np.concatenate(places) + 0.5) / ends[-1]
-        columns = np.zeros((len(state.sample), count + 1))
-        columns[rows] = np.cos(phase[:, None] * np.arange(count + 1))
+        columns = np.zeros((len(state.sample), SLOW_COSINES + 1))
+        columns[rows] = np.cos(phase[:, None] * np.arange(SLOW_COSINES + 1))
         found.append(columns)
     return np.hstack(found)
 
@@ -145,26 +139,22 @@ def _rows_of_runs(state: ModelState) -> list[NDArray[np.intp]]:
 
 
 def paths(
-    state: ModelState,
-    count: int = PATH_COSINES,
-    allowed: Callable[[Record], int] = lambda record: 0,
+    state: ModelState, allowed: Callable[[Record], int] = lambda record: PATH_COSINES
 ) -> FloatArray:
     """Give every record a constant and cosines of its own, zero in the others.
 
     Parameters
     ----------
     state : ModelState
-    count : int
-        Cosines over a record, at least.
     allowed : callable
-        Gives how many a record may have, where that is more.
+        Gives how many cosines a record may have, where that is more.
 
     Returns
     -------
     ndarray, shape (scored samples, cosines and constants of all records)
     """
     sample = state.sample
-    each = [max(count, allowed(record)) + 1 for record in state.records]
+    each = [max(PATH_COSINES, allowed(record)) + 1 for record in state.records]
     ends = np.cumsum([0, *each])
     # Hundreds of windows have six columns each: they are filled in, not joined.
     found = np.zeros((len(sample), ends[-1]))

@@ -22,11 +22,11 @@ from hystbench.gap.locate.picture import (
     thinned,
 )
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import View, number, view_of
+from hystbench.gap.locate.view import View, view_of
 from hystbench.gap.records.floor import periodogram
 from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import FloatArray
-from hystbench.sentences import percent
+from hystbench.sentences import percent, shortly
 
 BANDS = 12
 """With a gain and a phase of their own."""
@@ -62,8 +62,8 @@ def frequency(samples: ViewSamples) -> View:
     held = float(np.sum(power[first : last + 1])) / max(float(power.sum()), 1e-300)
     inside = percent(form.share * held)
     told = (
-        f"is {form.words}; {inside} of the gap lies between {number(start)} and "
-        f"{number(end)} Hz."
+        f"is {form.words}; {inside} of the gap lies between {shortly(start)} and "
+        f"{shortly(end)} Hz."
     )
     drawn = [_spectrum(samples, spectra), _response(spectra)]
     if distortion is not None:

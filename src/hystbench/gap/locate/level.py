@@ -24,11 +24,11 @@ from hystbench.gap.locate.forms import saved
 from hystbench.gap.locate.mode import LINES, Lines, Mode, find_modes, fit_mode, lines_of
 from hystbench.gap.locate.picture import Axis, Panel, Picture, series
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import View, number
+from hystbench.gap.locate.view import View
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.quantities import quantity_of
 from hystbench.record import FloatArray
-from hystbench.sentences import percent
+from hystbench.sentences import percent, shortly
 
 WORDS = {
     "hardening": "hardening, as of a spring that stiffens or a stop",
@@ -169,7 +169,7 @@ class Moving:
         seen = len(self.modes)
         at = "" if seen == self.levels else f" ({seen} of {self.levels} levels)"
         return (
-            f"the mode at {number(first[0])} Hz {moved}, its damping ratio {damped}, "
+            f"the mode at {shortly(first[0])} Hz {moved}, its damping ratio {damped}, "
             f"{held}{at}: {WORDS[self.kind]}"
         )
 
@@ -264,8 +264,8 @@ def level(samples: ViewSamples) -> View | None:
         share_of_gap_power=share,
         p_value=float(special.chdtrc(sum(freedoms), sum(chi_squares))),
         sentence=(
-            f"From {number(inputs[0])} to {number(inputs[-1])} {unit} rms of the input "
-            f"{told}. A mode of each level's own takes away "
+            f"From {shortly(inputs[0])} to {shortly(inputs[-1])} {unit} rms of the "
+            f"input {told}. A mode of each level's own takes away "
             f"{percent(share)} of the gap."
         ),
         saved=saved(samples, explained, freedom),

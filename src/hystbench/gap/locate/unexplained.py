@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from hystbench.gap.locate.forms import fit_form, named_or, narrowest
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import View, number, view_of
+from hystbench.gap.locate.view import View, view_of
 from hystbench.gap.records.floor import periodogram
 from hystbench.gap.records.nuisance import shows_a_path
 from hystbench.record import FloatArray
+from hystbench.sentences import shortly
 
 BoolArray = NDArray[np.bool_]
 
@@ -64,10 +65,10 @@ def unexplained(samples: ViewSamples) -> View:
         # A record tells a line from its neighbours by the inverse of its length.
         resolution = float(1 / np.min(samples.durations))
         start, end = max(hertz - resolution, 0.0), hertz + resolution
-        axis, unit, within = "frequency", "Hz", f"at {number(hertz)} Hz"
+        axis, unit, within = "frequency", "Hz", f"at {shortly(hertz)} Hz"
     told = (
-        f"is {form.words}, which the input does not explain, between {number(start)} "
-        f"and {number(end)} {unit} {within}."
+        f"is {form.words}, which the input does not explain, between {shortly(start)} "
+        f"and {shortly(end)} {unit} {within}."
     )
     return view_of("unexplained", form, axis, (start, end), unit, told)
 

@@ -9,7 +9,7 @@ from typing import Any
 from hystbench.gap.locate.forms import FittedForm
 from hystbench.gap.locate.picture import Picture
 from hystbench.gap.view_kinds import ViewKind
-from hystbench.sentences import percent, shortly
+from hystbench.sentences import percent
 
 SIGNIFICANT = 0.01
 """Of a p-value, for a part of a view to be told as there."""
@@ -109,11 +109,6 @@ def view_of(
         named=form.named,
         pictures=tuple(pictures),
     )
-
-
-def number(value: float) -> str:
-    """Write a number as it stands in a sentence, to three digits."""
-    return shortly(value)
 
 
 def chance(p_value: float) -> str:

@@ -26,10 +26,10 @@ from hystbench.gap.locate.picture import (
     over_time,
 )
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import View, number, view_of
+from hystbench.gap.locate.view import View, view_of
 from hystbench.operators import play
 from hystbench.record import FloatArray, Mask
-from hystbench.sentences import percent
+from hystbench.sentences import percent, shortly
 
 KNOTS = 9
 """Of a curve over an axis."""
@@ -70,7 +70,7 @@ def amplitude(samples: ViewSamples) -> View:
     unit = samples.units[0]
     told = (
         f"is {form.words}; most of it lies where the {name} is between "
-        f"{number(start)} and {number(end)} {unit}."
+        f"{shortly(start)} and {shortly(end)} {unit}."
     )
     return view_of("amplitude", form, name, (start, end), unit, told)
 
@@ -92,7 +92,7 @@ def branch(samples: ViewSamples) -> View:
     rising = _share_of(form.fitted**2, direction > 0)
     told = (
         f"is {form.words}, {percent(rising)} of it while the input rises; it is "
-        f"{number(float(np.mean(np.abs(form.fitted))))} {samples.units[1]} on average."
+        f"{shortly(float(np.mean(np.abs(form.fitted))))} {samples.units[1]} on average."
     )
     ends = (
         "falling" if rising < 1 - ONE_SIDED else "rising",
@@ -114,7 +114,7 @@ def rate(samples: ViewSamples) -> View:
     unit = f"{samples.units[0]}/s"
     told = (
         f"is {form.words}; most of it lies where the input moves at "
-        f"{number(ends[0])} to {number(ends[1])} {unit}."
+        f"{shortly(ends[0])} to {shortly(ends[1])} {unit}."
     )
     axis, plane = "magnitude of the input's rate", over_plane(samples)
     return view_of("rate", form, axis, ends, unit, told, [plane] if plane else [])
@@ -138,7 +138,7 @@ def slow_time(samples: ViewSamples) -> View:
     ends = narrowest(samples.time, form.fitted**2)
     told = (
         f"follows the input with a memory, {form.words}; most of it lies between "
-        f"{number(ends[0])} and {number(ends[1])} s."
+        f"{shortly(ends[0])} and {shortly(ends[1])} s."
     )
     axis, drawn = "time in the record", [over_time(samples)]
     return view_of("slow-time", form, axis, ends, "s", told, drawn)
@@ -177,7 +177,7 @@ def delay(samples: ViewSamples) -> View:
     margin = 2 * float(np.sqrt(rest / power / facts))
     told = (
         f"is a phase linear in frequency: the measurement comes "
-        f"{number(1e3 * abs(shift))} ms {'late' if shift >= 0 else 'early'}, at every "
+        f"{shortly(1e3 * abs(shift))} ms {'late' if shift >= 0 else 'early'}, at every "
         "rate and amplitude."
     )
     ends = (shift - margin, shift + margin)
