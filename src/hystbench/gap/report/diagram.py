@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch
+from matplotlib.path import Path
 
 from hystbench.figures.style import BLACK, BLUE, GREY, ORANGE, PAGE, axis_label
 from hystbench.gap.report.diagram_layout import (
@@ -38,6 +39,7 @@ SAID: dict[Whose, str] = {
     "added": "added by the search",
     "put in": "put in by you",
 }
+ARROW = "-|>,head_length=3.2,head_width=1.6"
 KEY = 0.24
 """Height of the line that says what the colours mean, in inches."""
 
@@ -123,22 +125,14 @@ def _text(axes: Axes, x: float, y: float, text: str, size: float) -> None:
 
 
 def _line(axes: Axes, line: Line) -> None:
-    look: dict[str, Any] = {"color": BLACK, "linewidth": 0.8}
-    x, y = zip(*line.points, strict=True)
-    if not line.arrow:
-        axes.add_line(Line2D(x, y, solid_joinstyle="miter", **look))
-        return
-    axes.add_line(Line2D(x[:-1], y[:-1], solid_joinstyle="miter", **look))
     axes.add_patch(
         FancyArrowPatch(
-            line.points[-2],
-            line.points[-1],
-            arrowstyle="-|>,head_length=3.2,head_width=1.6",
+            path=Path(line.points),
+            arrowstyle=ARROW if line.arrow else "-",
             mutation_scale=1.0,
-            shrinkA=0.0,
-            shrinkB=0.0,
             joinstyle="miter",
-            **look,
+            color=BLACK,
+            linewidth=0.8,
         )
     )
 
