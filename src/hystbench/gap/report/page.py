@@ -85,7 +85,6 @@ def headline(gap: dict[str, Any], content: Content) -> list[Picture]:
             draw(
                 pictures.glimpse,
                 table,
-                gap["unit"],
                 None if same else after,
                 words=f"A stretch of the hold-out record {table.name}: measured, the "
                 f"simulator{with_it}",
@@ -225,14 +224,11 @@ def _series(content: Content) -> Picture | None:
     if not tables:
         return None
 
-    def paint(axes: Any, *rest: Any) -> None:
-        pictures.series(axes if len(tables) > 1 else [axes], *rest)
+    def paint(axes: Any) -> None:
+        pictures.series(axes if len(tables) > 1 else [axes], tables)
 
     return draw(
         paint,
-        tables,
-        content.gap["gap"]["noise_floor"],
-        content.gap["unit"],
         words="Hold-out records: measured, before and after; residuals and spectra",
         height=1.75 * len(tables) + 0.2,
         panels=(len(tables), 3),

@@ -128,28 +128,26 @@ def worst(tables: Sequence[HoldOut], count: int) -> list[HoldOut]:
     return [tables[k] for k in sorted(np.argsort(off, kind="stable")[::-1][:count])]
 
 
-def glimpse(axes: Any, table: HoldOut, unit: str, after: str | None) -> None:
+def glimpse(axes: Any, table: HoldOut, after: str | None) -> None:
     """Draw a few periods of a record: measured, the simulator before and after."""
     (panel,) = axes
-    _outputs(panel, table, unit, "simulator", after)
+    _outputs(panel, table, "simulator", after)
     panel.xaxis.set_major_locator(MaxNLocator(TICKS))
     legend_above(panel.figure, panel.get_legend_handles_labels()[0])
 
 
-def series(axes: Any, tables: Sequence[HoldOut], floor: float, unit: str) -> None:
+def series(axes: Any, tables: Sequence[HoldOut]) -> None:
     """Draw hold-out records: outputs, residuals and their spectra, a row each."""
     for (outputs, residuals, spectrum), table in zip(axes, tables, strict=True):
-        _outputs(outputs, table, unit, "before", "after")
+        _outputs(outputs, table, "before", "after")
         outputs.set_title(table.name)
-        _residuals(residuals, table, slice(None), floor, unit)
-        _spectrum(spectrum, table, floor, unit)
+        _residuals(residuals, table, slice(None))
+        _spectrum(spectrum, table)
     lines = axes[0][0].get_legend_handles_labels()[0]
     legend_above(axes[0][0].figure, lines)
 
 
-def _outputs(
-    panel: Axes, table: HoldOut, unit: str, before: str, after: str | None
-) -> None:
+def _outputs(panel: Axes, table: HoldOut, before: str, after: str | None) -> None:
     part = _window(table)
     time = table.time_s[part]
     behind: dict[str, Any] = {"color": GREY, "linewidth": 2.6, "label": "measured"}
@@ -158,24 +156,22 @@ def _outputs(
     if after is not None:
         panel.plot(time, table.after[part], color=AFTER, label=after)
     panel.set_xlabel("time (s)")
-    panel.set_ylabel(f"output ({unit_text(unit)})")
+    panel.set_ylabel(f"output ({unit_text(table.unit)})")
 
 
-def residual(axes: Any, table: HoldOut, floor: float, unit: str) -> None:
+def residual(axes: Any, table: HoldOut) -> None:
     """Draw what is left of a record before and after: a stretch, and the spectrum."""
     over_time, over_frequency = axes
-    _residuals(over_time, table, _window(table), floor, unit)
+    _residuals(over_time, table, _window(table))
     over_time.set_title(f"a stretch of {table.name}, noise floor grey")
-    over_time.set_ylabel(f"residual ({unit_text(unit)})")
-    _spectrum(over_frequency, table, floor, unit)
+    over_time.set_ylabel(f"residual ({unit_text(table.unit)})")
+    _spectrum(over_frequency, table)
     over_frequency.set_title("its spectrum, noise floor dotted")
-    over_frequency.set_ylabel(f"residual ({unit_text(unit)}/√Hz)")
+    over_frequency.set_ylabel(f"residual ({unit_text(table.unit)}/√Hz)")
     legend_above(over_time.figure, over_time.get_legend_handles_labels()[0])
 
 
-def _residuals(
-    panel: Axes, table: HoldOut, part: slice, floor: float, unit: str
-) -> None:
+def _residuals(panel: Axes, table: HoldOut, part: slice) -> None:
     for name, simulated, color in (
         ("before", table.before, BEFORE),
         ("after", table.after, AFTER),
@@ -183,13 +179,13 @@ def _residuals(
         left = (table.measured - simulated)[part]
         look: dict[str, Any] = {"color": color, "linewidth": 0.8, "label": name}
         panel.plot(*hull(table.time_s[part], left), **look)
-    panel.axhspan(-floor, floor, color=GREY, alpha=0.35, linewidth=0)
+    panel.axhspan(-table.floor, table.floor, color=GREY, alpha=0.35, linewidth=0)
     panel.set_title("residual, noise floor grey")
     panel.set_xlabel("time (s)")
-    panel.set_ylabel(f"({unit_text(unit)})")
+    panel.set_ylabel(f"({unit_text(table.unit)})")
 
 
-def _spectrum(panel: Axes, table: HoldOut, floor: float, unit: str) -> None:
+def _spectrum(panel: Axes, table: HoldOut) -> None:
     from scipy.signal import welch  # late: it takes long to load
 
     count = len(table.time_s)
@@ -202,11 +198,11 @@ def _spectrum(panel: Axes, table: HoldOut, floor: float, unit: str) -> None:
         frequency, power = welch(table.measured - output, **about)
         panel.plot(frequency[1:], np.sqrt(power[1:]), line, color=color)
     # White noise of one rms has this density up to half the sampling frequency.
-    panel.axhline(floor * np.sqrt(2 * dt), color=FLOOR, linestyle=":")
+    panel.axhline(table.floor * np.sqrt(2 * dt), color=FLOOR, linestyle=":")
     logarithmic(panel, "xy")
     panel.set_title("residual, noise floor dotted")
     panel.set_xlabel("frequency (Hz)")
-    panel.set_ylabel(f"({unit_text(unit)}/√Hz)")
+    panel.set_ylabel(f"({unit_text(table.unit)}/√Hz)")
 
 
 def _window(table: HoldOut) -> slice:

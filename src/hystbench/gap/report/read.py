@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,10 +25,13 @@ COLUMNS = ("time_s", "measured", "before", "after")
 class HoldOut:
     """A hold-out record before and after, shape (n,) each, in output units.
 
-    ``after`` is NaN throughout where the model runs away on the record.
+    ``after`` is NaN throughout where the model runs away on the record; ``floor`` is
+    the rms of the noise.
     """
 
     name: str
+    floor: float
+    unit: str
     time_s: FloatArray
     measured: FloatArray
     before: FloatArray
@@ -83,7 +87,7 @@ def read_content(folder: Path) -> Content:
     model = folder / "model.yaml"
     return Content(
         gap,
-        tuple(map(_hold_out, tables)),
+        tuple(_hold_out(table, gap) for table in tables),
         found,
         load_model(model) if model.is_file() else None,
     )
@@ -97,10 +101,10 @@ def _json(path: Path) -> Any:
         raise InputError(f"{path}: not JSON ({error})") from error
 
 
-def _hold_out(path: Path) -> HoldOut:
+def _hold_out(path: Path, gap: Mapping[str, Any]) -> HoldOut:
     table = read_table(path, COLUMNS)
     columns = [table.column(name).values for name in COLUMNS]
     *known, after = map(np.isfinite, columns)
     if len(after) < 2 or not (np.all(known) and (after.all() or not after.any())):
         raise InputError(f"{path}: expected at least 2 rows of finite numbers")
-    return HoldOut(path.stem, *columns)
+    return HoldOut(path.stem, gap["gap"]["noise_floor"], gap["unit"], *columns)

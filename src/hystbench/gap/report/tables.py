@@ -195,8 +195,5 @@ def _residual(content: Content, place: Path) -> Figure:
         raise InputError(f"{place / 'holdout'}: no tables; expected one a record")
     (table,) = pictures.worst(content.hold_out, 1)
     figure = Figure(figsize=(style.PAGE, 2.3))
-    gap = content.gap
-    pictures.residual(
-        figure.subplots(1, 2), table, gap["gap"]["noise_floor"], gap["unit"]
-    )
+    pictures.residual(figure.subplots(1, 2), table)
     return figure
