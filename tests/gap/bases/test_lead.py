@@ -131,7 +131,7 @@ def test_forces_in_a_free_mass_leave_leads_of_both_uses_out_alike():
     found = FitResult(
         Model("linear", *CHANNELS, (free,), ("mechanism.mass",)),
         ModelState((free,), (fit,), ScoredSamples.of((fit,))),
-        Floor(0.001, "declared", {}),
+        Floor(0.001, "declared"),
         None,
         (),
     )

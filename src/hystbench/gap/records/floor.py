@@ -44,14 +44,10 @@ class Floor:
         Differences of periods; stated by the dataset; or the high, unexcited part of
         the residual's spectrum. The last is a bound: what a gap leaves up there is
         taken for noise.
-    per_record : dict of str to float
-        The same by record. A record without repeats beside others that have some is
-        judged by its residual.
     """
 
     rms: float
     method: Method
-    per_record: dict[str, float]
 
 
 def noise_floor(compared: Sequence[Compared], declared: float | None = None) -> Floor:
@@ -89,34 +85,25 @@ def noise_floor(compared: Sequence[Compared], declared: float | None = None) -> 
     if declared is not None:
         if not (np.isfinite(declared) and declared > 0):
             raise InputError(f"noise_rms: expected a number above 0, got {declared}")
-        names = [item.record.name for item in compared]
-        return Floor(float(declared), "declared", dict.fromkeys(names, float(declared)))
-    measured = {
-        item.record.name: _from_repeats(item.record) or _from_residual(item)
-        for item in compared
-    }
-    repeated = [item for item in compared if _whole_periods(item.record) >= 2]
-    used = repeated or list(compared)
+        return Floor(float(declared), "declared")
+    repeated = [
+        level for item in compared if (level := _from_repeats(item.record)) is not None
+    ]
     # The noise is one: the median over the records shrugs off a spoilt one.
-    rms = float(np.median([measured[item.record.name] for item in used]))
-    return Floor(rms, "repeats" if repeated else "upper-bound", measured)
-
-
-def _whole_periods(record: Record) -> int:
-    """Count the whole periods that can be compared."""
-    period = record.period_samples
-    if not period or len(record) // period * period < 4 * LEAST_BINS:
-        return 0
-    return len(record) // period
+    if repeated:
+        return Floor(float(np.median(repeated)), "repeats")
+    bounds = [_from_residual(item) for item in compared]
+    return Floor(float(np.median(bounds)), "upper-bound")
 
 
 def _from_repeats(record: Record) -> float | None:
-    """Read the noise off the difference of two runs of whole periods."""
-    periods = _whole_periods(record)
-    if periods < 2 or record.period_samples is None:
+    """Read the noise off the difference of two runs of whole periods, if it has two."""
+    period = record.period_samples
+    periods = len(record) // period if period else 0
+    if period is None or periods < 2 or periods * period < 4 * LEAST_BINS:
         return None
     # Two long runs, not many short ones: mains and the input's own lines stay narrow.
-    n = periods // 2 * record.period_samples
+    n = periods // 2 * period
     difference = (record.y[-n:] - record.y[-2 * n : -n]) / np.sqrt(2)
     power, _ = periodogram(difference, record.dt)
     return _at_least(record.y, np.sqrt(_median_level(power[2:])))
