@@ -6,12 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from hystbench.gap.locate.frequency import frequency
-from hystbench.gap.locate.level import level
-from hystbench.gap.locate.samples import Contribution, take_samples
-from hystbench.gap.locate.unexplained import unexplained
-from hystbench.gap.locate.view import View
-from hystbench.gap.locate.views import (
+from hystbench.gap.locate.along_axes import (
     amplitude,
     branch,
     delay,
@@ -19,6 +14,11 @@ from hystbench.gap.locate.views import (
     record,
     slow_time,
 )
+from hystbench.gap.locate.frequency import frequency
+from hystbench.gap.locate.level import level
+from hystbench.gap.locate.samples import Contribution, take_samples
+from hystbench.gap.locate.unexplained import unexplained
+from hystbench.gap.locate.view import View
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.scored_samples import Compared
 
