@@ -32,14 +32,7 @@ from hystbench.gap.judging.gap_json import (
     simulator_mapping,
 )
 from hystbench.gap.judging.unnamed import Unnamed, what_is_unnamed
-from hystbench.gap.judging.verdict import (
-    Left,
-    Word,
-    judge,
-    may_be_of_base,
-    what_is_left,
-    what_mends,
-)
+from hystbench.gap.judging.verdict import Left, Word, judge, what_is_left, what_mends
 from hystbench.gap.locate import curves, locate
 from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.ladder import contributions, rungs
@@ -112,7 +105,12 @@ def judge_and_tell(
         left = what_is_left(start, named.state, floor.rms)
     state, model = named.state, augmented(base, named.state)
     before, after = compared_records(start), compared_records(state)
-    found = _judged(start, named, left, floor, before, after, own, unnamed_share)
+    left = replace(
+        left,
+        lone=lone_share([item.residual for item in after]),
+        unrepeated=unrepeated(after, floor.rms),
+    )
+    found = _judged(start, named, left, floor, before, own, unnamed_share)
     ladder = rungs(start, named)
     contributed = contributions(ladder) if found.verdict == "named" else ()
     where = locate(before, floor, contributed)
@@ -130,8 +128,8 @@ def judge_and_tell(
         "fit": _fit(start, state, floor)
         | {
             "left": left.loose,
-            "lone_share": found.lone,
-            "unrepeated": found.unrepeated,
+            "lone_share": left.lone,
+            "unrepeated": left.unrepeated,
         },
         "unnamed": found.unnamed.mapping(unnamed_share),
         "where": [view.to_mapping() for view in where],
@@ -170,8 +168,6 @@ class _Judged(NamedTuple):
     reason: str
     trust: float
     unnamed: Unnamed
-    lone: float
-    unrepeated: float | None
     box: BlackBox
 
 
@@ -181,15 +177,12 @@ def _judged(
     left: Left,
     floor: Floor,
     before: Sequence[Compared],
-    after: Sequence[Compared],
     own: OwnValues,
     unnamed_share: float,
 ) -> _Judged:
     """Give the verdict on what was named, and say why."""
     state = named.state
     box = black_box(before, floor.rms)
-    lone = lone_share([item.residual for item in after])
-    differs = unrepeated(after, floor.rms)
     unnamed = what_is_unnamed(start, state, floor.rms, unnamed_share)
     verdict, why = judge(
         left,
@@ -197,8 +190,6 @@ def _judged(
         box.explained_on_folds,
         bool(start.free),
         floor.method == "upper-bound",
-        lone,
-        differs,
         unnamed,
         unnamed_share,
         what_mends(start.records),
@@ -211,9 +202,9 @@ def _judged(
         _predicts_nothing(state),
         _used_up(current()),
     )
-    trust = unnamed.trust(unnamed_share, may_be_of_base(left, lone, differs))
+    trust = unnamed.trust(unnamed_share, left.may_be_of_base)
     reason = "; ".join(part for part in parts if part)
-    return _Judged(verdict, reason, trust, unnamed, lone, differs, box)
+    return _Judged(verdict, reason, trust, unnamed, box)
 
 
 def _effects(

@@ -55,7 +55,8 @@ def test_noise_is_no_gap_whatever_the_black_box_says(after, box):
 
 @given(st.floats(-1, ABOVE_NOISE), SHARES)
 def test_noise_that_stands_in_lone_samples_is_none(after, lone):
-    word, reason = judge(left(after, after), False, 0.0, lone=lone)
+    found = Left(after, after, after, after, lone=lone)
+    word, reason = judge(found, False, 0.0)
     told = lone * (1 + after) > FOREIGN
     assert word == ("unnamed" if told else "no-gap")
     assert ("lone samples" in reason) == told
@@ -64,8 +65,8 @@ def test_noise_that_stands_in_lone_samples_is_none(after, lone):
 @given(st.floats(0, 40), st.floats(-1, 10))
 def test_what_differs_between_periods_is_no_wrong_shape(after, differs):
     # As slight as only a wrong shape of the hysteresis leaves it.
-    found = Left(0.0, 0.0, 100.0, after, 1e6)
-    word, reason = judge(found, False, 0.0, unrepeated=differs)
+    found = Left(0.0, 0.0, 100.0, after, 1e6, unrepeated=differs)
+    word, reason = judge(found, False, 0.0)
     told = differs > max(ABOVE_NOISE, FOREIGN * after)
     assert word == ("unnamed" if told else "no-gap")
     assert ("one period" in reason) == told
@@ -160,10 +161,9 @@ def test_what_would_be_no_gap_does_not_speak_against_a_name():
     # more of the output, what no reshaping could do, lone samples, and other periods
     large = replace(found, output=0.5 * output)
     alien = replace(found, after=14.0)
-    for other in (large, alien):
+    lone, differing = replace(found, lone=0.9), replace(found, unrepeated=10.0)
+    for other in (large, alien, lone, differing):
         assert judge(other, True, unnamed=structure)[0] == "unnamed"
-    for more in ({"lone": 0.9}, {"unrepeated": 10.0}):
-        assert judge(found, True, unnamed=structure, **more)[0] == "unnamed"
     # Nor does a name stand where most of the gap is left.
     assert judge(found, True, unnamed=Unnamed(0.03, 0.0, 0.3))[0] == "unnamed"
     assert structure.trust() < structure.trust(of_base=True) < 1

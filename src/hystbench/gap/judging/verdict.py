@@ -54,6 +54,11 @@ class Left:
         Above the floor, of the whole residual, in floors.
     output : float
         Mean square of the measured output about its mean, in floors.
+    lone : float
+        Share of the power of what is left that stands in samples far off.
+    unrepeated : float or None
+        Power of what is left that differs between periods of the same input, above the
+        floor and in floors; none where no record repeats.
     """
 
     before: float
@@ -61,6 +66,8 @@ class Left:
     all_before: float
     all_after: float
     output: float = 0.0
+    lone: float = 0.0
+    unrepeated: float | None = None
 
     @property
     def slight(self) -> bool:
@@ -124,6 +131,34 @@ class Left:
             f"{100 * self.loose:.0f} %"
         )
 
+    @property
+    def may_be_of_base(self) -> bool:
+        """Whether what names leave may all be the base's own error.
+
+        With nothing named it would be no gap, so it cannot speak against a name.
+        """
+        return self.slight and not self.foreign
+
+    @property
+    def foreign(self) -> str:
+        """Say what is left that no effect and no wrong hysteresis does, if any is."""
+        gap = max(self.all_before, 1.0)
+        if self.lone * (1.0 + self.all_after) > FOREIGN * gap:
+            return (
+                f"{100 * self.lone:.0f} % of the power that is left on the fit records "
+                "stands in lone samples, far off from the others, which no effect of "
+                "the vocabulary does"
+            )
+        if self.unrepeated is None or self.unrepeated <= max(
+            ABOVE_NOISE, FOREIGN * self.all_after
+        ):
+            return ""
+        return (
+            f"on the fit records {self.unrepeated:.2g} times the noise power is left "
+            "that differs from one period of the same input to the next, which neither "
+            "a named effect nor a wrong hysteresis does"
+        )
+
 
 def what_is_left(base: ModelState, state: ModelState, floor_rms: float) -> Left:
     """Measure what the base and what a model leaves, each beside its directions."""
@@ -157,8 +192,6 @@ def judge(
     explained_by_box: float | None = None,
     retuned: bool = False,
     floor_is_upper_bound: bool = False,
-    lone: float = 0.0,
-    unrepeated: float | None = None,
     unnamed: Unnamed = NOTHING,
     unnamed_share: float = UNNAMED_SHARE,
     mends: str = GIVE,
@@ -178,11 +211,6 @@ def judge(
     floor_is_upper_bound : bool
         Whether the noise floor is only an upper bound: it may hold the whole gap, so
         that there is none cannot be claimed from it.
-    lone : float
-        Share of the power of what is left that stands in samples far off.
-    unrepeated : float or None
-        Power of what is left that differs between periods of the same input, above the
-        floor and in floors; none where no record repeats.
     unnamed : Unnamed
         What stays that the named effects cannot own.
     unnamed_share : float
@@ -191,9 +219,8 @@ def judge(
         What to write so that the noise is measured.
     """
     if not named:
-        foreign = _foreign(left, lone, unrepeated)
-        if left.slight and foreign:
-            return "unnamed", foreign
+        if left.slight and left.foreign:
+            return "unnamed", left.foreign
         if retuned and left.all_before > ABOVE_NOISE and left.loose < LOOSE:
             return "parameters", (
                 "re-tuning the base within what is free is enough, and no effect pays "
@@ -218,8 +245,7 @@ def judge(
             f"{_box_words(explained_by_box, 'it')}"
         )
     much = unnamed.too_much(unnamed_share)
-    of_base = may_be_of_base(left, lone, unrepeated)
-    if much and not of_base:
+    if much and not left.may_be_of_base:
         why = unnamed.reason(unnamed_share)
         if left.whole - unnamed.structured > OFF:
             why += (
@@ -238,45 +264,6 @@ def judge(
             "though all that is left would be no gap if nothing were named"
         )
     return "named", left.stays
-
-
-def may_be_of_base(left: Left, lone: float = 0.0, differs: float | None = None) -> bool:
-    """Tell whether what names leave may all be the base's own error.
-
-    With nothing named it would be no gap, so it cannot speak against a name.
-
-    Parameters
-    ----------
-    left : Left
-    lone : float
-        Share of the power of what is left that stands in samples far off.
-    differs : float or None
-        Power of what is left that differs between periods of the same input, above the
-        floor and in floors; none where no record repeats.
-    """
-    return left.slight and not _foreign(left, lone, differs)
-
-
-def _foreign(left: Left, lone: float, unrepeated: float | None) -> str:
-    """Say what is left that no effect and no wrong hysteresis does, if any is."""
-    gap = max(left.all_before, 1.0)
-    far = lone * (1.0 + left.all_after)
-    if far > FOREIGN * gap:
-        return (
-            f"{100 * lone:.0f} % of the power that is left on the fit records stands "
-            "in lone samples, far off from the others, which no effect of the "
-            "vocabulary does"
-        )
-    differs = unrepeated is not None and unrepeated > max(
-        ABOVE_NOISE, FOREIGN * left.all_after
-    )
-    if differs:
-        return (
-            f"on the fit records {unrepeated:.2g} times the noise power is left that "
-            "differs from one period of the same input to the next, which neither a "
-            "named effect nor a wrong hysteresis does"
-        )
-    return ""
 
 
 def confidence(
