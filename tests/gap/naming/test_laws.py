@@ -100,7 +100,10 @@ def test_a_law_is_found_under_its_name(form):
     ranking = rank(state, score, known, folds=False)
     first = ranking[0]
     told = [f"{item.effect} {item.form} {item.gain:.0f}" for item in ranking]
-    assert (first.effect, first.form) == (name, form), told
+    # Generalized plays may bend to plain ones of other thresholds than those offered.
+    holds = {"plays": {"plays", "generalized plays"}}.get(form, {form})
+    assert first.effect == name, told
+    assert first.form in holds, told
     assert first.gain > PAYS, told
     gap = state.power(NOISE**2)
     assert first.state.share(state, NOISE**2, gap) > 0.95, told

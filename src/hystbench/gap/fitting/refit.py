@@ -22,7 +22,7 @@ from hystbench.gap.fitting.state import ModelState, beside_slope
 from hystbench.gap.fitting.variant_search import Trial
 from hystbench.record import FloatArray
 
-ROUNDS = 20
+ROUNDS = 5
 """Of least squares in a refit."""
 
 DAMPING = (0.0, 1e2, 1e4, 1e6)
