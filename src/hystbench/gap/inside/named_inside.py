@@ -100,6 +100,7 @@ def named_inside(
     offer = partial(laws_for, turns=turns, offered=start.offered)
     tried = []
     for host in hosts(fewer, quantities, identified, score):
+        say(f"inside: {host.words}; forces are tried in it")
         found = singles(host.fitted, offer, score, say, host.other)
         tried.append((host, found))
         if not may_gain(chosen(found, score.floor, share), score):
