@@ -2,8 +2,8 @@
 
 from functools import partial
 
+from hystbench.gap.inside.hypotheses import singles, together
 from hystbench.gap.inside.laws import laws_for
-from hystbench.gap.inside.search import singles, together
 
 
 def search(host, score, offered=None, turns=False, other=None):

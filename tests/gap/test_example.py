@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from hystbench.dataset import load_dataset
 from hystbench.gap.bases.load import load_base
-from hystbench.gap.decision import search
 from hystbench.gap.example import whole_period, write_example
 from hystbench.gap.records.evidence import load_evidence
+from hystbench.gap.search import search
 from hystbench.measurement import measure
 from hystbench.model import load_model
 from hystbench.record import Channel, Record

@@ -12,7 +12,6 @@ import pytest
 from hystbench.challenge.case import make_case
 from hystbench.challenge.plant.effects import VOCABULARY
 from hystbench.challenge.spec import CaseSpec
-from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state
@@ -23,6 +22,7 @@ from hystbench.gap.naming import add_effects as naming
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.records.floor import lone_share, noise_floor
 from hystbench.gap.records.scored_samples import Compared
+from hystbench.gap.search import search
 from hystbench.gap.thresholds import FOREIGN, PAYS, SCALE, SHAPE
 from tests.gap.halved import first_halves
 

@@ -36,7 +36,7 @@ class Motion(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Host(HeldBlock):
+class Dynamics(HeldBlock):
     """A block with a coordinate, which meets forces: a mechanism or an impedance."""
 
     @abstractmethod
@@ -85,7 +85,7 @@ class Host(HeldBlock):
         z: FloatArray,
         u: FloatArray,
         dt: float,
-        others: Sequence[tuple[Host, FloatArray]],
+        others: Sequence[tuple[Dynamics, FloatArray]],
     ) -> list[FloatArray]:
         """Compute the output, and those of others near, without a force inside."""
         every = [(Driven(host), own) for host, own in others]
@@ -132,7 +132,7 @@ class Force(AttachedBlock):
         """Let the force act inside the mechanism before."""
         if hasattr(before, "taking"):
             return before.taking(self)
-        if not isinstance(before, Host):
+        if not isinstance(before, Dynamics):
             raise InputError(
                 "expected mechanism or impedance just before it, or another force "
                 f"inside one, got {getattr(before, 'name', 'none')}"
@@ -191,7 +191,7 @@ def against(
 class Driven:
     """A mechanism or an impedance together with the forces inside it."""
 
-    host: Host
+    host: Dynamics
     forces: tuple[Force, ...] = ()
 
     hysteretic: ClassVar[bool] = False

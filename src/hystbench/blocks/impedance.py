@@ -20,7 +20,7 @@ from hystbench.blocks.curve import (
     through_samples,
     weighed,
 )
-from hystbench.blocks.force import Driven, Force, Host, Motion, against, exported
+from hystbench.blocks.force import Driven, Dynamics, Force, Motion, against, exported
 from hystbench.blocks.held import Hold
 from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
@@ -58,7 +58,7 @@ RATE, CURVATURE = _differences(1), _differences(2)
 
 
 @dataclass(frozen=True)
-class Impedance(Host):
+class Impedance(Dynamics):
     """Force of a device that is moved: ``y = m q'' + c q' + k q + F(q, q') + bias``.
 
     F is the sum of the forces that follow it in the chain. The input is the position q,

@@ -13,7 +13,7 @@ import numpy as np
 from hystbench import kernels
 from hystbench.blocks.base import Place
 from hystbench.blocks.curve import held_lines
-from hystbench.blocks.force import Driven, Force, Host, Motion, exported, rows
+from hystbench.blocks.force import Driven, Dynamics, Force, Motion, exported, rows
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
 from hystbench.blocks.starts import PASTS, STARTS, path_from
 from hystbench.blocks.state_space import StateSpace, discretise
@@ -31,7 +31,7 @@ CONTACT = 10
 
 
 @dataclass(frozen=True)
-class Mechanism(Host):
+class Mechanism(Dynamics):
     """A coordinate q of a machine: ``m q'' + c q' + k q + F(q, q') = gain z + bias``.
 
     F is the sum of the forces that follow it in the chain; without one it is linear. A

@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.force import Driven, Host
+from hystbench.blocks.force import Driven, Dynamics
 from hystbench.blocks.step import (
     LARGEST_POINTS,
     UNKNOWN_PAST,
@@ -246,7 +246,7 @@ def pieces_of(model: Model) -> Callable[[Any, Sampling], Piece]:
     places = {id(block): place for place, block in enumerate(model.chain, start=1)}
 
     def of_block(
-        block: Block | Host, tells: Block | Driven, sampling: Sampling
+        block: Block | Dynamics, tells: Block | Driven, sampling: Sampling
     ) -> Piece:
         """Ask for the step of a block, alone or with the forces inside it."""
         try:

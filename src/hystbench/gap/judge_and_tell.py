@@ -25,7 +25,7 @@ from hystbench.gap.fitting.uncertainty import (
 )
 from hystbench.gap.holdout.show import FitResult
 from hystbench.gap.judging.black_box import BlackBox, black_box
-from hystbench.gap.judging.gap_json import (
+from hystbench.gap.judging.effect_rows import (
     effect_mapping,
     not_tried,
     ranking_rows,

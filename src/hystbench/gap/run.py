@@ -14,7 +14,6 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.bases.lead import without_lead
 from hystbench.gap.bases.linear import is_identified
-from hystbench.gap.decision import search
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.on_records import compared_records, run_base, start_state
 from hystbench.gap.fitting.own_values import OwnValues
@@ -30,6 +29,7 @@ from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence, check_units
 from hystbench.gap.records.floor import Floor
+from hystbench.gap.search import search
 from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.gap.vocabulary import EVERYTHING, Vocabulary, say_in_words, with_device
 from hystbench.model import Model

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from operator import attrgetter
 
 from hystbench.figures.style import COLUMN, PAGE, unit_text
-from hystbench.gap.report.pictures import Picture, draw
+from hystbench.gap.report.pictures import EmbeddedPicture, draw
 from hystbench.inspection import pictures, words
 from hystbench.inspection.check import Check
 from hystbench.inspection.facts import Facts
@@ -83,7 +83,7 @@ def _jitter(item: Facts) -> str:
     return words.jitter_text(item.jitter).removesuffix(" %")
 
 
-def _pictures(found: Check) -> list[Picture]:
+def _pictures(found: Check) -> list[EmbeddedPicture]:
     count = min(len(found.records), pictures.LOOPS)
     columns = min(count, pictures.ROW)
     rows = math.ceil(count / columns)
@@ -108,7 +108,7 @@ def _pictures(found: Check) -> list[Picture]:
     ]
 
 
-def _chart(found: Check) -> Picture | None:
+def _chart(found: Check) -> EmbeddedPicture | None:
     shown = [item for item in found.effects if math.isfinite(item.seen_from)]
     if not shown:
         return None

@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench.gap import decision
+from hystbench.gap import search as search_module
 from hystbench.gap.bases.load import checked_base, load_base
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio
 from hystbench.gap.bases.split_linear import _block
 from hystbench.gap.bases.wiener_hammerstein import Halves, HalvesError
-from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.places import INSIDE
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.search import search
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model, load_model
 from hystbench.quantities import Quantities
@@ -137,7 +137,7 @@ def test_no_force_is_looked_for_where_the_curve_leaves_nothing(
     def look(*_):
         raise AssertionError("forces were looked for")
 
-    monkeypatch.setattr(decision, "named_inside", look)
+    monkeypatch.setattr(search_module, "named_inside", look)
     model = split[0].with_hold("band-limited")
     kinds = Quantities("force", "position")
     found = search(

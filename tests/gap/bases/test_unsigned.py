@@ -9,8 +9,8 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.linear import identified_linear
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.bases.unsigned import with_signs
-from hystbench.gap.decision import search
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.search import search
 from hystbench.record import Channel, Record
 
 DT, COUNT, NOISE = 0.02, 500, 0.02

@@ -5,7 +5,7 @@ import pytest
 
 from hystbench.blocks.exponential_curve import ExponentialCurve
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.decision import search
+from hystbench.gap.search import search
 from hystbench.model import Model
 from hystbench.record import Channel, Record
 

@@ -5,8 +5,8 @@ import pytest
 
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.load import load_base
-from hystbench.gap.decision import search
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.search import search
 from hystbench.record import Channel, Record
 
 DT, COUNT, NOISE = 0.5, 1000, 0.02

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from hystbench.gap.decision import search
 from hystbench.gap.fitting.on_records import free_numbers, start_state
 from hystbench.gap.fitting.refit import refit
+from hystbench.gap.search import search
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
 from tests.gap.small import GPI, block, hysteresis, measured, plain_score

@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import lfilter
 
-from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.own_values import (
@@ -22,6 +21,7 @@ from hystbench.gap.naming.with_own_values import without_shared
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import decide_in, show_in
 from hystbench.gap.schema import RECORD_VALUES
+from hystbench.gap.search import search
 from hystbench.model import Model
 from hystbench.schema import check_against_schema
 from tests.gap.closing import close_gap

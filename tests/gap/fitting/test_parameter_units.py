@@ -10,7 +10,7 @@ from hystbench.gap.effects.variant import Variant
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.parameter_units import unit_at, unit_behind
-from hystbench.gap.judging.gap_json import effect_mapping
+from hystbench.gap.judging.effect_rows import effect_mapping
 from hystbench.gap.judging.verdict import Left
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.thresholds import PAYS

@@ -19,9 +19,9 @@ from hystbench.gap.inside.further_modes import (
     with_another_mode,
     with_modes,
 )
+from hystbench.gap.inside.hypotheses import may_gain
 from hystbench.gap.inside.laws import laws_for
 from hystbench.gap.inside.modes import NUMBERS, frequency_of, sum_of
-from hystbench.gap.inside.search import may_gain
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.record import Channel, Record
 

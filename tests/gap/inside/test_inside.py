@@ -24,12 +24,12 @@ from hystbench.gap.inside.hosts import (
     is_seen_moving,
     one_coordinate,
 )
-from hystbench.gap.inside.laws import evened, how_it_moves, laws_for, with_law
-from hystbench.gap.inside.named_inside import chosen, named_inside
-from hystbench.gap.inside.search import (
+from hystbench.gap.inside.hypotheses import (
     starts,
     with_one_fewer,
 )
+from hystbench.gap.inside.laws import evened, how_it_moves, laws_for, with_law
+from hystbench.gap.inside.named_inside import chosen, named_inside
 from hystbench.gap.records.free_mass import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
 from hystbench.gap.records.scored_samples import ScoredSamples

@@ -6,11 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hystbench.gap import decision
+from hystbench.gap import search as search_module
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added
-from hystbench.gap.inside import search as inside_search
+from hystbench.gap.inside import hypotheses
 from hystbench.gap.inside.named_inside import Inside, _rounds, chosen
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.records.evidence import Evidence
@@ -124,11 +124,11 @@ def test_threes_are_tried_where_a_pair_pays_or_no_single_does(
         state = SimpleNamespace(chain=(), added=added(effects), freedom=0.0)
         return Fitted(state, score)
 
-    monkeypatch.setattr(inside_search, "_one_more", one_more)
-    monkeypatch.setattr(inside_search, "with_one_fewer", lambda *_: [])
+    monkeypatch.setattr(hypotheses, "_one_more", one_more)
+    monkeypatch.setattr(hypotheses, "with_one_fewer", lambda *_: [])
     score = SimpleNamespace(least=lambda freedom: -5000.0)
     found = [chained(0.0), chained(single, "friction")]
-    inside_search.together(found, lambda _: {}, score)
+    hypotheses.together(found, lambda _: {}, score)
     assert tried_levels == [2, 3][:levels]
 
 
@@ -153,8 +153,8 @@ def test_where_no_more_is_left_than_may_stay_no_chain_is_tried(
         calls.append(args)
         return add_effects(*args, **kwargs)
 
-    monkeypatch.setattr(decision, "add_effects", counted)
-    found = decision.search(
+    monkeypatch.setattr(search_module, "add_effects", counted)
+    found = search_module.search(
         "made",
         tuple(given),
         base,
@@ -194,10 +194,10 @@ def test_forces_are_looked_for_again_without_the_starts_that_they_show(monkeypat
         state = replace(start, chain=(host, spring), added=(added,)).settled()
         return Inside(base, start, Named(state), "")
 
-    monkeypatch.setattr(decision, "named_inside", look)
+    monkeypatch.setattr(search_module, "named_inside", look)
     kinds = Quantities("force", "position")
     with pytest.raises(FarEnoughError):
-        decision.search("made", given, base, declared=1e-3, quantities=kinds)
+        search_module.search("made", given, base, declared=1e-3, quantities=kinds)
     assert seen == [[0, 0], [0, 197]]
 
 
@@ -215,10 +215,10 @@ def test_what_drives_a_free_mass_may_be_bent(linear, monkeypatch):
         seen.extend(offered)
         raise FarEnoughError
 
-    monkeypatch.setattr(decision, "start_state", start_state)
+    monkeypatch.setattr(search_module, "start_state", start_state)
     kinds = Quantities("voltage", "position") if linear else None
     with pytest.raises(FarEnoughError):
-        decision.search("made", windows(record, 0.2), base, quantities=kinds)
+        search_module.search("made", windows(record, 0.2), base, quantities=kinds)
     assert ("asymmetry" in seen) == linear
     assert "dead-zone" in seen
     assert "sensor-nonlinearity" not in seen

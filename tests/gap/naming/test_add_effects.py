@@ -6,7 +6,7 @@ import pytest
 
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
-from hystbench.gap.naming.add_effects import Progress, advance
+from hystbench.gap.naming.add_effects import SoFar, advance
 from hystbench.gap.thresholds import PAYS
 from tests.gap.small import MODE, block, measured, records, state_of
 
@@ -22,7 +22,7 @@ def progress_with(lag_s, more=()):
     before = state_of((gain,), given)
     variant = next(iter(effects()["drive-lag"].variants(before.simulation)))
     after = with_effect(before, variant, {"time_constant_s": lag_s})
-    return replace(Progress.begun(before, NOISE), state=after.settled())
+    return replace(SoFar.begun(before, NOISE), state=after.settled())
 
 
 @pytest.mark.parametrize("lag_s", [LAG_S, 1.3 * LAG_S])

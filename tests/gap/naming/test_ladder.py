@@ -4,12 +4,12 @@ from itertools import pairwise
 
 import pytest
 
-from hystbench.gap.decision import search
 from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.holdout.show import score_hold_out
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.ladder import BASE, RETUNED, rungs
 from hystbench.gap.naming.rounds import Round
+from hystbench.gap.search import search
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
 from tests.gap.small import block, measured, state_of

@@ -9,7 +9,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect, without_effect
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.refit import finished
-from hystbench.gap.judging.gap_json import ranking_rows
+from hystbench.gap.judging.effect_rows import ranking_rows
 from hystbench.gap.naming import second_looks as reconsider
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, reasons

@@ -11,7 +11,7 @@ from matplotlib.transforms import Bbox
 
 from hystbench.errors import InputError
 from hystbench.figures.style import PAGE, in_style
-from hystbench.gap.locate.picture import Axis, Bars, Cells, Panel, Picture, series
+from hystbench.gap.locate.picture import Axis, Bars, Cells, Panel, ViewPicture, series
 from hystbench.gap.report import pictures, write_report
 from hystbench.gap.report.page import headline
 from hystbench.gap.report.read import Content
@@ -208,7 +208,7 @@ NOT_SAID = {0.96, 0.28}  # the black box's shares record by record
 LINE = Axis("frequency", "Hz", logarithmic=True), Axis("residual", "um")
 NAMES = ("sine-010hz", "sine-070hz")
 PICTURES = (
-    Picture(
+    ViewPicture(
         "spectrum",
         "Spectrum of the residual",
         (
@@ -222,7 +222,7 @@ PICTURES = (
             Panel(*LINE, (series("rising", [1.0, 2.0], [np.nan, 1.0]),)),
         ),
     ),
-    Picture(
+    ViewPicture(
         "over-plane",
         "How to read it: red is above",
         (
@@ -238,7 +238,7 @@ PICTURES = (
             ),
         ),
     ),
-    Picture(
+    ViewPicture(
         "slow",
         "Record behind record",
         (
@@ -253,7 +253,7 @@ PICTURES = (
             ),
         ),
     ),
-    Picture(
+    ViewPicture(
         "records",
         "Share in each record",
         (Panel(LINE[0], LINE[1], bars=Bars(list(NAMES), [20.0, 80.0])),),

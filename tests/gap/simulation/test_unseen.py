@@ -14,12 +14,12 @@ from hystbench.blocks.external import External
 from hystbench.challenge.case import make_case
 from hystbench.challenge.spec import CaseSpec
 from hystbench.gap.bases.load import load_base, simulated_column
-from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Declined
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.run import write_next_experiment
+from hystbench.gap.search import search
 from hystbench.gap.simulation.reshape import reshapings
 from hystbench.gap.simulation.simulation import Simulation
 from tests.gap.halved import first_halves

@@ -49,7 +49,7 @@ class Stretch(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Lines:
+class RecordSpectrum:
     """Spectral lines of one stretch.
 
     Parameters
@@ -78,7 +78,7 @@ class Lines:
 class Spectra:
     """Lines of all stretches, over one scale of frequency in rad/s."""
 
-    lines: tuple[Lines, ...]
+    lines: tuple[RecordSpectrum, ...]
     scale: float
 
     @classmethod
@@ -96,7 +96,7 @@ class Spectra:
         for w, u, y, constant in raw:
             cut = slice(0, max(_lines_that_matter(u), _lines_that_matter(y)))
             s = np.asarray(1j * w[cut] / scale, dtype=np.complex128)
-            lines.append(Lines(s, u[cut], y[cut], constant[cut]))
+            lines.append(RecordSpectrum(s, u[cut], y[cut], constant[cut]))
         return cls(tuple(lines), scale)
 
 
@@ -272,7 +272,9 @@ class _Problem:
         change = found[: self.order]
         return change if now is None else a - change
 
-    def _linear(self, lines: Lines, a: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+    def _linear(
+        self, lines: RecordSpectrum, a: FloatArray
+    ) -> tuple[ComplexArray, ComplexArray]:
         """Columns of numerator and constant, and those of the transient."""
         weight = 1 / _polynomial(a, lines.s)
         weighted = lines.powers[:, : self.order + 1] * weight[:, None]

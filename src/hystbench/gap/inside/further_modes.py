@@ -16,6 +16,11 @@ from hystbench.gap.fitting.least_squares import Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.beginnings import Beginnings
+from hystbench.gap.inside.hypotheses import (
+    fitted_likely,
+    may_gain,
+    starts,
+)
 from hystbench.gap.inside.laws import Offer, host_of
 from hystbench.gap.inside.modes import (
     NONE,
@@ -24,11 +29,6 @@ from hystbench.gap.inside.modes import (
     frequency_of,
     numbers_of,
     taken_out,
-)
-from hystbench.gap.inside.search import (
-    fitted_likely,
-    may_gain,
-    starts,
 )
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import CERTAIN, FURTHER, UNNAMED_SHARE

@@ -151,7 +151,7 @@ def split_modes(block: TransferFunction, output: str) -> list[tuple[Block, Block
     return [(one.mode, one.rest) for one in taken_out(block, output) if one.rest]
 
 
-class TakenOut(NamedTuple):
+class ModeTakenOut(NamedTuple):
     """A mode that was taken out of a transfer function.
 
     Parameters
@@ -171,7 +171,7 @@ class TakenOut(NamedTuple):
     through: float
 
 
-def taken_out(block: TransferFunction, output: str) -> Iterator[TakenOut]:
+def taken_out(block: TransferFunction, output: str) -> Iterator[ModeTakenOut]:
     """Take each oscillating mode out of a transfer function in turn, by frequency.
 
     Left out are those that are none of the motion, and those beside which the rest is
@@ -192,7 +192,7 @@ def taken_out(block: TransferFunction, output: str) -> Iterator[TakenOut]:
                 rest = sum_of(block, poles[others], residues[others], direct)
             except InputError:
                 continue
-        yield TakenOut(mode, rest, direct, through)
+        yield ModeTakenOut(mode, rest, direct, through)
 
 
 def direct_of(block: TransferFunction) -> float:

@@ -28,12 +28,12 @@ from hystbench.gap.inside.further_modes import (
     with_modes,
 )
 from hystbench.gap.inside.hosts import hosts
-from hystbench.gap.inside.laws import laws_for
-from hystbench.gap.inside.search import (
+from hystbench.gap.inside.hypotheses import (
     may_gain,
     singles,
     together,
 )
+from hystbench.gap.inside.laws import laws_for
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round
 from hystbench.gap.naming.with_own_values import ROUNDS, on_records

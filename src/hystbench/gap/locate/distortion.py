@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft, special
 
-from hystbench.gap.locate.picture import FREQUENCY, Axis, Panel, Picture, series
+from hystbench.gap.locate.picture import FREQUENCY, Axis, Panel, ViewPicture, series
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import LEAST_SHARE, SIGNIFICANT, chance
 from hystbench.gap.records.scored_samples import Compared, whole_periods
@@ -41,7 +41,7 @@ LINES = 100
 
 
 @dataclass(frozen=True)
-class Lines:
+class RecordLines:
     """The residual of one periodic record, averaged over periods, line by line.
 
     Parameters
@@ -84,14 +84,14 @@ class Distortion:
         input that has odd and even lines itself; and what does not repeat.
     p_values : ndarray, shape (5,)
         How often noise alone would leave as much; 1 where there is no such line.
-    records : tuple of Lines
+    records : tuple of RecordLines
     noise : float
         Variance of the floor.
     """
 
     shares: FloatArray
     p_values: FloatArray
-    records: tuple[Lines, ...]
+    records: tuple[RecordLines, ...]
     noise: float
 
     @property
@@ -119,7 +119,7 @@ class Distortion:
             "the input."
         )
 
-    def picture(self, unit: str) -> Picture:
+    def picture(self, unit: str) -> ViewPicture:
         """Draw the lines of the record that holds most beside the input's."""
         beside = [one.above(self.noise)[ODD:BETWEEN].sum() for one in self.records]
         one = self.records[int(np.argmax(beside))]
@@ -140,7 +140,7 @@ class Distortion:
             "Distortion: lines of the residual of the periodic record that has most "
             "beside the input's lines"
         )
-        return Picture("distortion", words, (panel,))
+        return ViewPicture("distortion", words, (panel,))
 
 
 def take_distortion(samples: ViewSamples) -> Distortion | None:
@@ -172,7 +172,7 @@ def take_distortion(samples: ViewSamples) -> Distortion | None:
     return Distortion(above / total, there, records, samples.noise)
 
 
-def _lines(item: Compared) -> Lines | None:
+def _lines(item: Compared) -> RecordLines | None:
     """Average a record's periods but the first, and sort its lines."""
     period = item.record.period_samples
     if not period or len(item.record) < 2 * period:
@@ -196,7 +196,7 @@ def _lines(item: Compared) -> Lines | None:
     one = np.ones(len(mean))
     scatter = np.sum(np.abs(runs - mean) ** 2, axis=0) * scale
     rows = (used * np.abs(mean) ** 2 * scale, scatter, one, 2 * (used - 1) * one)
-    return Lines(
+    return RecordLines(
         record=item.record.name,
         frequency=order[1:] / (period * item.record.dt),
         amplitude=(np.abs(mean) * scale)[1:],

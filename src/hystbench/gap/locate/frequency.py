@@ -17,7 +17,7 @@ from hystbench.gap.locate.picture import (
     FREQUENCY,
     Axis,
     Panel,
-    Picture,
+    ViewPicture,
     series,
     thinned,
 )
@@ -105,7 +105,7 @@ def _power(
     return np.histogram(at, edges, weights=power)
 
 
-def _spectrum(samples: ViewSamples, spectra: Spectra) -> Picture:
+def _spectrum(samples: ViewSamples, spectra: Spectra) -> ViewPicture:
     """Draw amplitude densities of simulation, residual, its linear part and floor."""
     # White noise of variance s^2 at a sampling interval dt has the density 2 s^2 dt.
     lengths = [len(item.record) for item in samples.compared]
@@ -123,10 +123,10 @@ def _spectrum(samples: ViewSamples, spectra: Spectra) -> Picture:
     )
     y = Axis("amplitude density", f"{samples.units[1]}/√Hz", logarithmic=True)
     words = "Spectrum of the residual beside the simulation and the floor"
-    return Picture("spectrum", words, (Panel(FREQUENCY, y, drawn),))
+    return ViewPicture("spectrum", words, (Panel(FREQUENCY, y, drawn),))
 
 
-def _response(spectra: Spectra) -> Picture:
+def _response(spectra: Spectra) -> ViewPicture:
     """Draw measurement over simulation where the input has power.
 
     A harmonic that the simulation makes by itself has no response.
@@ -152,7 +152,7 @@ def _response(spectra: Spectra) -> Picture:
         "simulation is right, and coherence of the gap with the input: one where a "
         "linear path leaves it, less where distortion or something else does"
     )
-    return Picture("response", words, tuple(panels))
+    return ViewPicture("response", words, tuple(panels))
 
 
 ComplexArray = NDArray[np.complex128]

@@ -21,8 +21,15 @@ import numpy as np
 from scipy import special
 
 from hystbench.gap.locate.forms import saved
-from hystbench.gap.locate.mode import LINES, Lines, Mode, find_modes, fit_mode, lines_of
-from hystbench.gap.locate.picture import Axis, Panel, Picture, series
+from hystbench.gap.locate.mode import (
+    LINES,
+    LevelLines,
+    Mode,
+    find_modes,
+    fit_mode,
+    lines_of,
+)
+from hystbench.gap.locate.picture import Axis, Panel, ViewPicture, series
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View
 from hystbench.gap.records.scored_samples import Compared
@@ -273,7 +280,7 @@ def level(samples: ViewSamples) -> View | None:
     )
 
 
-def picture_of(moving: Sequence[Moving], unit: str) -> Picture:
+def picture_of(moving: Sequence[Moving], unit: str) -> ViewPicture:
     """Draw how modes move with the input's level: frequency, damping, gain."""
     frequency, damping, gain = [], [], []
     for (role, by_width), mode in zip(ROLES, moving, strict=False):
@@ -299,7 +306,7 @@ def picture_of(moving: Sequence[Moving], unit: str) -> Picture:
         "by power: what the input puts in, over the mean square velocity; a curved "
         "spring widens the peak and leaves this alone. Bars: standard errors"
     )
-    return Picture("levels", words, panels)
+    return ViewPicture("levels", words, panels)
 
 
 def _levels(compared: Sequence[Compared]) -> list[list[Compared]]:
@@ -321,7 +328,7 @@ def _rms(item: Compared) -> float:
 
 
 def _followed(
-    lines: Sequence[Sequence[Lines]], end: int, mode: Mode, integrals: int
+    lines: Sequence[Sequence[LevelLines]], end: int, mode: Mode, integrals: int
 ) -> list[tuple[int, Mode]]:
     """Fit a mode at each level, each from its neighbour, as long as it has a peak."""
     order = range(len(lines))

@@ -32,7 +32,7 @@ ENOUGH = 2**15
 """Samples of a record without periods that are looked at, from its end on."""
 
 
-class Lines(NamedTuple):
+class LevelLines(NamedTuple):
     """Spectral lines of one record.
 
     Parameters
@@ -52,9 +52,9 @@ class Lines(NamedTuple):
     missed: ComplexArray
     ends: bool
 
-    def within(self, chosen: NDArray[np.bool_]) -> Lines:
+    def within(self, chosen: NDArray[np.bool_]) -> LevelLines:
         """Give some of the lines."""
-        return Lines(
+        return LevelLines(
             self.frequency[chosen],
             self.u[chosen],
             self.y[chosen],
@@ -69,7 +69,7 @@ class Lines(NamedTuple):
         return np.asarray(power > EXCITED * float(np.max(power, initial=0.0)))
 
 
-def lines_of(compared: Compared) -> Lines:
+def lines_of(compared: Compared) -> LevelLines:
     """Transform a record: its settled periods, or its end where none repeat."""
     record = compared.record
     period = record.period_samples
@@ -85,7 +85,7 @@ def lines_of(compared: Compared) -> Lines:
     centred = signals - signals.mean(axis=1, keepdims=True)
     u, y, missed = np.asarray(fft.rfft(centred))[:, 1:] * (np.sqrt(2) / n)
     frequency = np.asarray(fft.rfftfreq(n, record.dt))[1:]
-    return Lines(frequency, u, y, missed, not repeats)
+    return LevelLines(frequency, u, y, missed, not repeats)
 
 
 DEGREE = 2
@@ -141,13 +141,13 @@ class Mode:
 
 
 def fit_mode(
-    level: Sequence[Lines], frequency: float, damping: float, integrals: int
+    level: Sequence[LevelLines], frequency: float, damping: float, integrals: int
 ) -> Mode | None:
     """Fit a mode in a band that follows it, starting from where it was a level below.
 
     Parameters
     ----------
-    level : sequence of Lines
+    level : sequence of LevelLines
         Records of one level.
     frequency : float
         In Hz.
@@ -178,12 +178,12 @@ class _Band:
     """Lines of one level in a band; s is ``j f / centre``."""
 
     centre: float
-    lines: tuple[Lines, ...]
+    lines: tuple[LevelLines, ...]
     integrals: int
 
     @classmethod
     def of(
-        cls, level: Sequence[Lines], centre: float, half: float, integrals: int
+        cls, level: Sequence[LevelLines], centre: float, half: float, integrals: int
     ) -> _Band | None:
         parts = []
         for one in level:
@@ -314,12 +314,12 @@ LEAST_SHARE = 0.1
 """Of the output's power, that a mode worth a picture holds."""
 
 
-def find_modes(level: Sequence[Lines], integrals: int) -> tuple[Mode, ...]:
+def find_modes(level: Sequence[LevelLines], integrals: int) -> tuple[Mode, ...]:
     """Find the one or two modes that hold most of the output of a level.
 
     Parameters
     ----------
-    level : sequence of Lines
+    level : sequence of LevelLines
         Records of one level.
     integrals : int
         How often the output has to be integrated for a position.
@@ -341,7 +341,7 @@ def find_modes(level: Sequence[Lines], integrals: int) -> tuple[Mode, ...]:
     return tuple(found[:2])
 
 
-def _peaks(lines: Lines) -> list[float]:
+def _peaks(lines: LevelLines) -> list[float]:
     """Give the frequencies of the strongest peaks, in Hz."""
     from scipy.signal import find_peaks  # late: it takes long to load
 

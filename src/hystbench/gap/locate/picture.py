@@ -80,7 +80,7 @@ class Panel:
 
 
 @dataclass(frozen=True)
-class Picture:
+class ViewPicture:
     """Panels beside each other, and what they show in words."""
 
     name: str
@@ -142,7 +142,7 @@ BLOCKS = 25
 """Means of a record over slow time, at most."""
 
 
-def over_input(samples: ViewSamples) -> Picture:
+def over_input(samples: ViewSamples) -> ViewPicture:
     """Draw the residual over the input, branch by branch."""
     u, residual = samples.input, samples.residual
     top = max(float(u.max()), u.min() + 1e-300)
@@ -156,10 +156,12 @@ def over_input(samples: ViewSamples) -> Picture:
     rms = series("noise", middle, np.sqrt(mean_in(edges, u, residual**2)), "rms")
     given, made = samples.units
     panel = Panel(Axis("input", given), Axis("mean residual", made), (*lines, rms))
-    return Picture("over-input", "Mean residual over the input, by branch", (panel,))
+    return ViewPicture(
+        "over-input", "Mean residual over the input, by branch", (panel,)
+    )
 
 
-def over_plane(samples: ViewSamples) -> Picture | None:
+def over_plane(samples: ViewSamples) -> ViewPicture | None:
     """Average the residual over cells of the input and of its rate together.
 
     What depends on both, as a loop that widens with rate and amplitude, shows neither
@@ -168,7 +170,7 @@ def over_plane(samples: ViewSamples) -> Picture | None:
 
     Returns
     -------
-    Picture, optional
+    ViewPicture, optional
         None where the input never moves.
     """
     u, residual = samples.input, samples.residual
@@ -198,7 +200,7 @@ def over_plane(samples: ViewSamples) -> Picture | None:
         "moved at that rate; above zero it rises, below it falls; grey cells have few "
         f"samples. These cells hold {percent(share)} of the gap"
     )
-    return Picture("over-plane", words, (panel,))
+    return ViewPicture("over-plane", words, (panel,))
 
 
 def rate_edges(speed: FloatArray) -> FloatArray | None:
@@ -209,7 +211,7 @@ def rate_edges(speed: FloatArray) -> FloatArray | None:
     return np.concatenate([-found[::-1], [0.0], found]) if len(found) else None
 
 
-def over_time(samples: ViewSamples) -> Picture:
+def over_time(samples: ViewSamples) -> ViewPicture:
     """Draw the mean residual over blocks of whole periods, record behind record."""
     lines, start = [], 0.0
     for k, item in enumerate(samples.compared):
@@ -229,11 +231,13 @@ def over_time(samples: ViewSamples) -> Picture:
         labelled_above=True,
     )
     words = "Mean of the residual over slow time, record behind record"
-    return Picture("slow", words, (panel,))
+    return ViewPicture("slow", words, (panel,))
 
 
-def over_records(names: list[str], shares: FloatArray) -> Picture:
+def over_records(names: list[str], shares: FloatArray) -> ViewPicture:
     """Draw a bar a record."""
     bars = Bars(names, listed(100 * shares))
     panel = Panel(Axis("share of the gap's power", "%"), Axis("record"), bars=bars)
-    return Picture("records", "Share of the gap's power in each fit record", (panel,))
+    return ViewPicture(
+        "records", "Share of the gap's power in each fit record", (panel,)
+    )

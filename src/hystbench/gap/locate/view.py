@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hystbench.gap.locate.forms import FittedForm
-from hystbench.gap.locate.picture import Picture
+from hystbench.gap.locate.picture import ViewPicture
 from hystbench.gap.view_kinds import ViewKind
 from hystbench.sentences import percent
 
@@ -42,7 +42,7 @@ class View:
         Description length that it saves: see :func:`hystbench.gap.locate.locate`.
     named : bool
         Whether it shows what a named effect adds.
-    pictures : tuple of Picture
+    pictures : tuple of ViewPicture
     """
 
     view: ViewKind
@@ -55,7 +55,7 @@ class View:
     sentence: str
     saved: float
     named: bool = False
-    pictures: tuple[Picture, ...] = ()
+    pictures: tuple[ViewPicture, ...] = ()
 
     def to_mapping(self) -> dict[str, Any]:
         """Give what gap.json holds under ``where``."""
@@ -78,7 +78,7 @@ def view_of(
     ends: tuple[float | str, float | str],
     unit: str,
     told: str,
-    pictures: Sequence[Picture] = (),
+    pictures: Sequence[ViewPicture] = (),
     share: float | None = None,
 ) -> View:
     """Give the view that a form tells.

@@ -83,7 +83,7 @@ def add_effects(
         current().release()
 
 
-def settled(found: Progress, start: ModelState, floor_rms: float, say: Say) -> Named:
+def settled(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Named:
     """Give what a path found, or another where a wrong shape is to go first.
 
     Where a wrong shape of the hysteresis takes more of the gap away than the effect
@@ -117,7 +117,7 @@ def _others_than_taken(state: ModelState, rounds: Sequence[Round]) -> bool:
 
 
 @dataclass(frozen=True)
-class Progress:
+class SoFar:
     """How far adding effects one by one has come.
 
     Parameters
@@ -144,7 +144,7 @@ class Progress:
     @classmethod
     def begun(
         cls, state: ModelState, floor_rms: float, share: float = UNNAMED_SHARE
-    ) -> Progress:
+    ) -> SoFar:
         """Start from the base, re-tuned where it has free numbers."""
         floor = floor_rms**2
         if state.free:
@@ -173,9 +173,9 @@ def _path(
     say: Say,
     share: float,
     shape_first: bool = False,
-) -> Progress:
+) -> SoFar:
     """Add effects one by one."""
-    progress = Progress.begun(state, floor_rms, share)
+    progress = SoFar.begun(state, floor_rms, share)
     calls = current()
     while not (progress.done or calls.refused()):
         try:
@@ -192,11 +192,11 @@ def _path(
 
 
 def advance(
-    progress: Progress,
+    progress: SoFar,
     floor_rms: float,
     say: Say,
     shape_first: bool = False,
-) -> Progress:
+) -> SoFar:
     """Try every effect beside the model and add the one that pays, if any does."""
     floor = floor_rms**2
     little = progress.little_left(floor)
@@ -278,7 +278,7 @@ def _shape_takes_more(
     return first.state.share(before, floor, gap) < most / 2
 
 
-def _pays(item: Candidate, state: ModelState, floor: float, progress: Progress) -> bool:
+def _pays(item: Candidate, state: ModelState, floor: float, progress: SoFar) -> bool:
     """Tell whether an effect is to be added.
 
     The first has only to pay. A further one must take more than may stay unnamed as

@@ -9,7 +9,7 @@ from typing import Any
 from hystbench.figures.style import BLUE, COLUMN, GREY, in_style, unit_text
 from hystbench.gap.locate import LEVEL
 from hystbench.gap.report import diagram, pictures, words
-from hystbench.gap.report.pictures import Picture, draw, embedded
+from hystbench.gap.report.pictures import EmbeddedPicture, draw, embedded
 from hystbench.gap.report.read import Content
 from hystbench.gap.report.where_pictures import pictures_of
 from hystbench.gap.schema import LEFT_OUT
@@ -74,7 +74,7 @@ def with_optional(content: Mapping[str, Any]) -> dict[str, Any]:
     return gap
 
 
-def headline(gap: dict[str, Any], content: Content) -> list[Picture]:
+def headline(gap: dict[str, Any], content: Content) -> list[EmbeddedPicture]:
     """Draw the headline: a stretch of a hold-out record, and the sizes of the gap."""
     after = "with effects" if gap["effects"] else "re-tuned"
     found = []
@@ -119,7 +119,7 @@ def headline(gap: dict[str, Any], content: Content) -> list[Picture]:
     return found
 
 
-def _diagram(content: Content) -> Picture | None:
+def _diagram(content: Content) -> EmbeddedPicture | None:
     if content.model is None:
         return None
     said = diagram.words_of(content.model, content.gap)
@@ -135,7 +135,7 @@ def _input_column(gap: dict[str, Any]) -> str:
     return column_name(channel["name"], channel["unit"])
 
 
-def _ranking(gap: dict[str, Any]) -> Picture | None:
+def _ranking(gap: dict[str, Any]) -> EmbeddedPicture | None:
     first = [x for x in gap["ranking"] if x["round"] == 1 and not x["look"]]
     ranked = [item for item in first if "gain" in item][: pictures.BARS]
     if not ranked:
@@ -202,7 +202,7 @@ def _declined(gap: dict[str, Any]) -> list[dict[str, Any]]:
     return list(reversed(found.values()))
 
 
-def _ladder(gap: dict[str, Any]) -> Picture | None:
+def _ladder(gap: dict[str, Any]) -> EmbeddedPicture | None:
     rungs = [
         (f"+ {item['name']}" if k else item["name"], item["rms"])
         for k, item in enumerate(gap["ladder"])
@@ -219,7 +219,7 @@ def _ladder(gap: dict[str, Any]) -> Picture | None:
     )
 
 
-def _series(content: Content) -> Picture | None:
+def _series(content: Content) -> EmbeddedPicture | None:
     tables = pictures.worst(content.hold_out, pictures.RECORDS)
     if not tables:
         return None

@@ -44,7 +44,7 @@ BEFORE, AFTER, FLOOR = VERMILION, BLUE, BLACK
 
 
 @dataclass(frozen=True)
-class Picture:
+class EmbeddedPicture:
     """An image inside the page, and what it says where it cannot be seen."""
 
     source: str
@@ -59,7 +59,7 @@ def draw(
     width: float = PAGE,
     clear: bool = False,
     panels: tuple[int, int] = (1, 1),
-) -> Picture:
+) -> EmbeddedPicture:
     """Draw a figure with axes for the page."""
     with in_style():
         figure = Figure(figsize=(width, height))
@@ -69,7 +69,7 @@ def draw(
         return embedded(figure, words, clear=clear)
 
 
-def embedded(figure: Figure, words: str, *, clear: bool = False) -> Picture:
+def embedded(figure: Figure, words: str, *, clear: bool = False) -> EmbeddedPicture:
     """Take a figure into the page as SVG, the same bytes each time."""
     buffer = io.BytesIO()
     layout = figure.get_layout_engine()
@@ -79,7 +79,7 @@ def embedded(figure: Figure, words: str, *, clear: bool = False) -> Picture:
     about = {"Date": None, "Creator": None}
     figure.savefig(buffer, format="svg", metadata=about, transparent=clear)
     text = base64.b64encode(buffer.getvalue()).decode("ascii")
-    return Picture(f"data:image/svg+xml;base64,{text}", words)
+    return EmbeddedPicture(f"data:image/svg+xml;base64,{text}", words)
 
 
 def bars(

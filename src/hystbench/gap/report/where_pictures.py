@@ -20,7 +20,7 @@ from hystbench.figures.style import (
     legend_above,
     unit_text,
 )
-from hystbench.gap.report.pictures import BARS, Picture, bars, draw, logarithmic
+from hystbench.gap.report.pictures import BARS, EmbeddedPicture, bars, draw, logarithmic
 
 Content = Mapping[str, Any]
 
@@ -49,7 +49,7 @@ HOLLOW = ("first by width", "second by width")
 HEIGHT, OF_A_MAP, LEAST, A_BAR = 2.4, 3.2, 0.8, 0.18
 
 
-def pictures_of(curves: Content | None) -> tuple[list[Picture], list[str]]:
+def pictures_of(curves: Content | None) -> tuple[list[EmbeddedPicture], list[str]]:
     """Draw the pictures that curves.json holds, and tell which it has not and why.
 
     Raises
@@ -67,7 +67,7 @@ def pictures_of(curves: Content | None) -> tuple[list[Picture], list[str]]:
         ) from error
 
 
-def _drawn(picture: Content) -> Picture:
+def _drawn(picture: Content) -> EmbeddedPicture:
     panels = picture["panels"]
 
     def paint(axes: Any) -> None:

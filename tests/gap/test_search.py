@@ -8,8 +8,7 @@ import pytest
 from hystbench.blocks.curve import finer
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.errors import InputError
-from hystbench.gap import decision as decision_module
-from hystbench.gap.decision import judge_and_tell, search
+from hystbench.gap import search as search_module
 from hystbench.gap.effects import effects
 from hystbench.gap.experiment import tell_apart
 from hystbench.gap.experiment.excitations import Limits
@@ -21,6 +20,7 @@ from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.judging.verdict import Left
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
+from hystbench.gap.search import judge_and_tell, search
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
 from tests.gap.small import block, hysteresis, measured
@@ -121,7 +121,7 @@ def test_the_next_experiment_keeps_within_the_limits_that_were_asked(alike):
 def test_limits_that_no_input_fits_are_refused_before_the_search(alike, monkeypatch):
     base, start, _, _ = alike
     searched = lambda *given: pytest.fail("searched")  # noqa: E731
-    monkeypatch.setattr(decision_module, "add_effects", searched)
+    monkeypatch.setattr(search_module, "add_effects", searched)
     with pytest.raises(InputError, match="expected low < high"):
         search("made", start.records, base, asked={"low": 1.0, "high": 0.5})
 

@@ -10,18 +10,18 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.parameters import at_ends, base_parameters
 from hystbench.gap.fitting.state import Added, Free
-from hystbench.gap.judging.gap_json import effect_mapping, ranking_rows
+from hystbench.gap.judging.effect_rows import effect_mapping, ranking_rows
 from hystbench.gap.judging.verdict import Left
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook, in_order
 from hystbench.gap.schema import RANK
+from hystbench.gap.search import search
 from hystbench.model import Model, load_model
 from hystbench.model_content import Provenance
 from hystbench.schema import check_against_schema
