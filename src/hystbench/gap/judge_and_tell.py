@@ -23,7 +23,6 @@ from hystbench.gap.fitting.uncertainty import (
     size_error,
     standard_errors,
 )
-from hystbench.gap.holdout.show import FitResult
 from hystbench.gap.judging.black_box import BlackBox, black_box
 from hystbench.gap.judging.effect_rows import (
     effect_mapping,
@@ -31,6 +30,7 @@ from hystbench.gap.judging.effect_rows import (
     ranking_rows,
     simulator_mapping,
 )
+from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.judging.unnamed import Unnamed, what_is_unnamed
 from hystbench.gap.judging.verdict import Left, Word, judge, what_is_left, what_mends
 from hystbench.gap.locate import curves, locate

@@ -19,10 +19,11 @@ from hystbench.gap.fitting.on_records import compared_records, run_base, start_s
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.holdout.outcome import outcome
-from hystbench.gap.holdout.show import FitResult, Outcome
+from hystbench.gap.holdout.show import Outcome
 from hystbench.gap.inside.named_inside import quantities_if_linear
 from hystbench.gap.judge_and_tell import Decision
 from hystbench.gap.judging.black_box import black_box
+from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.naming.built_in import BuiltIn, build_in
 from hystbench.gap.naming.forecast_calls import keep_back
 from hystbench.gap.naming.ladder import Rung

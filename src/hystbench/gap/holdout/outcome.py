@@ -15,13 +15,13 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.holdout.show import (
-    FitResult,
     Outcome,
     as_recorded,
     nuisance_of,
     score_hold_out,
 )
 from hystbench.gap.holdout.shrink import left_rms
+from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.thresholds import UNNAMED_SHARE

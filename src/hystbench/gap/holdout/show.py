@@ -11,11 +11,11 @@ import numpy as np
 from hystbench.errors import InputError
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.on_records import run_base
-from hystbench.gap.fitting.own_values import NONE, OwnValues
+from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.holdout.shrink import Shrink, left_rms, shrink
 from hystbench.gap.judging.black_box import BlackBox
-from hystbench.gap.naming.ladder import Rung
+from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.nuisance import (
     Nuisance,
@@ -26,32 +26,6 @@ from hystbench.gap.records.scored_samples import rms
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
-
-
-@dataclass(frozen=True)
-class FitResult:
-    """What the fit records fix; hold-out records are compared with it.
-
-    Parameters
-    ----------
-    base : Model
-    state : ModelState
-        The model with all effects that were added, on the fit records.
-    floor : Floor
-    black_box : BlackBox
-        Fitted to what the base leaves on the fit records.
-    rungs : tuple of Rung
-        The models on the way from the base to the last effect.
-    own : OwnValues
-        What some records have of their own: a hold-out record may have the same.
-    """
-
-    base: Model
-    state: ModelState
-    floor: Floor
-    black_box: BlackBox
-    rungs: tuple[Rung, ...]
-    own: OwnValues = NONE
 
 
 @dataclass(frozen=True)
