@@ -98,6 +98,27 @@ def test_a_free_correction_is_no_rival_of_a_law_that_leaves_little(
     assert ranking[0].effect == first
 
 
+@pytest.mark.parametrize(
+    ("numbers", "left", "first"),
+    [
+        (2.0, 0.015, "calibration-error"),
+        (2.0, 0.05, "asymmetry"),  # the bias takes what matters
+        (3.0, 0.015, "asymmetry"),  # the other is no simpler
+    ],
+)
+def test_a_bias_that_takes_hardly_more_than_a_gain_and_an_offset_is_none(
+    numbers, left, first
+):
+    """Both have an offset: of the bias it is that of the sensor's zero."""
+    score = plain_score(state_of(LOOP))
+    bias = Candidate("asymmetry", "material", "bias", 0.0, 437.0, Leaves(0.01, 2.0))
+    other = Candidate(
+        "calibration-error", "sensor", "both", 10.0, 427.0, Leaves(left, numbers)
+    )
+    ranking = beyond_simpler_laws([bias, other], Leaves(1.0, 0.0), score)
+    assert ranking[0].effect == first
+
+
 def test_a_corner_of_the_field_is_the_limit_of_the_drive():
     """Of a soft limit the sharpest is a clip: it is no saturation."""
     clipped = (block("drive-saturation", limit=0.5), *LOOP)

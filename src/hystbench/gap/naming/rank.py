@@ -186,7 +186,7 @@ def beyond_simpler_laws(
     Two sorts do: a free form, such as a path or a correction of the hysteresis, which
     is no rival of a law that leaves no more than may stay in all; and what a law has
     beside an offset of the output, as a bias of the field has one when the sensor is
-    set to zero with it on, where an effect of fewer numbers leaves hardly more of the
+    set to zero with it on, where an effect of no more numbers leaves hardly more of the
     gap. Either may stand for what the simulation misses, so that it has to be beyond
     doubt.
     """
@@ -200,7 +200,7 @@ def beyond_simpler_laws(
         for other in candidates:
             if other.state is None or other.gain < PAYS or other.score <= item.score:
                 continue
-            simpler = item.state.freedom > other.state.freedom
+            simpler = item.state.freedom >= other.state.freedom
             if simpler and item.state.share(other.state, floor, gap) < more:
                 dearer, gain = item.score + CERTAIN, item.gain - CERTAIN
                 return replace(item, score=dearer, gain=gain)
