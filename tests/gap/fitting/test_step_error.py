@@ -11,7 +11,7 @@ from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import above_floor, floor_with_steps, step_error
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.naming import add_effects as naming
-from hystbench.gap.naming.add_effects import Progress, advance
+from hystbench.gap.naming.add_effects import SoFar, advance
 from hystbench.gap.progress import silent
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
@@ -97,7 +97,7 @@ def test_no_effect_is_tried_where_steps_hold_what_is_left(monkeypatch, error):
     monkeypatch.setattr(
         "hystbench.gap.fitting.model_score.step_error", lambda state: error
     )
-    progress = Progress(state, 8 * NOISE**2)  # all that the base leaves is still there
+    progress = SoFar(state, 8 * NOISE**2)  # all that the base leaves is still there
     if error:
         assert advance(progress, NOISE, silent).done
     else:
