@@ -13,7 +13,7 @@ from hystbench.compare.claims import (
     judge_all,
     read_claim,
 )
-from hystbench.compare.claims.claim import NotTestable, judge
+from hystbench.compare.claims.claim import Condition, NotTestable, judge
 from hystbench.compare.claims.operators import (
     at_two_speeds,
     loop_asymmetry,
@@ -502,8 +502,19 @@ def test_a_new_claim_is_a_row():
     assert (found.verdict, found.evidence) == ("not reproduced", "36 edges")
     with pytest.raises(KeyError, match="no_such"):
         read_claim(ROW | {"measure": "filters.no_such"})
-    with pytest.raises(SyntaxError, match="below 20"):
+    with pytest.raises(ValueError, match="below 20"):
         read_claim(ROW | {"holds": ["edges below 20"]})
+    with pytest.raises(ValueError, match="expected"):
+        read_claim(ROW | {"holds": ["print() or edges"]})
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [("a < b", False), ("2 * a >= b", True), ("b <= 2 * a", True), ("b == 4", True)],
+)
+def test_a_condition_compares_numbers(text, wanted):
+    assert Condition(text).holds({"a": 4.0, "b": 4}) is wanted
+    assert not Condition(text).holds({"a": math.nan, "b": math.nan})
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ from hystbench.compare.claims import (
 )
 from hystbench.compare.claims.claim import (
     Claim,
+    Condition,
     Judgement,
     Test,
     about_signals,
@@ -51,7 +52,7 @@ def _test(row: Mapping[str, Any]) -> Test:
     return Test(
         measure=MEASURES[row["measure"]],
         arguments=row.get("with", {}),
-        holds=tuple(compile(text, text, "eval") for text in row["holds"]),
+        holds=tuple(map(Condition, row["holds"])),
         says=row["says"],
         otherwise=row.get("otherwise", ""),
     )

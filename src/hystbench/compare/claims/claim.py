@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import operator
+import re
 import string
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from types import CodeType
 from typing import Any, Literal
 
 from hystbench.compare.beside import Holding, holding_text
@@ -36,6 +37,16 @@ Measure = Callable[..., Numbers]
 """Finds numbers in evidence; takes the arguments of a row of the table as well."""
 
 
+PREDICATES: dict[str, Callable[[Any, Any], bool]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    "==": operator.eq,
+    ">=": operator.ge,
+    ">": operator.gt,
+}
+_CONDITION = re.compile(r"(?:(\S+) \* )?(\w+) (<=|<|==|>=|>) (?:(\S+) \* )?(\S+)")
+
+
 @dataclass(frozen=True)
 class Tested:
     """Whether a claim holds, and the numbers that say so in one sentence."""
@@ -46,6 +57,47 @@ class Tested:
 
 class NotTestable(Exception):  # noqa: N818 - it is no error but a verdict
     """A claim lacks what it needs; the message says what."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A comparison of a measured number with a limit: ``2 * better >= both``.
+
+    Parameters
+    ----------
+    text : str
+        ``name predicate limit``. The predicate is one of ``PREDICATES``; the limit is
+        a number or the name of another measured number. A factor may stand before
+        each name.
+
+    Raises
+    ------
+    ValueError
+        If the text is no such comparison.
+    """
+
+    text: str
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be read."""
+        self._parts()
+
+    def _parts(self) -> tuple[str | Any, ...]:
+        found = _CONDITION.fullmatch(self.text)
+        if found is None:
+            raise ValueError(f"{self.text!r}: expected 'name <= limit' or alike")
+        return found.groups()
+
+    def holds(self, numbers: Numbers) -> bool:
+        """Tell whether the numbers fulfil it; NaN fulfils none."""
+        times, name, predicate, limit_times, limit = self._parts()
+        left = _scaled(times, numbers[name])
+        known = numbers[limit] if limit in numbers else float(limit)
+        return bool(PREDICATES[predicate](left, _scaled(limit_times, known)))
+
+
+def _scaled(factor: str | None, value: Any) -> Any:
+    return value if factor is None else float(factor) * value
 
 
 class Sentence(string.Formatter):
@@ -79,9 +131,8 @@ class Test:
         None where nothing can judge it: the sentence says why.
     arguments : mapping of str to object
         What the measure takes beside the evidence.
-    holds : tuple of code
-        Comparisons of the numbers by name, compiled: the claim holds where all of them
-        do. NaN fulfils none.
+    holds : tuple of Condition
+        The claim holds where all of them do.
     says : str
         Sentence with the numbers in braces.
     otherwise : str
@@ -90,7 +141,7 @@ class Test:
 
     measure: Measure | None
     arguments: Mapping[str, Any] = field(default_factory=dict)
-    holds: tuple[CodeType, ...] = ()
+    holds: tuple[Condition, ...] = ()
     says: str = ""
     otherwise: str = ""
 
@@ -105,8 +156,7 @@ class Test:
         if self.measure is None:
             raise NotTestable(self.says)
         numbers = self.measure(evidence, **self.arguments)
-        # The comparisons are of the package's own table.
-        holds = all(eval(each, {}, dict(numbers)) for each in self.holds)  # noqa: S307
+        holds = all(condition.holds(numbers) for condition in self.holds)
         text = self.says if holds or not self.otherwise else self.otherwise
         return Tested(holds, Sentence().vformat(text, (), numbers))
 
