@@ -11,6 +11,7 @@ import numpy as np
 from hystbench.blocks.curve import AHEAD, POINTS, value_at, weighed
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.parameter import choice, number
+from hystbench.blocks.starts import path_from
 from hystbench.blocks.step import Sampling, Step, smooth_curve
 from hystbench.record import FloatArray
 
@@ -59,7 +60,8 @@ class InputDelay(HeldBlock):
             v: FloatArray = np.interp(place - shift, place, z)
         else:
             v = later(z, shift)
-        v[place < shift] = z[0] if self.start == "settled" else 0.0
+        _, before = path_from(z, self.start)
+        v[place < shift] = before
         return v
 
     def step(self, sampling: Sampling) -> Step:

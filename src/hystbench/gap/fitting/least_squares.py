@@ -1,9 +1,10 @@
 """Fitting all free numbers of a model together, by Levenberg and Marquardt's steps.
 
-It goes far: a force inside the dynamics starts where it does little. What is lowered is
-a sum of squares, and steps are as long as the last ones were good for. A refit starts
-near, and lowers the score itself, beside amplitudes that are solved for: see
-:mod:`hystbench.gap.fitting.refit`. Neither does the other's work.
+It goes far: a force inside the dynamics starts where it does little, and generalized
+plays where they hardly bend. What is lowered is a sum of squares, and steps are as long
+as the last ones were good for. A refit starts near, and lowers the score itself, beside
+amplitudes that are solved for: see :mod:`hystbench.gap.fitting.refit`. Neither does the
+other's work.
 """
 
 from __future__ import annotations
