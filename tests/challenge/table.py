@@ -32,7 +32,7 @@ def markdown_table() -> str:
         first = [f"`{kind.name}`{use}", kind.place]
         views = ", ".join(kind.views)
         for form, about in kind.forms.items():
-            second = form
+            second = form if about.use == "all" else f"{form} ({about.use})"
             for name, item in about.ranges.items() or [("", None)]:
                 cells = [*first, second, "", "", "", "", views]
                 if item is not None:

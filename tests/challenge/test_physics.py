@@ -49,6 +49,13 @@ def test_diffusion_into_a_rod(frequency, tau):
 
 
 @pytest.mark.parametrize("frequency", FREQUENCIES)
+def test_a_lag_of_half_order(frequency):
+    found = response(drive.square_root, {"time_constant_s": 6e-4}, frequency)
+    s = 2j * np.pi * frequency
+    assert found == pytest.approx((1.0 + s * 6e-4) ** -0.5, rel=0.01)
+
+
+@pytest.mark.parametrize("frequency", FREQUENCIES)
 def test_lag(frequency):
     tau = 8e-4
     found = response(drive.lag, {"time_constant_s": tau}, frequency)

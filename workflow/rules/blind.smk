@@ -95,6 +95,7 @@ rule blind_summary:
                 "cases",
                 "transfer-cases",
                 "confusion",
+                "never-seen",
                 "confused",
                 "effects",
                 "retuned",

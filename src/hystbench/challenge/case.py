@@ -22,7 +22,12 @@ from hystbench.record import FloatArray, Record
 #: An effect's difference is to be within these shares of the output's rms on the fit
 #: records; outside, its size is changed, within what physics allows. Where the base is
 #: of another family its own error is 1 or 2 % of the output: an effect is to be larger.
-SMALLEST_EFFECT = {"gpi": 0.012, "preisach": 0.03, "jiles-atherton": 0.03}
+SMALLEST_EFFECT = {
+    "gpi": 0.012,
+    "preisach": 0.03,
+    "jiles-atherton": 0.03,
+    "duhem": 0.03,
+}
 LARGEST_EFFECT = 0.12
 #: Smallest step of what is written down, in um: a 16-bit converter over 65 um.
 RESOLUTION = 0.001
@@ -190,7 +195,7 @@ def _draw(
     gain = 0.0
     for name in spec.effects:
         kind = IN_ACTUATOR[name]
-        effect = draw_effect(kind, random, spec.spread, _forms(name, spec.family))
+        effect = draw_effect(kind, random, spec.spread, _forms(name, spec))
         if name == "stiffness-hardening":
             values = {**effect.parameters, **asdict(mode)}
             effect = HiddenEffect(kind, effect.form, values)
@@ -203,11 +208,18 @@ def _draw(
     return plant, tuple(effects)
 
 
-def _forms(name: str, family: str) -> tuple[str, ...]:
-    """Forms of an effect that the plant's family can have."""
+def _forms(name: str, spec: CaseSpec) -> tuple[str, ...]:
+    """Forms of an effect that the plant's family can have.
+
+    Other records are the transfer set's: forms that are kept for it come first.
+    """
     if name == "rate-dependent-hysteresis":
-        return ("growing-thresholds",) if family == "gpi" else ("excess-field",)
-    return tuple(IN_ACTUATOR[name].forms)
+        return ("growing-thresholds",) if spec.family == "gpi" else ("excess-field",)
+    forms = IN_ACTUATOR[name].forms
+    kept = tuple(form for form, law in forms.items() if law.use == "transfer")
+    if spec.campaign == "other" and kept:
+        return kept
+    return tuple(form for form in forms if form not in kept)
 
 
 def _other_loop(

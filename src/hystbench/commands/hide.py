@@ -22,7 +22,7 @@ def hide(
         "single, pair, triple, none or unlisted: draw the effects, or say none.",
     ] = None,
     family: Annotated[
-        str, "gpi, preisach, jiles-atherton, mass-spring, free-mass, ..."
+        str, "gpi, preisach, jiles-atherton, duhem, mass-spring, ..."
     ] = "gpi",
     ratio_db: Annotated[float, "Gap over noise, in dB."] = 20.0,
     seed: int,

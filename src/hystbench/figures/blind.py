@@ -22,6 +22,7 @@ FAMILIES = {
     "gpi": ("GPI plant", style.BLUE, "o"),
     "preisach": ("Preisach plant", style.ORANGE, "s"),
     "jiles-atherton": ("Jiles-Atherton plant", style.GREEN, "^"),
+    "duhem": ("Duhem plant", style.PURPLE, "v"),
 }
 #: The same of machines, in a contest of their own.
 MACHINES = {

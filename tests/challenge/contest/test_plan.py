@@ -14,8 +14,10 @@ from hystbench.challenge.contest.plan import (
     plan,
     sizes,
 )
+from hystbench.challenge.make import make
 from hystbench.challenge.plant.effects import IN_ACTUATOR, UNLISTED, VOCABULARY
 from hystbench.challenge.plant.inside import MACHINES, hidden_in
+from hystbench.challenge.spec import CaseSpec
 from hystbench.errors import InputError
 from tests.conftest import ROOT
 
@@ -74,8 +76,14 @@ def test_the_published_set_is_stratified_as_asked():
     assert len(plan("small")) == 12
 
 
-@pytest.mark.parametrize("name", ["development", "published", "transfer"])
-@pytest.mark.parametrize("family", ["gpi", "preisach", "jiles-atherton"])
+SETS_OF_ALL = [
+    (name, family)
+    for name in ("development", "published")
+    for family in ("gpi", "preisach", "jiles-atherton")
+] + [("transfer", "gpi"), ("transfer", "duhem")]
+
+
+@pytest.mark.parametrize(("name", "family"), SETS_OF_ALL)
 def test_single_effects_are_balanced(name, family):
     chosen = [
         entry.spec.effects[0]
@@ -102,6 +110,22 @@ def test_the_transfer_set_is_shifted_and_shares_no_unlisted_effect():
     assert unlisted("transfer") == half
     others = unlisted("published") | unlisted("development") | unlisted("small")
     assert not others & half
+
+
+def test_no_other_set_holds_a_family_or_a_form_that_is_kept_for_transfer():
+    assert count("transfer", family="duhem") > 0
+    for name in ("small", "development", "published", "left-out"):
+        assert count(name, family="duhem") == 0
+
+    def form(campaign, seed=1):
+        spec = CaseSpec(seed, "single", ("creep",), "gpi", 20.0, 1.0, campaign)
+        return make(spec).truth["effects"][0]["form"]
+
+    assert form("other") == "fractional"
+    assert {form("standard", seed) for seed in range(9)} == {
+        "one-element",
+        "three-elements",
+    }
 
 
 def test_a_larger_contest_holds_the_smaller_one():

@@ -24,7 +24,7 @@ from hystbench.challenge.plant.inside import MACHINES
 
 FAMILIES = {
     "gpi": ("gpi",),
-    "foreign": ("preisach", "jiles-atherton"),
+    "foreign": ("preisach", "jiles-atherton", "duhem"),
     "preisach": ("preisach",),
     "jiles-atherton": ("jiles-atherton",),
     "machines": MACHINES,

@@ -10,6 +10,7 @@ import pandas as pd
 
 from hystbench.challenge.contest import table, tables
 from hystbench.challenge.contest.frames import frame, write_frame
+from hystbench.challenge.contest.never_seen import never_seen
 from hystbench.challenge.contest.summary import Asked, further, reach, summary
 from hystbench.files import write_csv, write_json
 
@@ -57,6 +58,7 @@ def write_score(
         "further.csv": further(own),
         "transfer.csv": carried,
         "confusion.csv": tables.confusion(own),
+        "never-seen.csv": never_seen(transfer),
         "confused.csv": tables.confused(own),
         "effects.csv": tables.by_effect(own),
         "retuned.csv": tables.retuned(own),

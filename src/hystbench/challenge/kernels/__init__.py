@@ -26,6 +26,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hc_generalized_plays": (None, "iiaaaaaaa"),
     "hc_everett": (SIZE, "iiifaaaa"),
     "hc_jiles_atherton": (None, "ifffffaaa"),
+    "hc_duhem": (None, "iffffaa"),
     "hc_mass": (None, "ifffffaaaaaa"),
     "hc_impedance": (None, "ifaaa"),
     "hc_tanks": (None, "iifaaaa"),

@@ -1,4 +1,5 @@
-/* Hysteresis: generalized plays, Everett's function, the Jiles-Atherton equation. */
+/* Hysteresis: generalized plays, Everett's function, the equations of Jiles and
+   Atherton and of Duhem. */
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -148,4 +149,28 @@ EXPORT void hc_jiles_atherton(ptrdiff_t n, double shape, double coupling,
     }
     state[0] = h;
     state[1] = value;
+}
+
+/* Duhem's equation over the input, dy/dv = +-rate (f - y) + stiff f', f a tanh about a
+   bias, both zero at rest. Each step is cut into pieces of at most a hundredth of the
+   knee, in which f is taken as straight and the equation is solved exactly. */
+EXPORT void hc_duhem(ptrdiff_t n, double rate, double stiff, double knee, double bias,
+                     const double *v, double *y)
+{
+    double rest = tanh(bias / knee), now = 0.0, f = 0.0, value = 0.0;
+    for (ptrdiff_t k = 0; k < n; k++) {
+        double way = v[k] - now;
+        ptrdiff_t pieces = (ptrdiff_t)ceil(fabs(way) / (0.01 * knee));
+        double step = pieces ? way / (double)pieces : 0.0;
+        double kept = exp(-rate * fabs(step));
+        for (ptrdiff_t i = 1; i <= pieces; i++) {
+            double next = tanh((now + (double)i * step + bias) / knee) - rest;
+            /* y runs behind a straight f by so much once it has settled */
+            double behind = (1.0 - stiff) * (next - f) / (rate * fabs(step));
+            value = next - behind + (value - (f - behind)) * kept;
+            f = next;
+        }
+        now = v[k];
+        y[k] = value;
+    }
 }

@@ -32,9 +32,29 @@ def rod(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     return kernels.run("hc_diffusion", CELLS, 1, run.dt, p["time_constant_s"], over=z)
 
 
+def square_root(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Follow as ``(1 + s tau)^-1/2``, the mean of lags ``1 / (1 + s tau sin(a)^2)``.
+
+    The mean is over angles ``a`` from 0 to a right angle; at high frequencies the
+    response falls by 10 dB a decade, at 45 degrees.
+    """
+    angles = (np.arange(CELLS) + 0.5) * 0.5 * np.pi / CELLS
+    lags = [
+        # what is shorter than half a step, Runge-Kutta cannot follow, nor can the grid
+        kernels.run("hc_lag", run.dt, time, over=z) if time > 0.5 * run.dt else z
+        for time in p["time_constant_s"] * np.sin(angles) ** 2
+    ]
+    return np.asarray(np.mean(lags, axis=0))
+
+
 def clip(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     """Limit the current at the amplifier's supply."""
     return np.clip(z, -p["limit"], p["limit"])
+
+
+def soft_clip(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Limit the current round the corner: ``z / (1 + |z / limit|^8)^(1/8)``."""
+    return z / (1.0 + np.abs(z / p["limit"]) ** 8) ** 0.125
 
 
 def slew(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
@@ -45,3 +65,8 @@ def slew(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
 def dead_zone(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     """Give no current near zero: crossover of a push-pull stage."""
     return z - np.clip(z, -p["half_width"], p["half_width"])
+
+
+def rounded_dead_zone(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Give little current near zero, with rounded corners: ``z - w tanh(z / w)``."""
+    return z - p["half_width"] * np.tanh(z / p["half_width"])

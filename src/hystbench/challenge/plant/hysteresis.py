@@ -1,4 +1,4 @@
-"""Hysteresis of three families, each from its own definition.
+"""Hysteresis of four families, each from its own definition.
 
 Fields are currents in A, outputs are displacements in um that are zero at the start.
 """
@@ -197,6 +197,39 @@ class JilesAtherton:
         return replace(self, strain=self.strain * factor)
 
 
+@dataclass(frozen=True)
+class Duhem:
+    """Duhem's equation as Coleman and Hodgdon write it.
+
+    ``dy/dt = rate |dv/dt| (f(v) - y) + stiff f'(v) dv/dt``, with ``f(v)`` a tanh about
+    a bias. It remembers its own output alone: a minor loop does not close where it
+    began, as loops of plays, of Preisach's operator and of real magnets do.
+
+    References
+    ----------
+    .. [1] B. D. Coleman, M. L. Hodgdon, "A constitutive relation for rate-independent
+       hysteresis in ferromagnetically soft materials", International Journal of
+       Engineering Science 24 (1986) 897-919.
+    """
+
+    rate: float  # 1/A
+    stiff: float
+    knee: float  # A
+    bias: float  # A
+    height: float  # um
+    family: str = "duhem"
+
+    def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
+        """Follow the equation in steps of the input, exactly for a straight f."""
+        del growth  # plays alone have thresholds
+        constants = (self.rate, self.stiff, self.knee, self.bias)
+        return self.height * kernels.run("hc_duhem", *constants, over=v)
+
+    def scaled(self, factor: float) -> Duhem:
+        """Multiply the displacement."""
+        return replace(self, height=self.height * factor)
+
+
 def draw_plays(random: np.random.Generator) -> GeneralizedPlays:
     """Draw generalized plays: by a coin of the published envelopes, or of others.
 
@@ -252,11 +285,25 @@ def draw_jiles_atherton(random: np.random.Generator) -> JilesAtherton:
     )
 
 
+def draw_duhem(random: np.random.Generator) -> Duhem:
+    """Draw a material of Coleman and Hodgdon."""
+    return Duhem(
+        rate=random.uniform(5.0, 15.0),
+        stiff=random.uniform(0.3, 0.7),
+        knee=random.uniform(0.5, 1.0),
+        bias=random.uniform(-0.15, 0.15),
+        height=1.0,
+    )
+
+
 DRAWS: dict[str, Callable[[np.random.Generator], Hysteresis]] = {
     "gpi": draw_plays,
     "preisach": draw_everett,
     "jiles-atherton": draw_jiles_atherton,
+    "duhem": draw_duhem,
 }
+KEPT = ("duhem",)
+"""Families that no set but the transfer set holds."""
 
 
 def _cycle(hysteresis: Hysteresis, bias: float) -> FloatArray:

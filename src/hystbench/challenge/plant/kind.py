@@ -167,6 +167,9 @@ class Form:
         Inside a machine: gives the numbers of its part or of each tank.
     curve : callable, optional
         Before or behind a machine: gives the signal.
+    use : {"all", "transfer"}
+        ``transfer`` keeps the form back for that set, so that no solver is improved
+        on it.
     """
 
     act: Act = nothing
@@ -177,6 +180,7 @@ class Form:
     told: Callable[[Parameters], dict[str, Any]] = _same
     numbers: Inside | None = None
     curve: Curve | None = None
+    use: Literal["all", "transfer"] = "all"
 
 
 @dataclass(frozen=True)

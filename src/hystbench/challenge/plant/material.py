@@ -18,6 +18,11 @@ def square(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     return z + p["coefficient"] * z**2
 
 
+def exponential(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Strain one way more than the other: ``(exp(c z) - 1) / c``."""
+    return np.asarray(np.expm1(p["coefficient"] * z) / p["coefficient"])
+
+
 def excess_field(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     """Lose to moving domain walls a field that grows with the rate (Bertotti 1988)."""
     speed = np.gradient(z, run.dt)
@@ -40,3 +45,8 @@ def algebraic(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     """Saturate as ``z / (1 + |z / level|^n)^(1/n)``, sharper the larger n is."""
     ratio = np.abs(z / p["level"]) ** p["sharpness"]
     return z / (1.0 + ratio) ** (1.0 / p["sharpness"])
+
+
+def arctangent(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Saturate as ``level * arctan(z / level)``."""
+    return np.asarray(p["level"] * np.arctan(z / p["level"]))

@@ -39,6 +39,12 @@ def coulomb_algebraic(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     return z + p["coulomb"] * speed / np.sqrt(1.0 + speed**2)
 
 
+def coulomb_arctangent(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Add dry friction, smooth about rest by the arctangent."""
+    speed = np.gradient(run.u, run.dt) / p["velocity_scale"]
+    return z + p["coulomb"] * (2.0 / np.pi) * np.arctan(speed)
+
+
 def joint(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     """Carry the load by a pin in a slot."""
     return kernels.run("hc_joint", p["half_width"], over=z)
@@ -74,6 +80,21 @@ def heat(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     """Warm the rod by the current's square and lose it: ``tau T' = u^2 - T``."""
     warmth = kernels.run("hc_lag", run.dt, p["time_constant_s"], over=run.u**2)
     return z + p["coefficient"] * warmth
+
+
+def heat_of_the_coil(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Warm a coil by the current's square, and the rod by the coil."""
+    times = p["coil"] * p["time_constant_s"], p["time_constant_s"]
+    coil = kernels.run("hc_lag", run.dt, times[0], over=run.u**2)
+    return z + p["coefficient"] * kernels.run("hc_lag", run.dt, times[1], over=coil)
+
+
+def fractional(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Relax over five decades at once, as ``s^-order`` does (Oustaloup's spread)."""
+    times = np.logspace(-2.7, 2.3, 11)
+    shares = times ** (p["order"] - 0.5)
+    magnitudes = p["magnitude"] * shares / shares.sum()
+    return kelvin_voigt(z, run.dt, list(magnitudes), list(times))
 
 
 def creep_told(p: Parameters) -> dict[str, Any]:

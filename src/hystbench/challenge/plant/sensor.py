@@ -23,6 +23,11 @@ def gap_law(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     return z / (1.0 - z / p["gap"])
 
 
+def sine(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Read an angle's sine in the place of the angle: ``reach * sin(z / reach)``."""
+    return np.asarray(p["reach"] * np.sin(z / p["reach"]))
+
+
 def mains(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     """Pick up the mains and two harmonics, at a phase that is new in each record."""
     start = run.random.uniform(0.0, 2.0 * np.pi)
@@ -58,6 +63,13 @@ def path(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     smooth = np.interp(run.time, run.time[::64], slow)
     scale = p["size"] / np.sqrt(PATH_COSINES / 2.0)
     return np.asarray(z + scale * (smooth - smooth[0]))
+
+
+def wave(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Drift in a slow wave at a phase that is new in each record, from zero."""
+    start = run.random.uniform(0.0, 2.0 * np.pi)
+    angle = 2.0 * np.pi * p["frequency_hz"] * run.time + start
+    return np.asarray(z + p["size"] * (np.sin(angle) - np.sin(start)))
 
 
 def calibration(z: FloatArray, run: Run, p: Parameters) -> FloatArray:

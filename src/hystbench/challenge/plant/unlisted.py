@@ -1,7 +1,7 @@
 """Physics that the vocabulary has no word for: the right answer is "unnamed".
 
-Half of the sorts may be used while a solver is mended (``development``), half only for
-the transfer score (``transfer``).
+Some may be used while a solver is mended (``development``), the others only for the
+transfer score (``transfer``).
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ import numpy as np
 
 from hystbench.challenge import kernels
 from hystbench.challenge.plant.kind import Parameters, Run
-from hystbench.challenge.plant.mechanics import kelvin_voigt
 from hystbench.record import FloatArray
 
 
@@ -84,12 +83,10 @@ def hysteretic_sensor(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     return out
 
 
-def fractional(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
-    """Relax over five decades at once, as ``s^-order`` does (Oustaloup's spread)."""
-    times = np.logspace(-2.7, 2.3, 11)
-    shares = times ** (p["order"] - 0.5)
-    magnitudes = p["magnitude"] * shares / shares.sum()
-    return kelvin_voigt(z, run.dt, list(magnitudes), list(times))
+def fatigue(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Give way the more, the longer the way gone: a joint that settles in."""
+    gone = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(z)))])
+    return np.asarray(z * (1.0 - p["depth"] * -np.expm1(-gone / p["way"])))
 
 
 def coarse(y: FloatArray, run: Run, p: Parameters) -> FloatArray:
