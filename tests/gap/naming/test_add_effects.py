@@ -1,4 +1,4 @@
-"""A further round: what it gives to effects that do nothing, and where it ends."""
+"""A further round: what it gives to effects that do nothing, where it ends, and after."""
 
 from dataclasses import replace
 
@@ -6,7 +6,10 @@ import pytest
 
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.naming import add_effects
 from hystbench.gap.naming.add_effects import SoFar, advance
+from hystbench.gap.naming.rounds import Candidate, Round
+from hystbench.gap.progress import silent
 from hystbench.gap.thresholds import PAYS
 from tests.gap.small import MODE, block, measured, records, state_of
 
@@ -54,3 +57,54 @@ def test_the_search_ends_where_no_more_is_left_than_may_stay_unnamed(share, clos
     left = progress.state.power(NOISE**2)
     asked = replace(progress, gap=10 * left, share=share)
     assert advance(asked, NOISE, print).closed is closed
+
+
+def two_effects():
+    """A model with a delay and a mode, and the rounds in which they were taken."""
+    before = progress_with(LAG_S, (block("resonance", **MODE),)).state
+    first = Candidate("drive-lag", "drive", score=0.0, gain=900.0, state=before)
+    variant = next(iter(effects()["resonance"].variants(before.simulation)))
+    state = with_effect(before, variant, MODE)
+    second = Candidate("resonance", "mechanics", score=0.0, gain=500.0, state=state)
+    return state, [Round(before, 0.0, (x,), True) for x in (first, second)]
+
+
+@pytest.mark.parametrize(("gain", "tried"), [(PAYS + 1.0, True), (PAYS - 1.0, False)])
+def test_what_would_still_pay_is_tried_in_the_place_of_what_was_added(
+    gain, tried, monkeypatch
+):
+    """It takes too little to be a further effect, but an effect may have its place."""
+    state, rounds = two_effects()
+    more = Candidate("eddy-diffusion", "drive", score=0.0, gain=gain, state=state)
+    small = Candidate("creep", "mechanics", score=0.0, gain=1.0, state=state)
+    rounds.append(Round(state, 0.0, (more, small), False))
+    asked = []
+
+    def looked(state, rounds, floor_rms, say, rivals=()):
+        asked.append(set(rivals))
+        return state, ()
+
+    monkeypatch.setattr(add_effects, "reconsidered", looked)
+    found = SoFar(state, 1.0, rounds=tuple(rounds))
+    add_effects.settled(found, rounds[0].before, NOISE, silent)
+    assert asked == ([{"eddy-diffusion"}] if tried else [])
+
+
+def test_where_an_effect_gives_way_all_are_tried_once_more(monkeypatch):
+    state, rounds = two_effects()
+    more = Candidate("eddy-diffusion", "drive", score=0.0, gain=90.0, state=state)
+    rounds.append(Round(state, 0.0, (more,), False))
+    asked = []
+
+    def looked(state, rounds, floor_rms, say, rivals=()):
+        asked.append(set(rivals))
+        lag, mode = state.added
+        other = lag._replace(effect="eddy-diffusion")
+        return replace(state, added=(other, mode)), ()
+
+    monkeypatch.setattr(add_effects, "reconsidered", looked)
+    found = SoFar(state, 1.0, rounds=tuple(rounds))
+    add_effects.settled(found, rounds[0].before, NOISE, silent)
+    assert asked[0] == {"eddy-diffusion"}
+    assert asked[1] > {"creep", "drive-lag"}
+    assert len(asked) == 2

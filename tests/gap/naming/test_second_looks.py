@@ -89,7 +89,7 @@ def test_a_rival_that_takes_a_place_is_seen_with_what_it_scored(two, monkeypatch
 
     monkeypatch.setattr(reconsider, "rank", looked)
     monkeypatch.setattr(reconsider, "gain_held_back", lambda *_: PAYS + 50.0)
-    after, (look,) = reconsidered(state, rounds, NOISE, silent, every=True)
+    after, (look,) = reconsidered(state, rounds, NOISE, silent, {"sensor-lag"})
     assert after.chain is other.chain
     assert [item.effect for item in after.added] == ["sensor-lag", "asymmetry"]
     assert look.ranking[0].held_back == PAYS + 50.0

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
+from hystbench.gap.effects import among
 from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import above_floor, make_score, score_of
@@ -100,20 +101,40 @@ def settled(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Name
         found = _path(start, floor_rms, say, found.share, shape_first=True)
     state, gone = without_what_goes(found.state, floor_rms, found.gap, say)
     rounds = found.rounds
-    if not cut_short and len(state.added) > 1 and _others_than_taken(state, rounds):
-        state, again = reconsidered(state, rounds, floor_rms, say, True)
+    while not cut_short and len(state.added) > 1:
+        rivals = _rivals_of_all(state, rounds)
+        if not rivals:
+            break
+        before = names(state)
+        state, again = reconsidered(state, rounds, floor_rms, say, rivals)
         last = replace(rounds[-1], looks=(*rounds[-1].looks, *again))
         rounds = (*rounds[:-1], last)
+        if names(state) == before:
+            break
     if state.added:
         # Its own numbers are found without what other forms of it could do.
         state, _ = finished(state, make_score(state, floor_rms, forms=False))
     return Named(state, rounds, gone)
 
 
-def _others_than_taken(state: ModelState, rounds: Sequence[Round]) -> bool:
-    """Tell whether effects gave way or went: no round has seen just these together."""
+def names(state: ModelState) -> set[str]:
+    """Give the names of the effects that were added."""
+    return {item.effect for item in state.added}
+
+
+def _rivals_of_all(state: ModelState, rounds: Sequence[Round]) -> set[str]:
+    """Give effects that are to be tried in the place of each that was added.
+
+    All of them where effects gave way or went: no round has seen just these together.
+    Else those that would pay beside them, though they take too little to be added: an
+    effect that has the place of another leaves what that one would take.
+    """
     taken = {one.ranking[0].effect for one in rounds if one.taken}
-    return {item.effect for item in state.added} != taken
+    if names(state) != taken:
+        return set(among(state.offered))
+    last = rounds[-1]
+    pay = {x.effect for x in last.ranking if x.state and x.gain > PAYS}
+    return set() if last.taken else pay - taken
 
 
 @dataclass(frozen=True)

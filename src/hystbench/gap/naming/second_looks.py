@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from hystbench.gap.effects import among
@@ -25,7 +25,7 @@ def reconsidered(
     rounds: Sequence[Round],
     floor_rms: float,
     say: Say,
-    every: bool = False,
+    rivals: Collection[str] = (),
 ) -> tuple[ModelState, tuple[SecondLook, ...]]:
     """Try the rivals of each effect in its place, now that others are there.
 
@@ -39,8 +39,8 @@ def reconsidered(
         Tell which effects came near one.
     floor_rms : float
     say : callable
-    every : bool
-        Whether all effects are rivals, not only those that came near.
+    rivals : collection of str
+        Effects that are rivals of all; by default those that came near one.
 
     Returns
     -------
@@ -58,7 +58,7 @@ def reconsidered(
         score = make_score(short, floor_rms)
         as_is, now = finished(state, score)
         have = tuple(other.effect for other in short.added)
-        names = set(among(state.offered)) if every else _rivals(item.effect, rounds)
+        names = {item.effect, *(rivals or _near(item.effect, rounds))}
         known = list(among(names - set(have)).values())
         ranking = rank(short, score, known, folds=False)
         best = ranking[0]
@@ -101,8 +101,8 @@ def _with(
     return tuple(in_order(shown if x is own else x for x in ranking))
 
 
-def _rivals(effect: str, rounds: Sequence[Round]) -> set[str]:
-    found = {effect}
+def _near(effect: str, rounds: Sequence[Round]) -> set[str]:
+    found = set()
     for one in rounds:
         best = one.ranking[0].gain
         near = {x.effect for x in one.ranking if x.gain > CLOSE * best}
