@@ -1,4 +1,4 @@
-"""A further round: what it gives to effects that do nothing, where it ends, and after."""
+"""A further round: what it gives to effects that do nothing, and what its end is."""
 
 from dataclasses import replace
 
