@@ -247,3 +247,21 @@ def test_the_base_of_a_round_is_taken_as_it_is_written(tmp_path, clipped_records
     assert found.chain == given().chain
     split, _ = load_base(str(tmp_path / "rig.yaml"), clipped_records)
     assert len(split.chain) > len(found.chain)
+
+
+def test_a_given_base_that_lets_no_constant_through_is_looked_at_too(tmp_path):
+    """A velocity, or what stands behind a capacitor: a zero at the origin."""
+    (whole,) = given().chain
+    blocked = replace(whole, numerator=(0.01, 0.0))
+    model = replace(given(), chain=(blocked,))
+    model.save(tmp_path / "rig.yaml")
+
+    def rate(s):
+        return BACK(s) * 0.01 * s
+
+    found, note = load_base(str(tmp_path / "rig.yaml"), measured(clipped, back=rate))
+    assert "two in series" in note
+    halves = [item for item in found.chain if item.name == "transfer-function"]
+    assert [item.numerator[-1] == 0.0 for item in halves] == [False, True]
+    straight = measured(lambda w: w, back=rate)
+    assert load_base(str(tmp_path / "rig.yaml"), straight)[0].chain == model.chain

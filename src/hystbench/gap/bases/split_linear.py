@@ -222,9 +222,11 @@ def ways_inside(ratio: Ratio) -> Iterator[Halves]:
             front_b, back_b = _dealt(zeros, of_zeros)
             proper = len(front_b) <= len(front_a) and len(back_b) <= len(back_a)
             if proper and len(front_a) > 1 and len(back_a) > 1:
+                # a gain of one for constants, unless it lets none through
+                static = front_b[0] / front_a[0] or 1.0
                 yield Halves(
                     front_a[:-1],
-                    front_b * (front_a[0] / front_b[0]),
+                    front_b / static,
                     back_a[:-1],
                     back_b,
                     np.zeros(DEGREE),
