@@ -19,7 +19,9 @@ from hystbench.errors import InputError
 class TransferFunction(LinearBlock):
     """Proper, stable transfer function in descending powers of s.
 
-    ``G(s) = (n_0 s^m + ... + n_m) / (d_0 s^k + ... + d_k)`` with m <= k.
+    ``G(s) = (n_0 s^m + ... + n_m) / (d_0 s^k + ... + d_k)`` with m <= k. One pole may
+    lie at the origin (``d_k = 0``): an integrator, as between the voltage of a motor and
+    its position. It starts at rest.
 
     References
     ----------
@@ -42,6 +44,11 @@ class TransferFunction(LinearBlock):
         """What an input that has stood for ever is multiplied by."""
         return self.numerator[-1] / self.denominator[-1]
 
+    @property
+    def integrates(self) -> bool:
+        """Whether a pole lies at the origin."""
+        return self.denominator[-1] == 0.0
+
     def check(self) -> None:
         """Refuse an improper or unstable transfer function."""
         if len(self.denominator) < 2 or self.denominator[0] == 0.0:
@@ -54,12 +61,18 @@ class TransferFunction(LinearBlock):
                 f"numerator: degree {len(self.numerator) - 1} exceeds that of the "
                 f"denominator, {len(self.denominator) - 1}; expected a proper ratio"
             )
-        poles = np.roots(self.denominator)
+        if self.integrates and self.start != "rest":
+            raise InputError(
+                f"start: {self.start!r} with a pole at s = 0, which has no state of "
+                "rest under an input; expected 'rest'"
+            )
+        others = self.denominator[:-1] if self.integrates else self.denominator
+        poles = np.roots(others)
         if np.any(poles.real >= 0.0):
             worst = poles[np.argmax(poles.real)]
             raise InputError(
                 f"denominator: unstable pole at s = {worst:.6g}; "
-                "expected negative real parts"
+                "expected negative real parts, or one pole at s = 0"
             )
 
     def continuous(self) -> StateSpace:
@@ -71,8 +84,9 @@ class TransferFunction(LinearBlock):
         n /= self.denominator[0]
         direct = float(n[0])
         # In s = scale * p the coefficients are of order one, and the matrix
-        # exponential keeps its digits. Stable poles make d[-1] positive.
-        scale = float(d[-1] ** (1.0 / order))
+        # exponential keeps its digits. Stable poles make their product positive.
+        moving = d[:-1] if self.integrates else d
+        scale = float(moving[-1] ** (1.0 / max(len(moving) - 1, 1)))
         powers = scale ** np.arange(order + 1)
         d, n = d / powers, n / powers
         a = np.zeros((order, order))

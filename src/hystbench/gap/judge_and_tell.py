@@ -107,7 +107,7 @@ def judge_and_tell(
     before, after = compared_records(start), compared_records(state)
     left = replace(
         left,
-        lone=lone_share([item.residual for item in after]),
+        lone=lone_share([item.residual[item.record.counted] for item in after]),
         unrepeated=unrepeated(after, floor.rms),
     )
     found = _judged(start, named, left, floor, before, own, unnamed_share)

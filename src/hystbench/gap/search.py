@@ -96,7 +96,8 @@ def search(
             base, start, floor, quantities, declared, say, unnamed_share
         )
     enough = ""
-    if inside is not None:
+    # A base that was given is re-tuned where it is a host: that may stand for a chain.
+    if inside is not None and is_identified(base):
         enough = _why_enough(inside.start, inside.named.state, floor, unnamed_share)
     if enough:
         say(f"inside: {enough}, so no chain of effects is tried")

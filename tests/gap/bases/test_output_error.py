@@ -38,3 +38,19 @@ def test_derivatives_are_those_of_the_simulation(start, hold):
         assert found == pytest.approx(
             expected, rel=1e-5, abs=1e-6 * abs(expected).max()
         )
+
+
+def test_a_ratio_whose_derivatives_run_away_is_left_as_it_is(monkeypatch):
+    """As of a pole that is faster than numbers hold."""
+    t = 0.1 * np.arange(300)
+    task = OutputError((record(np.sin(0.7 * t), dt=0.1),), "linear", 1.0, "rest")
+    masks = [np.ones(300, dtype=bool)]
+    assert task.refined(SLOW, masks, 5).cost < task.squares(SLOW, masks)
+
+    def run_away(*_):
+        return np.full((300, 8), 1e300) * np.linspace(1, 1e10, 300)[:, None]
+
+    monkeypatch.setattr(OutputError, "_derivatives", run_away)
+    found = task.refined(SLOW, masks, 5)
+    assert (found.a == SLOW.a).all()
+    assert (found.b == SLOW.b).all()

@@ -44,6 +44,8 @@ def split_given(model: Model, evidence: Evidence) -> tuple[Model, str]:
     block, *behind = model.chain
     if not isinstance(block, TransferFunction) or len(block.denominator) < 3:
         return model, ""
+    if block.integrates:  # its response goes on for ever, which spectra do not hold
+        return model, ""
     if not all(isinstance(item, Gain) for item in behind):
         return model, ""
     scale, ratio = _ratio(block)

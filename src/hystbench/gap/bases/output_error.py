@@ -76,8 +76,8 @@ class OutputError:
 
         With offsets of their own, those that fit the masked samples best.
         """
-        error = self._masked(self.left(ratio), masks)
-        with np.errstate(over="ignore"):  # of a ratio that runs away: infinite
+        with np.errstate(over="ignore", invalid="ignore"):  # of one that runs away
+            error = self._masked(self.left(ratio), masks)
             return float(sum(np.sum(part**2) for part in error))
 
     def _masked(
@@ -109,6 +109,8 @@ class OutputError:
         damping = 1e-6
         for _ in range(rounds):
             triangle = self._triangle(ratio, masks)
+            if not np.all(np.isfinite(triangle)):
+                break  # its derivatives run away though it does not: no step is known
             for _ in range(TRIALS):
                 moved = self._moved(ratio, _step(triangle, damping))
                 after = self._squares_or_none(moved, masks)
@@ -144,10 +146,11 @@ class OutputError:
 
     def _triangle(self, ratio: Ratio, masks: Sequence[Mask]) -> FloatArray:
         """Triangle of the derivatives, and of the error as its last column."""
-        columns = [
-            np.column_stack([self._derivatives(ratio, record), rest])
-            for record, rest in zip(self.records, self.left(ratio), strict=True)
-        ]
+        with np.errstate(over="ignore", invalid="ignore"):
+            columns = [
+                np.column_stack([self._derivatives(ratio, record), rest])
+                for record, rest in zip(self.records, self.left(ratio), strict=True)
+            ]
         for part in columns:
             part[:, : self.held] = 0.0
         own = [triangle_of(part) for part in self._masked(columns, masks)]

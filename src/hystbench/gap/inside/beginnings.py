@@ -96,6 +96,12 @@ class Beginnings:
         own = Score(sample, score.directions[mask], score.floor)
         return cls(tuple(records), sample, mask, own)
 
+    @classmethod
+    def all_of(cls, state: ModelState, score: Score) -> Beginnings:
+        """Leave the records whole: stores fill and run empty once."""
+        kept = np.ones(len(state.sample), dtype=bool)
+        return cls(state.records, state.sample, kept, score)
+
     def cut(self, state: ModelState) -> ModelState:
         """Give a model on the beginnings; of it the host and its forces are free.
 

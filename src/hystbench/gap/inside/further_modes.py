@@ -120,6 +120,7 @@ def _in_one_more(
     chosen = max(split, key=_needs)
     linear = fitted(chosen, score)
     laws = offer(linear)
+    beginnings = Beginnings.of(linear.state, score)
     begun = [
         start
         for item in acting
@@ -127,10 +128,10 @@ def _in_one_more(
             linear,
             item.effect,
             [law for law in laws.get(item.effect, ()) if law.form == item.form],
-            score,
+            beginnings,
         )
     ]
-    best = fitted_likely(begun, Beginnings.of(linear.state, score), score, 1)
+    best = fitted_likely(begun, beginnings, score, 1)
     if not best:
         return None
     also = best[0]

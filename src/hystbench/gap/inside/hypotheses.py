@@ -131,20 +131,24 @@ def _one_more(
     say: Say,
 ) -> list[Fitted]:
     """Put one more force into each hypothesis; give the best, the least score first."""
+    carried = [before for before in carried if may_gain(before, score)]
+    if not carried:
+        return []
+    stores = any(of_stores(item) for item in carried)
+    first = carried[0].state
+    beginnings = (Beginnings.all_of if stores else Beginnings.of)(first, score)
     begun = [
         further
         for before in carried
-        if may_gain(before, score)
         for name, own in offer(before).items()
         if name not in before.effects
-        for further in starts(before, name, own, score)
+        for further in starts(before, name, own, beginnings)
     ]
     if not begun:
         return []
-    if any(of_stores(item) for item in carried):
+    if stores:
         best_first = fitted_each(begun, score)
     else:
-        beginnings = Beginnings.of(carried[0].state, score)
         best_first = fitted_likely(begun, beginnings, score, keep)
     for item in best_first[:3]:
         say(f"inside: {' + '.join(item.effects)}: gain {alone - item.score:.1f}")
@@ -158,16 +162,17 @@ def may_gain(item: Fitted, score: Score) -> bool:
 
 
 def starts(
-    before: Fitted, effect: str, laws: Sequence[Law | Changed], score: Score
+    before: Fitted, effect: str, laws: Sequence[Law | Changed], beginnings: Beginnings
 ) -> Iterator[Fitted]:
     """Put a further force inside, by each law and start, with the score to be expected.
 
-    The residual is explained by what the force does as it starts, as one column, by
+    That is the score of the beginnings of the records. The residual there is explained by what the force does as it starts, as one column, by
     what each of its numbers does that starts at zero, which that column does not hold,
     and by what changes of all other numbers do, by least squares.
     """
     state = before.state
-    tangents, weights = state.tangents, record_weights(state)
+    short = beginnings.cut(state)
+    tangents, weights = short.tangents, record_weights(short)
     for law in laws:
         begun = (
             with_changed(state, effect, law)
@@ -176,17 +181,18 @@ def starts(
         )
         if isinstance(law, Law) and not law.stands_for:
             begun = evened(begun)
-        if not np.all(np.isfinite(begun.residual)):
+        own = beginnings.cut(begun)
+        if not np.all(np.isfinite(own.residual)):
             continue
-        does = state.residual - begun.residual
-        columns = np.column_stack([tangents, does, of_zeros(begun)])
+        does = short.residual - own.residual
+        columns = np.column_stack([tangents, does, of_zeros(own)])
         sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
         scaled = columns / sizes
         found, *_ = np.linalg.lstsq(
-            scaled * weights[:, None], state.residual * weights, rcond=1e-8
+            scaled * weights[:, None], short.residual * weights, rcond=1e-8
         )
-        rest = state.residual - scaled @ found
-        expected = score.of(rest, begun.freedom)
+        rest = short.residual - scaled @ found
+        expected = beginnings.score.of(rest, begun.freedom)
         yield Fitted(begun, expected)
 
 
