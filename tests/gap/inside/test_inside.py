@@ -17,6 +17,7 @@ from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.hosts import (
     best_host,
     free_masses,
@@ -112,7 +113,8 @@ def test_a_law_promises_what_its_numbers_do_that_start_at_zero():
     score = Score(begun[0].sample, np.zeros((len(begun[0].sample), 0)), NOISE**2)
     host = best_host(begun, score)
     laws = laws_for(host)["stiffness-hardening"]
-    put_in = starts(host, "stiffness-hardening", laws, score)
+    whole = Beginnings.all_of(host.state, score)
+    put_in = starts(host, "stiffness-hardening", laws, whole)
     promised = {item.forms: item.score for item in put_in}
     assert promised["square and cube",] < promised["cube",] - 200
 

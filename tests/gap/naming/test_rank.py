@@ -2,11 +2,14 @@
 
 from dataclasses import dataclass, replace
 
+import numpy as np
 import pytest
 
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.refit import finished
+from hystbench.gap.fitting.state import Free
 from hystbench.gap.naming import rank as module
 from hystbench.gap.naming.rank import (
     above_noise_of_its_own,
@@ -17,6 +20,7 @@ from hystbench.gap.naming.rank import (
 from hystbench.gap.naming.rounds import Candidate, best_forms
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import CERTAIN, LOOSE, PAYS
+from tests.gap.made import record
 from tests.gap.small import (
     ENVELOPE,
     GPI,
@@ -59,6 +63,29 @@ def test_creep_stands_behind_a_curve_of_the_base():
     first, *_ = ranked((*curve, slow), curve, ("creep", "thermal-drift"))
     assert first.effect == "creep"
     assert first.state.power(0.0) ** 0.5 < 1.5 * NOISE
+
+
+def test_one_of_two_effects_may_widen_the_gap_of_a_linear_base():
+    """A dead zone is most of three gentle records; the hard one is clipped as well.
+
+    With the dead zone the gain is larger, and the hard record is farther off. Nothing
+    of that is hidden: a linear base has no shape that could do it.
+    """
+    t = np.arange(1500) / 1000
+    beat = np.sin(2 * np.pi * 4 * t) * np.cos(2 * np.pi * 1.3 * t)
+    driven = [(0.25, "a"), (0.3, "b"), (0.35, "c"), (4.0, "hard")]
+    given = tuple(record(size * beat, name=name, dt=1e-3) for size, name in driven)
+    gain, zone = block("gain", value=12.0), block("dead-zone", half_width=0.15)
+    chain = (zone, block("drive-saturation", limit=1.0), gain)
+    found = measured(chain, NOISE, given=given)
+    state = state_of((block("gain", value=3.0),), found, free=(Free(0, "value"),))
+    score = make_score(state, NOISE)
+    state, _ = finished(state, score)
+    first, _ = rank(state, score, [effects()[x] for x in ("dead-zone", "asymmetry")])
+    assert first.effect == "dead-zone"
+    assert first.state.power(0.0) > 4 * state.power(0.0)
+    (place,) = first.state.added[0].blocks
+    assert first.state.chain[place].half_width == pytest.approx(0.15, rel=0.05)
 
 
 LOOP = (block("prandtl-ishlinskii", thresholds=[0.0, 0.2, 0.4], weights=[4, 3, 2]),)

@@ -245,8 +245,9 @@ def _judged(trial: Trial, state: ModelState, score: Score, now: float) -> Candid
         return declined(f"fits best where {error}")
     if end := at_end(after):
         return declined(f"{AT_AN_END}: {end}")
+    hidden = score.directions.shape[1] > 0  # what a wrong shape may do hardly counts
     power = state.power(score.floor)
-    if after.share(state, score.floor, power) < -LOOSE:
+    if hidden and after.share(state, score.floor, power) < -LOOSE:
         return declined("makes the gap wider")
     return replace(item, score=value, gain=now - value, state=after)
 
