@@ -214,7 +214,8 @@ def test_modes_are_discretised_as_any_other_system(rates):
     [
         ({"numerator": [1, 0, 0], "denominator": [1, 1]}, "degree 2 exceeds"),
         ({"numerator": [1], "denominator": [1, -1]}, "unstable pole"),
-        ({"numerator": [1], "denominator": [1, 0]}, "unstable pole"),
+        ({"numerator": [1], "denominator": [1, 0, 0]}, "unstable pole"),
+        ({"numerator": [1], "denominator": [1, 0], "start": "settled"}, "'rest'"),
         ({"numerator": [1], "denominator": [0, 1]}, "leading coefficient"),
         ({"numerator": [1], "denominator": [2]}, "'gain'"),
     ],
@@ -222,6 +223,23 @@ def test_modes_are_discretised_as_any_other_system(rates):
 def test_a_transfer_function_that_cannot_be_simulated_is_refused(values, message):
     with pytest.raises(InputError, match=message):
         TransferFunction.from_mapping(values)
+
+
+@pytest.mark.parametrize("hold", ["zero-order", "linear", "band-limited"])
+def test_a_pole_at_the_origin_integrates(hold):
+    """The same system in front of a pure integrator, and its integral by hand."""
+    dt = 1e-3
+    t = dt * np.arange(2000)
+    u = np.sin(2 * np.pi * 3 * t) + 0.3
+    lag = {"numerator": [2.0], "denominator": [0.02, 1.0], "hold": hold}
+    rate = TransferFunction.from_mapping(lag).simulate(u, u, dt)
+    both = lag | {"denominator": [0.02, 1.0, 0.0]}
+    found = TransferFunction.from_mapping(both).simulate(u, u, dt)
+    steps = 0.5 * dt * (rate[1:] + rate[:-1])
+    assert found == pytest.approx(np.cumsum([0.0, *steps]), abs=2e-4)
+    pure = {"numerator": [5.0], "denominator": [1.0, 0.0], "hold": hold}
+    alone = TransferFunction.from_mapping(pure).simulate(np.ones(50), u, dt)
+    assert alone[-1] == pytest.approx(5.0 * 49 * dt, rel=1e-2)
 
 
 def test_creep_needs_a_time_constant_for_each_magnitude():

@@ -20,8 +20,8 @@ class TransferFunction(LinearBlock):
     """Proper, stable transfer function in descending powers of s.
 
     ``G(s) = (n_0 s^m + ... + n_m) / (d_0 s^k + ... + d_k)`` with m <= k. One pole may
-    lie at the origin (``d_k = 0``): an integrator, as between the voltage of a motor and
-    its position. It starts at rest.
+    lie at the origin (``d_k = 0``): an integrator, as between a motor's voltage and its
+    position. It starts at rest.
 
     References
     ----------

@@ -166,9 +166,10 @@ def starts(
 ) -> Iterator[Fitted]:
     """Put a further force inside, by each law and start, with the score to be expected.
 
-    That is the score of the beginnings of the records. The residual there is explained by what the force does as it starts, as one column, by
-    what each of its numbers does that starts at zero, which that column does not hold,
-    and by what changes of all other numbers do, by least squares.
+    That is the score of the beginnings of the records. The residual there is explained
+    by what the force does as it starts, as one column, by what each of its numbers does
+    that starts at zero, which that column does not hold, and by what changes of all
+    other numbers do, by least squares.
     """
     state = before.state
     short = beginnings.cut(state)
