@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.base import PolynomialBlock
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class Asymmetry(PolynomialBlock):
+class Asymmetry(PolynomialBlock, name="asymmetry", place="material"):
     """Even-order part of magnetostriction: ``y = z + coefficient z^2``.
 
     References
@@ -18,9 +14,6 @@ class Asymmetry(PolynomialBlock):
     .. [1] G. Engdahl (ed.), Handbook of Giant Magnetostrictive Materials, Academic
        Press, 2000: strain follows the square of the magnetisation.
     """
-
-    name: ClassVar = "asymmetry"
-    place: ClassVar = "material"
 
     coefficient: float = number("1/Y", "weight of the square", -HUGE, HUGE)
 

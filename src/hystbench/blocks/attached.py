@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
 from hystbench.blocks.base import Block
@@ -19,7 +18,6 @@ class Simulated(Protocol):
         """Compute the output, as :meth:`Block.simulate` does."""
 
 
-@dataclass(frozen=True)
 class AttachedBlock(Block):
     """A block that has no output of its own: it belongs to the block before it.
 

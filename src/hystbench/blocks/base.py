@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields
 from functools import cache
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, dataclass_transform
 
 import numpy as np
 
@@ -18,13 +18,15 @@ from hystbench.record import FloatArray
 Place = Literal["base", "drive", "material", "inside", "mechanics", "sensor"]
 
 
+@dataclass_transform(frozen_default=True, kw_only_default=True)
 @dataclass(frozen=True)
 class Block(ABC):
     """One physical effect in the chain from input u to output y.
 
-    A subclass is a frozen dataclass. Its fields are declared with
-    :func:`~hystbench.blocks.parameter.number` and its kin; it sets ``name``
-    and ``place``, and says in its docstring what it computes and after whom.
+    A subclass is made a frozen dataclass. Its fields are declared with
+    :func:`~hystbench.blocks.parameter.number` and its kin; it says its name and
+    place in the line of its class, and in its docstring what it computes and after
+    whom.
     """
 
     name: ClassVar[str]
@@ -39,6 +41,15 @@ class Block(ABC):
 
     no_step: ClassVar[str] = "has no step that could be exported"
     """Why the block cannot be exported, if it cannot."""
+
+    def __init_subclass__(cls, name: str = "", place: Place | None = None) -> None:
+        """Make a subclass a dataclass, with its name and place where it has them."""
+        super().__init_subclass__()
+        if name:
+            cls.name = name
+        if place:
+            cls.place = place
+        dataclass(frozen=True)(cls)
 
     @classmethod
     @cache
@@ -159,7 +170,6 @@ class PolynomialBlock(Block):
         return polynomial(*self.coefficients)
 
 
-@dataclass(frozen=True)
 class RandomBlock(Block):
     """A block that adds a random signal.
 

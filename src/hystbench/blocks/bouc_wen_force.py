@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class BoucWenForce(Force):
+class BoucWenForce(Force, name="bouc-wen-force"):
     """Bouc and Wen's hysteresis of exponent one, by Wen's numbers.
 
     ``dF/dq = stiffness - |F| (beta sgn(F dq) + gamma)``. On loading the stiffness falls
@@ -36,8 +32,6 @@ class BoucWenForce(Force):
     .. [3] S. Erlicher, N. Point, "Thermodynamic admissibility of Bouc-Wen type
        hysteresis models", Comptes Rendus Mecanique 332 (2004) 51-57.
     """
-
-    name: ClassVar = "bouc-wen-force"
 
     stiffness: float = number("U/Q", "where the force is zero", 0.0, HUGE)
     beta: float = number(

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.parameter import HUGE, number
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
@@ -12,8 +9,7 @@ from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class Butterfly(WrappingBlock):
+class Butterfly(WrappingBlock, name="butterfly", place="material"):
     """Even-order part of the strain beside the hysteresis that it wraps.
 
     ``y = inner[v] + coefficient P[v]^2`` with v what enters the hysteresis and P the
@@ -28,9 +24,6 @@ class Butterfly(WrappingBlock):
     .. [2] G. Engdahl (ed.), Handbook of Giant Magnetostrictive Materials, Academic
        Press, 2000.
     """
-
-    name: ClassVar = "butterfly"
-    place: ClassVar = "material"
 
     coefficient: float = number("Y/U^2", "weight of the square", -HUGE, HUGE)
     threshold: float = number("U", "half the width of the play", 0.0, HUGE)

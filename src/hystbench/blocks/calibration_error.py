@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.base import PolynomialBlock
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class CalibrationError(PolynomialBlock):
+class CalibrationError(PolynomialBlock, name="calibration-error", place="sensor"):
     """Sensor with gain and zero error: ``y = gain z + offset``.
 
     References
     ----------
     .. [1] JCGM 200:2012, International vocabulary of metrology (VIM), 4.28.
     """
-
-    name: ClassVar = "calibration-error"
-    place: ClassVar = "sensor"
 
     gain: float = number("-", "ratio of read to true output", 0.1, 10.0)
     offset: float = number("Y", "reading at zero", -HUGE, HUGE, default=0.0)

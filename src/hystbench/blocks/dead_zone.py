@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.base import Block
@@ -13,8 +10,7 @@ from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class DeadZone(Block):
+class DeadZone(Block, name="dead-zone", place="drive"):
     """Zero between ``-half_width`` and ``half_width``, straight and shifted outside.
 
     ``v = z - clip(z, -half_width, half_width)``.
@@ -24,9 +20,6 @@ class DeadZone(Block):
     .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton University
        Press, 2021: saturation, rate limits and dead zones of actuators.
     """
-
-    name: ClassVar = "dead-zone"
-    place: ClassVar = "drive"
 
     half_width: float = number("U", "command at which motion starts", 0.0, HUGE)
 

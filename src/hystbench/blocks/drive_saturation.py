@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.base import Block
@@ -13,8 +10,7 @@ from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class DriveSaturation(Block):
+class DriveSaturation(Block, name="drive-saturation", place="drive"):
     """Hard limit of the drive: ``v = clip(z, -limit, limit)``.
 
     References
@@ -22,9 +18,6 @@ class DriveSaturation(Block):
     .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton University
        Press, 2021: saturation, rate limits and dead zones of actuators.
     """
-
-    name: ClassVar = "drive-saturation"
-    place: ClassVar = "drive"
 
     limit: float = number("U", "largest current either way", TINY, HUGE)
 

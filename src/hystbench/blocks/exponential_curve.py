@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.base import Block
@@ -13,8 +10,7 @@ from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class ExponentialCurve(Block):
+class ExponentialCurve(Block, name="exponential-curve", place="drive"):
     """A diode or a valve of equal percentage: ``y = (exp(c z) - 1) / c``, c curvature.
 
     A straight line of slope one at zero, and for a curvature of zero throughout. A
@@ -27,9 +23,6 @@ class ExponentialCurve(Block):
     .. [2] IEC 60534-2-4, Industrial-process control valves: inherent flow
        characteristics and rangeability, 2009.
     """
-
-    name: ClassVar = "exponential-curve"
-    place: ClassVar = "drive"
 
     curvature: float = number("1/U", "growth for each unit of the input", -HUGE, HUGE)
 

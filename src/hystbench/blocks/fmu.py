@@ -20,8 +20,7 @@ from hystbench.record import FloatArray
 EXPECTED = "a Functional Mock-up Unit (.fmu)"
 
 
-@dataclass(frozen=True)
-class Fmu(FileSimulator):
+class Fmu(FileSimulator, name="fmu"):
     """A Functional Mock-up Unit (FMI 1 to 3) in co-simulation, run by FMPy.
 
     One step of communication is one sampling interval. The input is set at the
@@ -33,7 +32,6 @@ class Fmu(FileSimulator):
        (co-simulation).
     """
 
-    name: ClassVar = "fmu"
     expected: ClassVar = EXPECTED
 
     file: str = text(EXPECTED)

@@ -35,7 +35,6 @@ class Motion(NamedTuple):
     """Sum of the forces inside."""
 
 
-@dataclass(frozen=True)
 class Dynamics(HeldBlock):
     """A block with a coordinate, which meets forces: a mechanism or an impedance."""
 
@@ -96,14 +95,12 @@ class Dynamics(HeldBlock):
         return self.driven_step(sampling, ())
 
 
-@dataclass(frozen=True)
-class Force(AttachedBlock):
+class Force(AttachedBlock, place="inside"):
     """A force against the motion of the mechanism before it in the chain.
 
     It depends on the position q and the velocity q', and may remember a distance.
     """
 
-    place: ClassVar = "inside"
     hosts: ClassVar = "mechanism or impedance"
 
     @abstractmethod

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-@dataclass(frozen=True)
-class FrictionForce(Force):
+class FrictionForce(Force, name="friction-force"):
     """Coulomb friction that gives way by a small distance before it slides.
 
     ``F = (coulomb + static_excess) z / presliding_distance`` with z the way, held where
@@ -26,8 +22,6 @@ class FrictionForce(Force):
     .. [2] F. Al-Bender, V. Lampaert, J. Swevers, "The generalized Maxwell-slip model",
        IEEE Transactions on Automatic Control 50 (2005) 1883-1887.
     """
-
-    name: ClassVar = "friction-force"
 
     coulomb: float = number("U", "force of sliding", 0.0, HUGE)
     presliding_distance: float = number("Q", "way from rest to sliding", TINY, HUGE)

@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.base import PolynomialBlock
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class Gain(PolynomialBlock):
+class Gain(PolynomialBlock, name="gain", place="base"):
     """Static gain with an offset: ``y = value z + offset``.
 
     References
     ----------
     By definition.
     """
-
-    name: ClassVar = "gain"
-    place: ClassVar = "base"
 
     value: float = number("Y/U", "static gain", -HUGE, HUGE)
     offset: float = number("Y", "output at zero", -HUGE, HUGE, default=0.0)

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
-from hystbench.blocks.base import Place
 from hystbench.blocks.parameter import HUGE, a_threshold, choice, numbers
 from hystbench.blocks.step import PASSED, Sampling, Step
 from hystbench.blocks.wrapping import PlayBlock
@@ -17,8 +13,7 @@ from hystbench.rdgpi.model import STARTS
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class GeneralizedPrandtlIshlinskii(PlayBlock):
+class GeneralizedPrandtlIshlinskii(PlayBlock, name="gpi", place="base"):
     """Weighted sum of generalized play operators (paper, Eqs. 3-6 and 9).
 
     ``y(t) = sum_i w_i F_{r_i}[z](t)`` with the envelope functions
@@ -34,9 +29,6 @@ class GeneralizedPrandtlIshlinskii(PlayBlock):
        micropositioning control", IEEE/ASME Transactions on Mechatronics 16 (2011)
        734-744.
     """
-
-    name: ClassVar = "gpi"
-    place: ClassVar[Place] = "base"
 
     envelope: tuple[float, ...] = numbers(
         "-, 1/U, -, -",

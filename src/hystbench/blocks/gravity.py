@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class Gravity(Force):
+class Gravity(Force, name="gravity"):
     """A pendulum's moment, ``F = amplitude (sin(q + angle) - sin(angle))``, q in rad.
 
     References
     ----------
     .. [1] L. D. Landau, E. M. Lifshitz, Mechanics, Pergamon, 1976.
     """
-
-    name: ClassVar = "gravity"
 
     amplitude: float = number("U", "weight times its arm", -HUGE, HUGE)
     angle: float = number("rad", "of the arm to the vertical at q = 0", -3.2, 3.2, 0.0)

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.parameter import HUGE, a_threshold, numbers
@@ -14,8 +11,7 @@ from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class HysteresisShape(WrappingBlock):
+class HysteresisShape(WrappingBlock, name="hysteresis-shape", place="material"):
     """Rate-independent correction beside the hysteresis that it wraps.
 
     ``y = inner[v] + sum_k c_k v^k + sum_i (w_i P_i + s_i P_i^2)`` with v what enters
@@ -30,9 +26,6 @@ class HysteresisShape(WrappingBlock):
        nonlinearities: a modified Prandtl-Ishlinskii approach", European Journal of
        Control 9 (2003) 407-418.
     """
-
-    name: ClassVar = "hysteresis-shape"
-    place: ClassVar = "material"
 
     thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
     weights: tuple[float, ...] = a_threshold("Y/U", "w_i", optional=False)

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-@dataclass(frozen=True)
-class HystereticForce(Force):
+class HystereticForce(Force, name="hysteretic-force"):
     """Bouc and Wen's hysteresis of exponent one, ``F = largest z``.
 
     ``yield_distance dz/dq = 1 - |z| (sharing + (1 - sharing) sgn(z dq))``, z between -1
@@ -26,8 +22,6 @@ class HystereticForce(Force):
     .. [2] F. Ikhouane, J. Rodellar, Systems with Hysteresis: Analysis, Identification
        and Control Using the Bouc-Wen Model, Wiley, 2007.
     """
-
-    name: ClassVar = "hysteretic-force"
 
     largest: float = number("U", "force at which it yields wholly", 0.0, HUGE)
     yield_distance: float = number("Q", "way in which it yields", TINY, HUGE)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache, partial
 from math import factorial
 from typing import ClassVar
@@ -57,8 +56,7 @@ def _differences(order: int) -> FloatArray:
 RATE, CURVATURE = _differences(1), _differences(2)
 
 
-@dataclass(frozen=True)
-class Impedance(Dynamics):
+class Impedance(Dynamics, name="impedance", place="base"):
     """Force of a device that is moved: ``y = m q'' + c q' + k q + F(q, q') + bias``.
 
     F is the sum of the forces that follow it in the chain. The input is the position q,
@@ -80,8 +78,6 @@ class Impedance(Dynamics):
        grids", Mathematics of Computation 51 (1988) 699-706.
     """
 
-    name: ClassVar = "impedance"
-    place: ClassVar = "base"
     smooths: ClassVar = False
 
     mass: float = number("Y s^2/U", "m", -HUGE, HUGE)

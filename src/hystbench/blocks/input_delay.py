@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import ceil, floor
 from typing import ClassVar
 
@@ -16,8 +15,7 @@ from hystbench.blocks.step import Sampling, Step, smooth_curve
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class InputDelay(HeldBlock):
+class InputDelay(HeldBlock, name="input-delay", place="drive"):
     """Pure delay: ``v(t) = z(t - delay_s + lead_s)``.
 
     Before a record the input had its first value (``settled``), or was zero (``rest``);
@@ -35,9 +33,6 @@ class InputDelay(HeldBlock):
        delay: tools for fractional delay filter design", IEEE Signal Processing
        Magazine 13 (1996) 30-60.
     """
-
-    name: ClassVar = "input-delay"
-    place: ClassVar = "drive"
 
     own_hold: ClassVar[Hold] = "band-limited"
     smooths: ClassVar[bool] = False

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.force import Force
@@ -16,8 +13,7 @@ ELEMENTS = 12
 a percent of the largest, and within one where nearly all slip at once or soon."""
 
 
-@dataclass(frozen=True)
-class IwanForce(Force):
+class IwanForce(Force, name="iwan-force"):
     """A sum of stops, elastic and perfectly plastic: a joint that slips bit by bit.
 
     ``F = stiffness sum of s_i E_i[q]``; E_i is the way since the last turn, held
@@ -39,8 +35,6 @@ class IwanForce(Force):
     .. [2] D. J. Segalman, "A four-parameter Iwan model for lap-type joints", Journal of
        Applied Mechanics 72 (2005) 752-760.
     """
-
-    name: ClassVar = "iwan-force"
 
     stiffness: float = number("U/Q", "where nothing slips", 0.0, HUGE)
     slip_distance: float = number("Q", "way from rest to where all slip", TINY, HUGE)

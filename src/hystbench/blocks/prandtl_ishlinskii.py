@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
-from hystbench.blocks.base import Place
 from hystbench.blocks.parameter import HUGE, a_threshold, numbers
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import PlayBlock
@@ -15,8 +11,7 @@ from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class PrandtlIshlinskii(PlayBlock):
+class PrandtlIshlinskii(PlayBlock, name="prandtl-ishlinskii", place="material"):
     """Play operators beside the signal itself: ``y = z + sum_i w_i P_i[z]``.
 
     ``P_i`` is the play operator of threshold r_i (paper, Eqs. 1 and 2, w(0) = 0). The
@@ -33,9 +28,6 @@ class PrandtlIshlinskii(PlayBlock):
        nonlinearities: a modified Prandtl-Ishlinskii approach", European Journal of
        Control 9 (2003) 407-418.
     """
-
-    name: ClassVar = "prandtl-ishlinskii"
-    place: ClassVar[Place] = "material"
 
     thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
     weights: tuple[float, ...] = a_threshold("-", "w_i", optional=False)

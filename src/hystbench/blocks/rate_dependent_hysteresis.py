@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -27,8 +26,9 @@ from hystbench.record import FloatArray
 FORMS = ("growing-thresholds", "excess-field", "acting-field")
 
 
-@dataclass(frozen=True)
-class RateDependentHysteresis(HeldBlock, WrappingBlock):
+class RateDependentHysteresis(
+    HeldBlock, WrappingBlock, name="rate-dependent-hysteresis", place="material"
+):
     """Hysteresis that depends on the rate of what enters it, v.
 
     With ``e = coefficient |dv/dt|^exponent``:
@@ -52,9 +52,6 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
     .. [2] G. Bertotti, "General properties of power losses in soft ferromagnetic
        materials", IEEE Transactions on Magnetics 24 (1988) 621-630.
     """
-
-    name: ClassVar = "rate-dependent-hysteresis"
-    place: ClassVar = "material"
 
     smooths: ClassVar[bool] = False
 

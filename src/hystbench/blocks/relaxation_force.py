@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-@dataclass(frozen=True)
-class RelaxationForce(Force):
+class RelaxationForce(Force, name="relaxation-force"):
     """Maxwell's branch: ``dF/dt = stiffness q' - F / relaxation_time_s``.
 
     Held at a place, the force fades; a slow motion meets a damper of ``stiffness
@@ -22,8 +18,6 @@ class RelaxationForce(Force):
     ----------
     .. [1] J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., Wiley, 1980.
     """
-
-    name: ClassVar = "relaxation-force"
 
     stiffness: float = number("U/Q", "of the spring, met by a fast motion", 0.0, HUGE)
     relaxation_time_s: float = number(

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.base import Block
@@ -14,8 +11,7 @@ from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class Saturation(Block):
+class Saturation(Block, name="saturation", place="material"):
     """Odd and soft saturation.
 
     Without a sharpness ``y = level tanh(z / level)``; with one, n, the algebraic law
@@ -26,9 +22,6 @@ class Saturation(Block):
     .. [1] G. Engdahl (ed.), Handbook of Giant Magnetostrictive Materials, Academic
        Press, 2000: magnetisation and strain saturate.
     """
-
-    name: ClassVar = "saturation"
-    place: ClassVar = "material"
 
     level: float = number("Y", "output that is never reached", TINY, HUGE)
 

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.parameter import number
 from hystbench.blocks.state_space import StateSpace, lag
 
 
-@dataclass(frozen=True)
-class SensorLag(LinearBlock):
+class SensorLag(LinearBlock, name="sensor-lag", place="sensor"):
     """First-order low-pass of a sensor: ``Y(s) = Z(s) / (1 + s tau)``.
 
     References
@@ -19,9 +15,6 @@ class SensorLag(LinearBlock):
     .. [1] A. J. Fleming, "A review of nanometer resolution position sensors",
        Sensors and Actuators A 190 (2013) 106-126: bandwidth of sensors.
     """
-
-    name: ClassVar = "sensor-lag"
-    place: ClassVar = "sensor"
 
     time_constant_s: float = number("s", "tau", 1e-7, 1e3)
 

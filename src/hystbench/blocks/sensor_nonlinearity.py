@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.base import PolynomialBlock
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class SensorNonlinearity(PolynomialBlock):
+class SensorNonlinearity(PolynomialBlock, name="sensor-nonlinearity", place="sensor"):
     """Static polynomial of the true output: ``y = z + quadratic z^2 + cubic z^3``.
 
     References
@@ -19,9 +15,6 @@ class SensorNonlinearity(PolynomialBlock):
        Sensors and Actuators A 190 (2013) 106-126, on the nonlinearity of
        displacement sensors and its polynomial calibration.
     """
-
-    name: ClassVar = "sensor-nonlinearity"
-    place: ClassVar = "sensor"
 
     quadratic: float = number("1/Y", "weight of the square", -HUGE, HUGE)
     cubic: float = number("1/Y^2", "weight of the cube", -HUGE, HUGE)

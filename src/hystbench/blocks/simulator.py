@@ -10,13 +10,13 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hystbench.blocks.base import Block, Place
+from hystbench.blocks.base import Block
 from hystbench.blocks.calls import current
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 
-class Simulator(Block):
+class Simulator(Block, place="base"):
     """A whole simulator as a block: called with samples, it gives as many.
 
     Calls are counted, bounded and kept (:mod:`hystbench.blocks.calls`). It must give
@@ -29,7 +29,6 @@ class Simulator(Block):
     By definition.
     """
 
-    place: ClassVar[Place] = "base"
     seen: ClassVar[bool] = False
     no_step: ClassVar[str] = (
         "a simulator of somebody's own cannot be turned into code; expected --part "

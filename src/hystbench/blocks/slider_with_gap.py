@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-@dataclass(frozen=True)
-class SliderWithGap(Force):
+class SliderWithGap(Force, name="slider-with-gap"):
     """A spring behind a clearance that slides at a force.
 
     ``F = contact_stiffness dead_zone(z, gap)`` with z the way, held between plus and
@@ -22,8 +18,6 @@ class SliderWithGap(Force):
     .. [1] J. Awrejcewicz, C.-H. Lamarque, Bifurcation and Chaos in Nonsmooth Mechanical
        Systems, World Scientific, 2003.
     """
-
-    name: ClassVar = "slider-with-gap"
 
     contact_stiffness: float = number("U/Q", "of the contact", TINY, HUGE)
     slip_force: float = number("U", "force at which it slides", 0.0, HUGE)

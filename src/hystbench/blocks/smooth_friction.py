@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-@dataclass(frozen=True)
-class SmoothFriction(Force):
+class SmoothFriction(Force, name="smooth-friction"):
     """Friction that grows with the velocity, ``F = level tanh(q' / velocity_scale)``.
 
     A lubricated or magnetorheological fluid yields like that. It creeps at rest, where
@@ -27,8 +23,6 @@ class SmoothFriction(Force):
        analysis tools and compensation methods for the control of machines with
        friction", Automatica 30 (1994) 1083-1138.
     """
-
-    name: ClassVar = "smooth-friction"
 
     coulomb: float = number("U", "force at high velocity", 0.0, HUGE)
     velocity_scale: float = number(

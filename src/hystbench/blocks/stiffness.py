@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class Stiffness(Force):
+class Stiffness(Force, name="stiffness"):
     """A spring beside the linear one, ``F = quadratic q^2 + cubic q^3``.
 
     A positive cube hardens, a negative one softens; a square makes both ways differ.
@@ -20,8 +16,6 @@ class Stiffness(Force):
     .. [1] I. Kovacic, M. J. Brennan (eds.), The Duffing Equation: Nonlinear Oscillators
        and their Behaviour, Wiley, 2011.
     """
-
-    name: ClassVar = "stiffness"
 
     quadratic: float = number("U/Q^2", "weight of the square", -HUGE, HUGE)
     cubic: float = number("U/Q^3", "weight of the cube", -HUGE, HUGE)

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, choice, number
 
 SIDES = {"both": 0.0, "upper": 1.0, "lower": -1.0}
 
 
-@dataclass(frozen=True)
-class Stop(Force):
+class Stop(Force, name="stop"):
     """A spring that is met where q leaves a gap: ``F = contact_stiffness (x - gap)``.
 
     That is for ``x = q - centre`` above the gap, and likewise below ``-gap`` where the
@@ -23,8 +19,6 @@ class Stop(Force):
     .. [1] S. W. Shaw, P. J. Holmes, "A periodically forced piecewise linear
        oscillator", Journal of Sound and Vibration 90 (1983) 129-155.
     """
-
-    name: ClassVar = "stop"
 
     contact_stiffness: float = number("U/Q", "stiffness of the contact", 0.0, HUGE)
     gap: float = number("Q", "half of the clearance", 0.0, HUGE)

@@ -19,14 +19,12 @@ _Response = tuple[FloatArray, FloatArray]
 _KEPT: OrderedDict[tuple[int, float, Simulated], _Response] = OrderedDict()
 
 
-@dataclass(frozen=True)
-class BesideBlock(AttachedBlock):
+class BesideBlock(AttachedBlock, place="inside"):
     """A block with the input of the mechanism before it, added to its output.
 
     In the chain it stands behind the mechanism's forces.
     """
 
-    place: ClassVar = "inside"
     hosts: ClassVar = "mechanism or a force inside one"
 
     def attach(self, before: Any) -> Superposed:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.base import Block
@@ -13,8 +10,7 @@ from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class UnsignedSensor(Block):
+class UnsignedSensor(Block, name="unsigned-sensor", place="sensor"):
     """Magnitude of the true output, ``y = scale |z|``: pulses are counted either way.
 
     References
@@ -23,9 +19,6 @@ class UnsignedSensor(Block):
        models", Department of Information Technology, Uppsala University, report
        2017-024: pulse counters that do not tell the direction of turning.
     """
-
-    name: ClassVar = "unsigned-sensor"
-    place: ClassVar = "sensor"
 
     scale: float = number("-", "of what is shown", TINY, HUGE)
 

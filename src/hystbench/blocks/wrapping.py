@@ -34,7 +34,6 @@ class Hysteresis(Protocol):
         """Refuse by InputError if there are no thresholds that can grow."""
 
 
-@dataclass(frozen=True)
 class HystereticBlock(Block):
     """Hysteresis, which a :class:`WrappingBlock` may follow.
 
@@ -59,7 +58,6 @@ class HystereticBlock(Block):
         )
 
 
-@dataclass(frozen=True)
 class PlayBlock(HystereticBlock):
     """Hysteresis of play operators, whose thresholds can grow."""
 
@@ -77,7 +75,6 @@ class PlayBlock(HystereticBlock):
         """Accept."""
 
 
-@dataclass(frozen=True)
 class WrappingBlock(AttachedBlock):
     """A block that changes the hysteresis before it, not a signal.
 
