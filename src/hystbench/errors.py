@@ -57,5 +57,25 @@ def nearest(name: object, known: Iterable[object]) -> str:
     return "expected one of " + ", ".join(names)
 
 
+def refuse_unknown(name: object, known: Iterable[object], told: str) -> None:
+    """Refuse a name that is not one of those known.
+
+    Parameters
+    ----------
+    name, known
+        As for :func:`nearest`.
+    told : str
+        What is said of the name, before the nearest one: ``hold: 'x' is unknown``.
+
+    Raises
+    ------
+    InputError
+        If the name is not known.
+    """
+    names = tuple(known)
+    if name not in names:
+        raise InputError(f"{told}; {nearest(name, names)}")
+
+
 def _without_leading_zeros(name: str) -> str:
     return re.sub(r"(?<!\d)0+(?=\d)", "", name)

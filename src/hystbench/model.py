@@ -19,7 +19,7 @@ from hystbench.blocks.base import Block, RandomBlock
 from hystbench.blocks.held import HOLDS, HeldBlock, Hold
 from hystbench.blocks.parameter import Value
 from hystbench.blocks.simulated_column import SimulatedColumn
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, nearest, refuse_unknown
 from hystbench.files import write_text
 from hystbench.model_content import Provenance, place_of, read_content
 from hystbench.record import Channel, FloatArray, Record
@@ -69,11 +69,9 @@ class Model:
                 except InputError as error:
                     raise InputError(f"{key}: {error}") from None
         for name, share in self.tolerances.items():
-            if name not in self.free:
-                raise InputError(
-                    f"free: a tolerance for {name!r}, which is not free; "
-                    f"{nearest(name, self.free)}"
-                )
+            refuse_unknown(
+                name, self.free, f"free: a tolerance for {name!r}, which is not free"
+            )
             number = isinstance(share, int | float) and not isinstance(share, bool)
             if not (number and 0 < share < np.inf):
                 raise InputError(
@@ -160,8 +158,7 @@ class Model:
         InputError
             If there is no such hold.
         """
-        if hold not in HOLDS:
-            raise InputError(f"hold: {hold!r} is unknown; {nearest(hold, HOLDS)}")
+        refuse_unknown(hold, HOLDS, f"hold: {hold!r} is unknown")
         chain = []
         for block in self.chain:
             if isinstance(block, HeldBlock):

@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
-from hystbench.errors import InputError, nearest, short
+from hystbench.errors import InputError, nearest, refuse_unknown, short
 from hystbench.record import Channel
 from hystbench.units import check_known
 
@@ -32,10 +32,7 @@ class Provenance:
 
     def __post_init__(self) -> None:
         """Refuse a source that is none of the three."""
-        if self.source not in SOURCES:
-            raise InputError(
-                f"source: {self.source!r} is unknown; {nearest(self.source, SOURCES)}"
-            )
+        refuse_unknown(self.source, SOURCES, f"source: {self.source!r} is unknown")
         if not isinstance(self.note, str) or not self.note.strip():
             raise InputError(f"note: expected a sentence, got {short(self.note)}")
 
@@ -135,9 +132,7 @@ def _block(content: object, position: int) -> Block:
     if not isinstance(content, dict) or not content:
         raise InputError(f"{where}{short(content)}; expected {_BLOCK}")
     first = next(iter(content))
-    if first not in known:
-        near = nearest(first, known)
-        raise InputError(f"{where}unknown block {short(first)}; {near}")
+    refuse_unknown(first, known, f"{where}unknown block {short(first)}")
     if len(content) > 1:
         raise InputError(
             f"{where}{len(content)} keys ({', '.join(map(str, content))}); expected "

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 from hystbench.files import atomic_path
 from hystbench.record import FloatArray
 from hystbench.units import plain
@@ -97,14 +97,12 @@ def check_definition(
     place = f"{place}: excitations: {name}"
     ((kind, given),) = definition.items()
     known = waveforms(kind)
-    if kind not in known:
-        raise InputError(f"{place}: unknown kind {kind!r}; {nearest(kind, known)}")
+    refuse_unknown(kind, known, f"{place}: unknown kind {kind!r}")
     waveform = known[kind]
     parameters = inspect.signature(waveform.samples).parameters
     expected = list(parameters)
     for key in given:
-        if key not in expected:
-            raise InputError(f"{place}: unknown key {key!r}; {nearest(key, expected)}")
+        refuse_unknown(key, expected, f"{place}: unknown key {key!r}")
     values = {key: common[key] for key in expected if key in common} | dict(given)
     for key in expected:
         if key not in values:

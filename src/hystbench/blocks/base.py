@@ -12,7 +12,7 @@ import numpy as np
 
 from hystbench.blocks.parameter import Parameter
 from hystbench.blocks.step import Sampling, Step, polynomial
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 from hystbench.record import FloatArray
 
 Place = Literal["base", "drive", "material", "inside", "mechanics", "sensor"]
@@ -70,8 +70,7 @@ class Block(ABC):
         """
         known = cls.parameters()
         for key in values:
-            if key not in known:
-                raise InputError(f"unknown parameter {key!r}; {nearest(key, known)}")
+            refuse_unknown(key, known, f"unknown parameter {key!r}")
         for item in fields(cls):
             if item.name not in values and item.default is MISSING:
                 about = item.metadata["parameter"]

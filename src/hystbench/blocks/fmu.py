@@ -13,7 +13,7 @@ import numpy as np
 
 from hystbench.blocks.parameter import text
 from hystbench.blocks.simulator import FileSimulator, same_file
-from hystbench.errors import InputError, in_line, nearest
+from hystbench.errors import InputError, in_line, refuse_unknown
 from hystbench.libraries import library
 from hystbench.record import FloatArray
 
@@ -111,11 +111,7 @@ def _variable(unit: _Unit, label: str, causality: str, asked: str) -> str:
         v.name for v in unit.description.modelVariables if v.causality == causality
     ]
     if asked:
-        if asked not in names:
-            raise InputError(
-                f"{label}: {causality}: no {causality} {asked!r}; "
-                f"{nearest(asked, names)}"
-            )
+        refuse_unknown(asked, names, f"{label}: {causality}: no {causality} {asked!r}")
         return asked
     if len(names) != 1:
         raise InputError(

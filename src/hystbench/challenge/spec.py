@@ -16,7 +16,7 @@ from hystbench.challenge.plant.effects import (
     may_meet,
 )
 from hystbench.challenge.plant.hysteresis import DRAWS
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 
 CaseKind = Literal["single", "pair", "triple", "none", "unlisted"]
 CASE_KINDS: tuple[str, ...] = get_args(CaseKind)
@@ -72,8 +72,7 @@ class CaseSpec:
         words = {"kind": CASE_KINDS, "family": FAMILIES, "campaign": CAMPAIGNS}
         for key, known_words in words.items():
             word = getattr(self, key)
-            if word not in known_words:
-                raise InputError(f"{key}: {word!r}; {nearest(word, known_words)}")
+            refuse_unknown(word, known_words, f"{key}: {word!r}")
         if self.family in inside.MACHINES and self.campaign != "standard":
             raise InputError(
                 f"campaign: {self.campaign!r} of the family {self.family!r}; expected "
@@ -87,11 +86,9 @@ class CaseSpec:
                 )
         known = _known(self.kind, self.family)
         for name in self.effects:
-            if name not in known:
-                raise InputError(
-                    f"effect: {name!r} unknown in the family {self.family!r}; "
-                    f"{nearest(name, known)}"
-                )
+            refuse_unknown(
+                name, known, f"effect: {name!r} unknown in the family {self.family!r}"
+            )
         if len(self.effects) != COUNTS[self.kind]:
             raise InputError(
                 f"effect: {len(self.effects)} given, expected {COUNTS[self.kind]} for "
@@ -184,8 +181,7 @@ def draw_spec(
     InputError
         As :class:`CaseSpec`.
     """
-    if kind not in CASE_KINDS:
-        raise InputError(f"kind: {kind!r}; {nearest(kind, CASE_KINDS)}")
+    refuse_unknown(kind, CASE_KINDS, f"kind: {kind!r}")
     names = effects_of(kind, family, unlisted)
     if len(names) < COUNTS[kind]:
         raise InputError(

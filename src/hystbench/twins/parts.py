@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from hystbench.compare.evidence import ClaimEvidence, Run
-from hystbench.errors import InputError, nearest
+from hystbench.errors import refuse_unknown
 from hystbench.files import finite_or_none
 from hystbench.order_errors import OrderError, filters_by_order, order_errors
 from hystbench.record import Record
@@ -176,8 +176,7 @@ def _on_records(
 
 
 def _of(part: Mapping[str, dict[str, Any]], twin: Twin) -> dict[str, Any]:
-    if twin.name not in part:
-        raise InputError(f"{twin.place}: not run; {nearest(twin.name, part)}")
+    refuse_unknown(twin.name, part, f"{twin.place}: not run")
     return part[twin.name]
 
 
