@@ -15,9 +15,6 @@ class Asymmetry(PolynomialBlock, name="asymmetry", place="material"):
        Press, 2000: strain follows the square of the magnetisation.
     """
 
-    coefficient: float = number("1/Y", "weight of the square", -HUGE, HUGE)
+    terms = (0.0, 1.0, "coefficient")
 
-    @property
-    def coefficients(self) -> tuple[float, ...]:
-        """Those of the polynomial, the constant first."""
-        return 0.0, 1.0, self.coefficient
+    coefficient: float = number("1/Y", "weight of the square", -HUGE, HUGE)

@@ -39,16 +39,20 @@ class Block(ABC):
     seen: ClassVar[bool] = True
     """Whether it says what it does inside, or is a whole simulator of somebody's."""
 
+    curve: ClassVar[str] = ""
+    """Function of the step of a block without memory, which takes its parameters."""
+
     no_step: ClassVar[str] = "has no step that could be exported"
     """Why the block cannot be exported, if it cannot."""
 
-    def __init_subclass__(cls, name: str = "", place: Place | None = None) -> None:
-        """Make a subclass a dataclass, with its name and place where it has them."""
+    def __init_subclass__(
+        cls, name: str = "", place: Place | None = None, curve: str = ""
+    ) -> None:
+        """Make a subclass a dataclass, and keep what the line of its class says."""
         super().__init_subclass__()
-        if name:
-            cls.name = name
-        if place:
-            cls.place = place
+        for key, said in (("name", name), ("place", place), ("curve", curve)):
+            if said:
+                setattr(cls, key, said)
         dataclass(frozen=True)(cls)
 
     @classmethod
@@ -119,7 +123,9 @@ class Block(ABC):
         InputError
             If it cannot be said.
         """
-        raise InputError(f"{self.name}: {self.no_step}")
+        if not self.curve:
+            raise InputError(f"{self.name}: {self.no_step}")
+        return Step(self.curve, self.constants(*self.parameters()))
 
     def constants(self, *names: str) -> dict[str, Any]:
         """Give parameters as constants of a step, a sequence as an array."""
@@ -151,10 +157,16 @@ class Block(ABC):
 class PolynomialBlock(Block):
     """A block whose output is a polynomial of what enters it."""
 
+    terms: ClassVar[tuple[float | str, ...]]
+    """Its coefficients, the constant first: numbers, or names of parameters."""
+
     @property
-    @abstractmethod
     def coefficients(self) -> tuple[float, ...]:
         """Those of the polynomial, the constant first."""
+        return tuple(
+            getattr(self, term) if isinstance(term, str) else term
+            for term in self.terms
+        )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the polynomial by Horner's scheme."""

@@ -6,7 +6,7 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 
 
-class BoucWenForce(Force, name="bouc-wen-force"):
+class BoucWenForce(Force, name="bouc-wen-force", law="hysteretic"):
     """Bouc and Wen's hysteresis of exponent one, by Wen's numbers.
 
     ``dF/dq = stiffness - |F| (beta sgn(F dq) + gamma)``. On loading the stiffness falls
@@ -53,9 +53,9 @@ class BoucWenForce(Force, name="bouc-wen-force"):
         """
         return 4.0 * self.stiffness
 
-    def law(self) -> tuple[str, tuple[float, ...]]:
+    def numbers(self) -> tuple[float, ...]:
         """Give the stiffness, and how it falls on loading and grows on unloading."""
-        return "hysteretic", (
+        return (
             self.stiffness,
             self.beta + self.gamma,
             self.beta - self.gamma,

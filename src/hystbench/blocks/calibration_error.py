@@ -14,10 +14,7 @@ class CalibrationError(PolynomialBlock, name="calibration-error", place="sensor"
     .. [1] JCGM 200:2012, International vocabulary of metrology (VIM), 4.28.
     """
 
+    terms = ("offset", "gain")
+
     gain: float = number("-", "ratio of read to true output", 0.1, 10.0)
     offset: float = number("Y", "reading at zero", -HUGE, HUGE, default=0.0)
-
-    @property
-    def coefficients(self) -> tuple[float, ...]:
-        """Those of the polynomial, the constant first."""
-        return self.offset, self.gain

@@ -6,11 +6,10 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, number
-from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-class DeadZone(Block, name="dead-zone", place="drive"):
+class DeadZone(Block, name="dead-zone", place="drive", curve="dead_zone"):
     """Zero between ``-half_width`` and ``half_width``, straight and shifted outside.
 
     ``v = z - clip(z, -half_width, half_width)``.
@@ -26,7 +25,3 @@ class DeadZone(Block, name="dead-zone", place="drive"):
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Take off the dead zone."""
         return z - np.clip(z, -self.half_width, self.half_width)
-
-    def step(self, sampling: Sampling) -> Step:
-        """Take off the dead zone."""
-        return Step("dead_zone", {"half_width": self.half_width})

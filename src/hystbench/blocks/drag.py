@@ -6,7 +6,7 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 
 
-class Drag(Force, name="drag"):
+class Drag(Force, name="drag", law="drag"):
     """The drag of a fluid in turbulent flow, ``F = coefficient q' |q'|``.
 
     References
@@ -15,7 +15,3 @@ class Drag(Force, name="drag"):
     """
 
     coefficient: float = number("U s^2/Q^2", "of the velocity squared", 0.0, HUGE)
-
-    def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give the coefficient."""
-        return "drag", (self.coefficient,)

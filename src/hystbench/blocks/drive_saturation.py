@@ -6,11 +6,10 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, TINY, number
-from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-class DriveSaturation(Block, name="drive-saturation", place="drive"):
+class DriveSaturation(Block, name="drive-saturation", place="drive", curve="clip"):
     """Hard limit of the drive: ``v = clip(z, -limit, limit)``.
 
     References
@@ -24,7 +23,3 @@ class DriveSaturation(Block, name="drive-saturation", place="drive"):
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Clip the current."""
         return np.clip(z, -self.limit, self.limit)
-
-    def step(self, sampling: Sampling) -> Step:
-        """Clip the current."""
-        return Step("clip", {"limit": self.limit})

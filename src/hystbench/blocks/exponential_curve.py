@@ -6,11 +6,12 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, number
-from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-class ExponentialCurve(Block, name="exponential-curve", place="drive"):
+class ExponentialCurve(
+    Block, name="exponential-curve", place="drive", curve="exponential"
+):
     """A diode or a valve of equal percentage: ``y = (exp(c z) - 1) / c``, c curvature.
 
     A straight line of slope one at zero, and for a curvature of zero throughout. A
@@ -32,7 +33,3 @@ class ExponentialCurve(Block, name="exponential-curve", place="drive"):
             return z.copy()
         with np.errstate(over="ignore"):
             return np.asarray(np.expm1(self.curvature * z) / self.curvature)
-
-    def step(self, sampling: Sampling) -> Step:
-        """Bend what enters."""
-        return Step("exponential", {"curvature": self.curvature})

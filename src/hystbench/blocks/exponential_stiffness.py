@@ -6,7 +6,7 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-class ExponentialStiffness(Force, name="exponential-stiffness"):
+class ExponentialStiffness(Force, name="exponential-stiffness", law="sinh"):
     """A spring beside the linear one, ``F = coefficient (reach sinh(q / reach) - q)``.
 
     It hardly acts below the reach, where it is a cube, and grows as an exponential
@@ -19,7 +19,3 @@ class ExponentialStiffness(Force, name="exponential-stiffness"):
 
     coefficient: float = number("U/Q", "its linear part, which is left out", 0.0, HUGE)
     reach: float = number("Q", "distance beyond which it grows steeply", TINY, HUGE)
-
-    def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give the coefficient and the reach."""
-        return "sinh", (self.coefficient, self.reach)

@@ -103,13 +103,22 @@ class Force(AttachedBlock, place="inside"):
 
     hosts: ClassVar = "mechanism or impedance"
 
-    @abstractmethod
-    def law(self) -> tuple[str, tuple[float, ...] | FloatArray]:
-        """Give the kernel's law, one of :data:`LAWS`, and its numbers.
+    law: ClassVar[str]
+    """The kernel's law, one of :data:`LAWS`; the line of a subclass says it."""
+
+    def __init_subclass__(cls, law: str = "", **about: Any) -> None:
+        """Keep the law that the line of a class says."""
+        super().__init_subclass__(**about)
+        if law:
+            cls.law = law
+
+    def numbers(self) -> tuple[float, ...] | FloatArray:
+        """Give the numbers of the law: the block's own, unless a subclass has others.
 
         Of a force that is the sum of several of one law, the numbers of each, a row for
         each.
         """
+        return tuple(getattr(self, name) for name in self.parameters())
 
     @property
     def stiffest(self) -> float:
@@ -118,10 +127,9 @@ class Force(AttachedBlock, place="inside"):
 
     def rows(self) -> FloatArray:
         """Give rows of the kernel: the law's number, then its own and zeros."""
-        kind, numbers = self.law()
-        own = np.atleast_2d(np.asarray(numbers, dtype=np.float64))
+        own = np.atleast_2d(np.asarray(self.numbers(), dtype=np.float64))
         found = np.zeros((len(own), ROW))
-        found[:, 0] = LAWS.index(kind)
+        found[:, 0] = LAWS.index(self.law)
         found[:, 1 : 1 + own.shape[1]] = own
         return found
 

@@ -6,7 +6,7 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-class FrictionForce(Force, name="friction-force"):
+class FrictionForce(Force, name="friction-force", law="friction"):
     """Coulomb friction that gives way by a small distance before it slides.
 
     ``F = (coulomb + static_excess) z / presliding_distance`` with z the way, held where
@@ -32,9 +32,9 @@ class FrictionForce(Force, name="friction-force"):
         "Q/s", "velocity at which the static force has faded", 0.0, HUGE, 0.0
     )
 
-    def law(self) -> tuple[str, tuple[float, ...]]:
+    def numbers(self) -> tuple[float, ...]:
         """Give both forces, the velocity and the distance."""
-        return "friction", (
+        return (
             self.coulomb,
             self.static_excess,
             self.stribeck_velocity,

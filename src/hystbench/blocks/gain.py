@@ -14,10 +14,7 @@ class Gain(PolynomialBlock, name="gain", place="base"):
     By definition.
     """
 
+    terms = ("offset", "value")
+
     value: float = number("Y/U", "static gain", -HUGE, HUGE)
     offset: float = number("Y", "output at zero", -HUGE, HUGE, default=0.0)
-
-    @property
-    def coefficients(self) -> tuple[float, ...]:
-        """Those of the polynomial, the constant first."""
-        return self.offset, self.value

@@ -6,7 +6,7 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 
 
-class Gravity(Force, name="gravity"):
+class Gravity(Force, name="gravity", law="gravity"):
     """A pendulum's moment, ``F = amplitude (sin(q + angle) - sin(angle))``, q in rad.
 
     References
@@ -16,7 +16,3 @@ class Gravity(Force, name="gravity"):
 
     amplitude: float = number("U", "weight times its arm", -HUGE, HUGE)
     angle: float = number("rad", "of the arm to the vertical at q = 0", -3.2, 3.2, 0.0)
-
-    def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give moment and angle."""
-        return "gravity", (self.amplitude, self.angle)

@@ -6,7 +6,7 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-class HystereticForce(Force, name="hysteretic-force"):
+class HystereticForce(Force, name="hysteretic-force", law="hysteretic"):
     """Bouc and Wen's hysteresis of exponent one, ``F = largest z``.
 
     ``yield_distance dz/dq = 1 - |z| (sharing + (1 - sharing) sgn(z dq))``, z between -1
@@ -33,10 +33,10 @@ class HystereticForce(Force, name="hysteretic-force"):
         0.5,
     )
 
-    def law(self) -> tuple[str, tuple[float, ...]]:
+    def numbers(self) -> tuple[float, ...]:
         """Give the stiffness, and how it falls on loading and grows on unloading."""
         softens = 1.0 / self.yield_distance
-        return "hysteretic", (
+        return (
             self.largest * softens,
             softens,
             (1.0 - 2.0 * self.sharing) * softens,

@@ -13,7 +13,7 @@ ELEMENTS = 12
 a percent of the largest, and within one where nearly all slip at once or soon."""
 
 
-class IwanForce(Force, name="iwan-force"):
+class IwanForce(Force, name="iwan-force", law="slider"):
     """A sum of stops, elastic and perfectly plastic: a joint that slips bit by bit.
 
     ``F = stiffness sum of s_i E_i[q]``; E_i is the way since the last turn, held
@@ -72,7 +72,7 @@ class IwanForce(Force, name="iwan-force"):
         means = largest / np.maximum(shares, TINY)
         return shares, np.clip(means, edges[:-1], edges[1:]) * self.slip_distance
 
-    def law(self) -> tuple[str, FloatArray]:
+    def numbers(self) -> FloatArray:
         """Give sliders without a gap: a stiffness and a reach each."""
         shares, thresholds = self.elements()
-        return "slider", np.column_stack([self.stiffness * shares, thresholds])
+        return np.column_stack([self.stiffness * shares, thresholds])

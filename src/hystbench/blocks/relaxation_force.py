@@ -6,7 +6,7 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-class RelaxationForce(Force, name="relaxation-force"):
+class RelaxationForce(Force, name="relaxation-force", law="relaxation"):
     """Maxwell's branch: ``dF/dt = stiffness q' - F / relaxation_time_s``.
 
     Held at a place, the force fades; a slow motion meets a damper of ``stiffness
@@ -28,7 +28,3 @@ class RelaxationForce(Force, name="relaxation-force"):
     def stiffest(self) -> float:
         """That of the spring."""
         return self.stiffness
-
-    def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give the stiffness and the time."""
-        return "relaxation", (self.stiffness, self.relaxation_time_s)

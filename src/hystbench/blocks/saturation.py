@@ -6,12 +6,11 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, TINY, number
-from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 
-class Saturation(Block, name="saturation", place="material"):
+class Saturation(Block, name="saturation", place="material", curve="saturation"):
     """Odd and soft saturation.
 
     Without a sharpness ``y = level tanh(z / level)``; with one, n, the algebraic law
@@ -45,7 +44,3 @@ class Saturation(Block, name="saturation", place="material"):
             return self.level * np.tanh(ratio)
         size = 1.0 + np.abs(ratio) ** self.sharpness
         return z / size ** (1.0 / self.sharpness)
-
-    def step(self, sampling: Sampling) -> Step:
-        """Give the curve."""
-        return Step("saturation", self.constants("level", "sharpness"))

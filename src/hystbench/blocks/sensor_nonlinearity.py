@@ -16,10 +16,7 @@ class SensorNonlinearity(PolynomialBlock, name="sensor-nonlinearity", place="sen
        displacement sensors and its polynomial calibration.
     """
 
+    terms = (0.0, 1.0, "quadratic", "cubic")
+
     quadratic: float = number("1/Y", "weight of the square", -HUGE, HUGE)
     cubic: float = number("1/Y^2", "weight of the cube", -HUGE, HUGE)
-
-    @property
-    def coefficients(self) -> tuple[float, ...]:
-        """Those of the polynomial, the constant first."""
-        return 0.0, 1.0, self.quadratic, self.cubic

@@ -6,7 +6,7 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-class SliderWithGap(Force, name="slider-with-gap"):
+class SliderWithGap(Force, name="slider-with-gap", law="slider"):
     """A spring behind a clearance that slides at a force.
 
     ``F = contact_stiffness dead_zone(z, gap)`` with z the way, held between plus and
@@ -23,7 +23,7 @@ class SliderWithGap(Force, name="slider-with-gap"):
     slip_force: float = number("U", "force at which it slides", 0.0, HUGE)
     gap: float = number("Q", "half of the clearance", 0.0, HUGE)
 
-    def law(self) -> tuple[str, tuple[float, ...]]:
+    def numbers(self) -> tuple[float, ...]:
         """Give the stiffness, the reach of the way and the gap."""
         reach = self.gap + self.slip_force / self.contact_stiffness
-        return "slider", (self.contact_stiffness, reach, self.gap)
+        return (self.contact_stiffness, reach, self.gap)

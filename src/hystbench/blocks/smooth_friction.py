@@ -6,7 +6,7 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-class SmoothFriction(Force, name="smooth-friction"):
+class SmoothFriction(Force, name="smooth-friction", law="smooth"):
     """Friction that grows with the velocity, ``F = level tanh(q' / velocity_scale)``.
 
     A lubricated or magnetorheological fluid yields like that. It creeps at rest, where
@@ -34,12 +34,3 @@ class SmoothFriction(Force, name="smooth-friction"):
     stribeck_velocity: float = number(
         "Q/s", "velocity at which the excess has faded", 0.0, HUGE, 0.0
     )
-
-    def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give the force and its velocity, the excess and its own."""
-        return "smooth", (
-            self.coulomb,
-            self.velocity_scale,
-            self.static_excess,
-            self.stribeck_velocity,
-        )

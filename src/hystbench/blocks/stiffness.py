@@ -6,7 +6,7 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 
 
-class Stiffness(Force, name="stiffness"):
+class Stiffness(Force, name="stiffness", law="stiffness"):
     """A spring beside the linear one, ``F = quadratic q^2 + cubic q^3``.
 
     A positive cube hardens, a negative one softens; a square makes both ways differ.
@@ -19,7 +19,3 @@ class Stiffness(Force, name="stiffness"):
 
     quadratic: float = number("U/Q^2", "weight of the square", -HUGE, HUGE)
     cubic: float = number("U/Q^3", "weight of the cube", -HUGE, HUGE)
-
-    def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give both weights."""
-        return "stiffness", (self.quadratic, self.cubic)

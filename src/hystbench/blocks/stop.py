@@ -8,7 +8,7 @@ from hystbench.blocks.parameter import HUGE, choice, number
 SIDES = {"both": 0.0, "upper": 1.0, "lower": -1.0}
 
 
-class Stop(Force, name="stop"):
+class Stop(Force, name="stop", law="stop"):
     """A spring that is met where q leaves a gap: ``F = contact_stiffness (x - gap)``.
 
     That is for ``x = q - centre`` above the gap, and likewise below ``-gap`` where the
@@ -30,7 +30,6 @@ class Stop(Force, name="stop"):
         """That of the contact."""
         return self.contact_stiffness
 
-    def law(self) -> tuple[str, tuple[float, ...]]:
+    def numbers(self) -> tuple[float, ...]:
         """Give stiffness, gap, centre and side."""
-        own = (self.contact_stiffness, self.gap, self.centre, SIDES[self.sides])
-        return "stop", own
+        return self.contact_stiffness, self.gap, self.centre, SIDES[self.sides]

@@ -6,11 +6,10 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, TINY, number
-from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-class UnsignedSensor(Block, name="unsigned-sensor", place="sensor"):
+class UnsignedSensor(Block, name="unsigned-sensor", place="sensor", curve="magnitude"):
     """Magnitude of the true output, ``y = scale |z|``: pulses are counted either way.
 
     References
@@ -25,7 +24,3 @@ class UnsignedSensor(Block, name="unsigned-sensor", place="sensor"):
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Leave the sign out."""
         return self.scale * np.abs(z)
-
-    def step(self, sampling: Sampling) -> Step:
-        """Leave the sign out."""
-        return Step("magnitude", {"scale": self.scale})
