@@ -1,7 +1,5 @@
 """What a user did wrong, said in one line."""
 
-from __future__ import annotations
-
 import difflib
 import re
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """The group of all commands, each imported when it is called."""
 
-from __future__ import annotations
-
 import ast
 import importlib
 from collections.abc import Iterator, Mapping

@@ -1,7 +1,5 @@
 """Libraries: those that are not installed with hystbench itself, and its own in C."""
 
-from __future__ import annotations
-
 import ctypes
 import importlib
 from collections.abc import Mapping

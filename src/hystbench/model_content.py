@@ -1,7 +1,5 @@
 """What a model file holds: read key by key, with where each parameter comes from."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 

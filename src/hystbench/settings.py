@@ -4,8 +4,6 @@ Each job gets the settings that it depends on and no others, so that Snakemake
 reruns what a changed setting changes and nothing else.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path

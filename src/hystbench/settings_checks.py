@@ -1,7 +1,5 @@
 """config.yaml checked as a whole, before anything runs."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any

@@ -4,8 +4,6 @@ A signal is defined in config.yaml by one kind and its parameters, for example
 ``sine: {frequency_hz: 40}``. A kind is a :class:`hystbench.waveforms.base.Waveform`.
 """
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Mapping
 from dataclasses import dataclass

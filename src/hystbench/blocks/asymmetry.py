@@ -1,7 +1,5 @@
 """Block ``asymmetry``: positive and negative halves differ."""
 
-from __future__ import annotations
-
 from hystbench.blocks.base import PolynomialBlock
 from hystbench.blocks.parameter import HUGE, number
 

@@ -1,7 +1,5 @@
 """Blocks that change the block before them in the chain instead of a signal."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Any, ClassVar, Protocol

@@ -1,7 +1,5 @@
 """Block ``backlash``: play at the output joint."""
 
-from __future__ import annotations
-
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, number
 from hystbench.blocks.step import Sampling, Step

@@ -1,7 +1,5 @@
 """Block ``bouc-wen-force``: Bouc and Wen's hysteresis, which may grow stiffer."""
 
-from __future__ import annotations
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 

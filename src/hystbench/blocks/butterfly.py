@@ -1,7 +1,5 @@
 """Block ``butterfly``: strain that follows the square of a hysteretic field."""
 
-from __future__ import annotations
-
 from hystbench.blocks.parameter import HUGE, number
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock

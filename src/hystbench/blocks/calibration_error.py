@@ -1,7 +1,5 @@
 """Block ``calibration-error``: a sensor read with the wrong gain and zero."""
 
-from __future__ import annotations
-
 from hystbench.blocks.base import PolynomialBlock
 from hystbench.blocks.parameter import HUGE, number
 

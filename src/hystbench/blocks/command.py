@@ -1,7 +1,5 @@
 """Block ``command``: a simulator that is a program of its own, in any language."""
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

@@ -1,7 +1,5 @@
 """Block ``creep``: slow displacement that follows a step."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.linear import LinearBlock

@@ -1,7 +1,5 @@
 """Block ``dead-zone``: small commands do nothing."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.base import Block

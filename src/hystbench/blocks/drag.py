@@ -1,7 +1,5 @@
 """Block ``drag``: a force inside a mechanism that grows with the velocity squared."""
 
-from __future__ import annotations
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 

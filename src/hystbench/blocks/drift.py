@@ -1,7 +1,5 @@
 """Block ``drift``: the zero wanders slowly."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.base import Block

@@ -1,7 +1,5 @@
 """Block ``drive-lag``: first-order lag of amplifier and coil."""
 
-from __future__ import annotations
-
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.parameter import number
 from hystbench.blocks.state_space import StateSpace, lag

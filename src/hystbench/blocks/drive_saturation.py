@@ -1,7 +1,5 @@
 """Block ``drive-saturation``: the amplifier runs out of current."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.base import Block

@@ -1,7 +1,5 @@
 """Block ``eddy-diffusion``: the field diffuses into the rod against eddy currents."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

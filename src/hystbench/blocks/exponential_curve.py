@@ -1,7 +1,5 @@
 """Block ``exponential-curve``: each step more gives more, by the same factor."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.base import Block

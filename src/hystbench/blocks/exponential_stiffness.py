@@ -1,7 +1,5 @@
 """Block ``exponential-stiffness``: a spring inside a mechanism that grows steeply."""
 
-from __future__ import annotations
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 

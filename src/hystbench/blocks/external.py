@@ -1,7 +1,5 @@
 """Block ``external``: a simulator that a user brings as a Python function."""
 
-from __future__ import annotations
-
 import importlib
 import re
 import sys

@@ -1,7 +1,5 @@
 """Block ``fmu``: a Functional Mock-up Unit for co-simulation."""
 
-from __future__ import annotations
-
 import atexit
 import shutil
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Block ``friction``: a force against the motion that the input is."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.base import Block

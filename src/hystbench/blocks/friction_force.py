@@ -1,7 +1,5 @@
 """Block ``friction-force``: dry friction inside a mechanism."""
 
-from __future__ import annotations
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 

@@ -1,7 +1,5 @@
 """Block ``gain``: a static straight line."""
 
-from __future__ import annotations
-
 from hystbench.blocks.base import PolynomialBlock
 from hystbench.blocks.parameter import HUGE, number
 

@@ -1,7 +1,5 @@
 """Block ``gpi``: generalized Prandtl-Ishlinskii hysteresis."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.parameter import HUGE, a_threshold, choice, numbers

@@ -1,7 +1,5 @@
 """Block ``gravity``: the moment of a weight inside a mechanism that turns."""
 
-from __future__ import annotations
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 

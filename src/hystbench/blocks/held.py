@@ -1,7 +1,5 @@
 """Blocks with memory of time: how their input moves between two samples."""
 
-from __future__ import annotations
-
 from typing import ClassVar, Literal, cast
 
 from hystbench.blocks.base import Block

@@ -1,7 +1,5 @@
 """Block ``hysteresis``: hysteresis that a base model without any lacks."""
 
-from __future__ import annotations
-
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 
 

@@ -1,7 +1,5 @@
 """Block ``hysteresis-shape``: what a hysteresis of the wrong shape lacks."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.parameter import HUGE, a_threshold, numbers

@@ -1,7 +1,5 @@
 """Block ``hysteretic-force``: a force inside a mechanism that remembers the way."""
 
-from __future__ import annotations
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 

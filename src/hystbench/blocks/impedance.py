@@ -1,7 +1,5 @@
 """Block ``impedance``: the force that a given motion takes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import lru_cache, partial
 from math import factorial

@@ -1,7 +1,5 @@
 """Block ``iwan-force``: elements in parallel that slip one after the other."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.force import Force

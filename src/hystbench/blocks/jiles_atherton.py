@@ -1,7 +1,5 @@
 """Block ``jiles-atherton``: hysteresis of domain walls held by pinning sites."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

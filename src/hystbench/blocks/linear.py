@@ -1,7 +1,5 @@
 """Linear blocks: what a state-space system answers to an input, for a stated hold."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from dataclasses import replace
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Block ``logarithmic-creep``: slow displacement over decades of time."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.linear import LinearBlock

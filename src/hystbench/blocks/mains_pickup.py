@@ -1,7 +1,5 @@
 """Block ``mains-pickup``: a tone that the input does not explain."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.base import Block

@@ -1,7 +1,5 @@
 """Block ``mechanism``: one coordinate whose forces act inside the dynamics."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import lru_cache
 from math import ceil, sqrt

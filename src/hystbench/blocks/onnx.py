@@ -1,7 +1,5 @@
 """Block ``onnx``: a neural network, or any other graph, in a file of ONNX."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any, ClassVar
 

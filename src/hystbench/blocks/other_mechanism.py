@@ -1,7 +1,5 @@
 """Block ``other-mechanism``: another mode with forces of its own."""
 
-from __future__ import annotations
-
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.superposed import BesideBlock
 

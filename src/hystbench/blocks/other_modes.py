@@ -1,7 +1,5 @@
 """Block ``other-modes``: what else a force moves beside a mechanism."""
 
-from __future__ import annotations
-
 from hystbench.blocks.superposed import BesideBlock
 from hystbench.blocks.transfer_function import TransferFunction
 

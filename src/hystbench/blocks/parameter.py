@@ -1,7 +1,5 @@
 """Parameters of blocks: unit, meaning and bounds, stated where they are defined."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field

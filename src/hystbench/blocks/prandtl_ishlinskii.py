@@ -1,7 +1,5 @@
 """Block ``prandtl-ishlinskii``: play operators beside a linear path."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.parameter import HUGE, a_threshold, numbers

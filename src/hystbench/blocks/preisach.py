@@ -1,7 +1,5 @@
 """Block ``preisach``: hysteresis as a distribution of relays."""
 
-from __future__ import annotations
-
 from functools import cached_property
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Block ``rate-dependent-hysteresis``: the loop widens with the rate."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Block ``rdgpi``: rate-dependent generalized Prandtl-Ishlinskii hysteresis."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Block ``relaxation-force``: a spring in series with a damper, inside a mechanism."""
 
-from __future__ import annotations
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 

@@ -1,7 +1,5 @@
 """Block ``resonance``: one mechanical mode beside a rigid path."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.linear import LinearBlock

@@ -1,7 +1,5 @@
 """Block ``saturation``: the material's response levels off."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.base import Block

@@ -1,7 +1,5 @@
 """Block ``sensor-lag``: the sensor's electronics lag behind."""
 
-from __future__ import annotations
-
 from hystbench.blocks.drive_lag import DriveLag
 
 

@@ -1,7 +1,5 @@
 """Block ``sensor-noise``: white noise of the displacement sensor."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Block ``sensor-nonlinearity``: a sensor whose reading is a curve."""
 
-from __future__ import annotations
-
 from hystbench.blocks.base import PolynomialBlock
 from hystbench.blocks.parameter import HUGE, number
 

@@ -1,7 +1,5 @@
 """What all simulators of somebody's own have in common, in whatever form they come."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from hashlib import blake2b
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Block ``slew-limit``: the drive changes no faster than its rate."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench import kernels

@@ -1,7 +1,5 @@
 """Block ``slider-with-gap``: dry friction in series with a clearance."""
 
-from __future__ import annotations
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 

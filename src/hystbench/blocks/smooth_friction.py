@@ -1,7 +1,5 @@
 """Block ``smooth-friction``: friction inside a mechanism that a fluid makes smooth."""
 
-from __future__ import annotations
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 

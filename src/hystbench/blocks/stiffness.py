@@ -1,7 +1,5 @@
 """Block ``stiffness``: a spring inside a mechanism that is not linear."""
 
-from __future__ import annotations
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 

@@ -1,7 +1,5 @@
 """Block ``stiffness-hardening``: a mode whose spring stiffens with its displacement."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench import kernels

@@ -1,7 +1,5 @@
 """Block ``stop``: contact inside a mechanism beyond a clearance."""
 
-from __future__ import annotations
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, choice, number
 

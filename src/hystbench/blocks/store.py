@@ -1,7 +1,5 @@
 """Block ``store``: a tank whose outflow follows a power of its level."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench import kernels

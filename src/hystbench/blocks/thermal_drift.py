@@ -1,7 +1,5 @@
 """Block ``thermal-drift``: Joule heat expands the rod."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.base import Block

@@ -1,7 +1,5 @@
 """Block ``transfer-function``: linear dynamics as a ratio of polynomials."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

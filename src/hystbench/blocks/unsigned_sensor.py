@@ -1,7 +1,5 @@
 """Block ``unsigned-sensor``: a sensor that does not show the sign."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.blocks.base import Block

@@ -1,7 +1,5 @@
 """A case of a machine: its records, the base that is handed over, and the truth."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a case is to be: its effects, its family, its noise; drawn from a seed."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal, get_args
 

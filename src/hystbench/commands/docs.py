@@ -1,7 +1,5 @@
 """``hystbench docs``: fill the tables of README.md and docs from results."""
 
-from __future__ import annotations
-
 import csv
 import re
 from functools import partial

@@ -1,7 +1,5 @@
 """``hystbench export``: write a model as code that runs elsewhere."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal

@@ -1,7 +1,5 @@
 """``hystbench load``: read and check one measured record."""
 
-from __future__ import annotations
-
 from hystbench import options
 from hystbench.dataset import load_dataset
 from hystbench.doubts import doubts

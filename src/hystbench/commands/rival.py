@@ -1,7 +1,5 @@
 """``hystbench rival``: a rival of the gap's solver, on a dataset."""
 
-from __future__ import annotations
-
 import importlib
 from pathlib import Path
 from typing import Annotated

@@ -3,8 +3,6 @@
 Each row of a file is one of the classes here, a column a field.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Rows of the CSV files of results: read with checks, and written."""
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Callable, Iterable, Sequence

@@ -6,8 +6,6 @@ A figure is a function of a module here. It takes the files it needs by keyword
 :data:`FIGURES`; a module is imported when its figure is drawn.
 """
 
-from __future__ import annotations
-
 import importlib
 from collections.abc import Callable
 from functools import partial

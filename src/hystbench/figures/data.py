@@ -1,7 +1,5 @@
 """What figures are drawn from: records, runs with their arrays, parts of records."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """How every figure looks, and how it is written: the same bytes each time."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Keys of config.yaml that a filter has, declared where its parameters are."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import MISSING, dataclass, field, fields

@@ -1,7 +1,5 @@
 """What the filters of play operators share: an operator on each tap."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

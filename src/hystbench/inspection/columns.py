@@ -1,7 +1,5 @@
 """Columns of files: which belong together, and which are time, input and output."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence

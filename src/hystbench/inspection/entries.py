@@ -1,7 +1,5 @@
 """Records of a proposed dataset.yaml: entries, names, roles, missing samples."""
 
-from __future__ import annotations
-
 import math
 import os
 import re

@@ -6,8 +6,6 @@ they are: C order, float64. The callers in :mod:`hystbench.operators` and
 :mod:`hystbench.filters` see to shapes; what is here only passes pointers.
 """
 
-from __future__ import annotations
-
 import ctypes
 from pathlib import Path
 from typing import Any

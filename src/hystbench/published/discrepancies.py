@@ -4,8 +4,6 @@ Where the printed numbers show the error, the evidence is computed from them. Th
 are in ``discrepancies.yaml``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache

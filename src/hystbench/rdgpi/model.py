@@ -5,8 +5,6 @@ is here is a reading of those parameters, made from descriptions of the same fam
 of models; docs/rdgpi.md says what supports it and what does not.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal, NamedTuple

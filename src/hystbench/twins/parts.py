@@ -7,8 +7,6 @@ The parts are JSON; :func:`join` puts them together. Each simulates the records 
 needs: kept in files, those of all twins would be a hundred megabytes.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass

@@ -1,7 +1,5 @@
 """Which cases a contest holds: sets of strata, each with seeds of its own."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ They share no loop with it: what hides an effect and what finds it must not have
 mistake in common.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """All effects by name: those of the vocabulary and those outside it."""
 
-from __future__ import annotations
-
 from hystbench.challenge.plant import drive, material, mechanics, sensor, unlisted
 from hystbench.challenge.plant.kind import read_kinds
 

@@ -4,8 +4,6 @@ Half of the sorts may be used while a solver is mended (``development``), half o
 the transfer score (``transfer``).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.challenge import kernels
