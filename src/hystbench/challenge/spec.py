@@ -8,10 +8,10 @@ import numpy as np
 from hystbench.challenge.excitation import CAMPAIGNS
 from hystbench.challenge.plant import inside
 from hystbench.challenge.plant.effects import (
+    APART,
     IN_ACTUATOR,
     UNLISTED,
     VOCABULARY,
-    may_meet,
 )
 from hystbench.challenge.plant.hysteresis import DRAWS
 from hystbench.errors import InputError, refuse_unknown
@@ -138,11 +138,10 @@ def _known(kind: str, family: str) -> list[str]:
 
 
 def _may_meet(names: tuple[str, ...], family: str) -> bool:
-    if family not in inside.MACHINES:
-        return may_meet(names)
+    """Tell whether effects may be hidden together in a family."""
+    pairs = inside.APART if family in inside.MACHINES else APART
     chosen = set(names)
-    apart = any(pair <= chosen for pair in inside.APART)
-    return len(chosen) == len(names) and not apart
+    return len(chosen) == len(names) and not any(pair <= chosen for pair in pairs)
 
 
 def kind_of(effects: tuple[str, ...]) -> str:

@@ -12,9 +12,3 @@ VOCABULARY = {
 UNLISTED = {
     name: kind for name, kind in IN_ACTUATOR.items() if kind.use != "vocabulary"
 }
-
-
-def may_meet(names: tuple[str, ...]) -> bool:
-    """Tell whether effects may be hidden together."""
-    chosen = set(names)
-    return len(chosen) == len(names) and not any(pair <= chosen for pair in APART)
