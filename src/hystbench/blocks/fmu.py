@@ -5,7 +5,7 @@ import shutil
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +30,7 @@ class Fmu(FileSimulator, name="fmu"):
        (co-simulation).
     """
 
-    expected: ClassVar = EXPECTED
+    expected = EXPECTED
 
     file: str = text(EXPECTED)
     input: str = text("variable that is the input; its only input by default", "")

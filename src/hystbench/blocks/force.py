@@ -101,7 +101,7 @@ class Force(AttachedBlock, place="inside"):
     It depends on the position q and the velocity q', and may remember a distance.
     """
 
-    hosts: ClassVar = "mechanism or impedance"
+    hosts = "mechanism or impedance"
 
     law: ClassVar[str]
     """The kernel's law, one of :data:`LAWS`; the line of a subclass says it."""
@@ -199,7 +199,7 @@ class Driven:
     host: Dynamics
     forces: tuple[Force, ...] = ()
 
-    hysteretic: ClassVar[bool] = False
+    hysteretic = False
     name: ClassVar[str] = "mechanism"
 
     def taking(self, force: Force) -> Driven:

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from functools import lru_cache, partial
 from math import factorial
-from typing import ClassVar
 
 import numpy as np
 
@@ -76,7 +75,7 @@ class Impedance(Dynamics, name="impedance", place="base"):
        grids", Mathematics of Computation 51 (1988) 699-706.
     """
 
-    smooths: ClassVar = False
+    smooths = False
 
     mass: float = number("Y s^2/U", "m", -HUGE, HUGE)
     damping: float = number("Y s/U", "c, of a viscous force", -HUGE, HUGE)

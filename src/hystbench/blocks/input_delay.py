@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from math import ceil, floor
-from typing import ClassVar
 
 import numpy as np
 
 from hystbench.blocks.curve import AHEAD, POINTS, value_at, weighed
-from hystbench.blocks.held import HeldBlock, Hold
+from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import choice, number
 from hystbench.blocks.starts import path_from
 from hystbench.blocks.step import Sampling, Step, smooth_curve
@@ -34,8 +33,8 @@ class InputDelay(HeldBlock, name="input-delay", place="drive"):
        Magazine 13 (1996) 30-60.
     """
 
-    own_hold: ClassVar[Hold] = "band-limited"
-    smooths: ClassVar[bool] = False
+    own_hold = "band-limited"
+    smooths = False
 
     delay_s: float = number("s", "time between command and answer", 0.0, 1e3)
     lead_s: float = number(

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from functools import lru_cache
 from math import ceil, sqrt
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -47,7 +47,7 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
        Nonlinear Science 6 (1996) 449-467.
     """
 
-    reference: ClassVar = "Gonzalez, J. Nonlinear Sci. 6 (1996)"
+    reference = "Gonzalez, J. Nonlinear Sci. 6 (1996)"
 
     mass: float = number("U s^2/Q", "m; Q is the unit of the coordinate", TINY, HUGE)
     damping: float = number("U s/Q", "c, of a viscous force", 0.0, HUGE)

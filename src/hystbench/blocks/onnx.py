@@ -1,7 +1,7 @@
 """Block ``onnx``: a neural network, or any other graph, in a file of ONNX."""
 
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -36,7 +36,7 @@ class Onnx(FileSimulator, name="onnx"):
     .. [1] Open Neural Network Exchange, Intermediate Representation Specification.
     """
 
-    expected: ClassVar = EXPECTED
+    expected = EXPECTED
 
     file: str = text(EXPECTED)
 

@@ -1,7 +1,5 @@
 """Block ``rate-dependent-hysteresis``: the loop widens with the rate."""
 
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench import kernels
@@ -51,7 +49,7 @@ class RateDependentHysteresis(
        materials", IEEE Transactions on Magnetics 24 (1988) 621-630.
     """
 
-    smooths: ClassVar[bool] = False
+    smooths = False
 
     coefficient: float = number(
         "(s/U)^exponent",

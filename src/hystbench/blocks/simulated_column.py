@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import field
-from typing import ClassVar
 
 import numpy as np
 
@@ -34,9 +33,9 @@ class SimulatedColumn(Block, name="simulated-column", place="base"):
     By definition.
     """
 
-    reruns: ClassVar = False
-    seen: ClassVar = False
-    no_step: ClassVar = (
+    reruns = False
+    seen = False
+    no_step = (
         "stored output cannot be turned into code; expected --part behind: what "
         "stands there takes the simulator's output"
     )

@@ -27,8 +27,8 @@ class Simulator(Block, place="base"):
     By definition.
     """
 
-    seen: ClassVar[bool] = False
-    no_step: ClassVar[str] = (
+    seen = False
+    no_step = (
         "a simulator of somebody's own cannot be turned into code; expected --part "
         "before or --part behind: it runs between the two"
     )

@@ -25,7 +25,7 @@ class BesideBlock(AttachedBlock, place="inside"):
     In the chain it stands behind the mechanism's forces.
     """
 
-    hosts: ClassVar = "mechanism or a force inside one"
+    hosts = "mechanism or a force inside one"
 
     def attach(self, before: Any) -> Superposed:
         """Add the response to the output of the mechanism before."""
@@ -46,7 +46,7 @@ class Superposed:
     by: Any
     """The block beside, or a mechanism beside with the forces inside it."""
 
-    hysteretic: ClassVar[bool] = False
+    hysteretic = False
     name: ClassVar[str] = "mechanism and other modes"
 
     def taking(self, force: Force) -> Superposed:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import Any, Protocol
 
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import Block
@@ -40,7 +40,7 @@ class HystereticBlock(Block):
     That of play operators is a :class:`PlayBlock`.
     """
 
-    hysteretic: ClassVar[bool] = True
+    hysteretic = True
 
     def grow(
         self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
@@ -82,7 +82,7 @@ class WrappingBlock(AttachedBlock):
     together are one :class:`Wrapped` step.
     """
 
-    hosts: ClassVar = "hysteresis"
+    hosts = "hysteresis"
 
     def attach(self, before: Any) -> Wrapped:
         """Wrap the hysteresis before."""
