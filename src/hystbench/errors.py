@@ -2,7 +2,8 @@
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
 
 class InputError(ValueError):
@@ -73,6 +74,15 @@ def refuse_unknown(name: object, known: Iterable[object], told: str) -> None:
     names = tuple(known)
     if name not in names:
         raise InputError(f"{told}; {nearest(name, names)}")
+
+
+@contextmanager
+def placed(place: str) -> Iterator[None]:
+    """Let a refusal within the block begin with a place: ``chain: block 2: ``."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{place}{error}") from None
 
 
 def _without_leading_zeros(name: str) -> str:

@@ -5,7 +5,7 @@ from typing import Any, Literal, get_args
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
-from hystbench.errors import InputError, nearest, refuse_unknown, short
+from hystbench.errors import InputError, nearest, placed, refuse_unknown, short
 from hystbench.record import Channel
 from hystbench.units import check_known
 
@@ -108,10 +108,8 @@ def _channel(content: object, place: str) -> Channel:
 def _provenance(content: object, place: str) -> Provenance:
     keys = ("source", "note")
     content = _mapping(content, place, required=keys, known=keys)
-    try:
+    with placed(place):
         return Provenance(**content)
-    except InputError as error:
-        raise InputError(f"{place}{error}") from None
 
 
 def place_of(position: int, name: str) -> str:
@@ -139,7 +137,5 @@ def _block(content: object, position: int) -> Block:
     ((name, values),) = content.items()
     place = place_of(position, name)
     values = _mapping({} if values is None else values, place)
-    try:
+    with placed(place):
         return known[name].from_mapping(values)
-    except InputError as error:
-        raise InputError(f"{place}{error}") from None

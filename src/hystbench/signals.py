@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.errors import InputError, refuse_unknown
+from hystbench.errors import InputError, placed, refuse_unknown
 from hystbench.files import atomic_path
 from hystbench.record import FloatArray
 from hystbench.units import plain
@@ -158,10 +158,8 @@ def make_signal(
                     f"{where}: {key}: {highest:g}; expected below {nyquist:g} Hz, "
                     "half the sampling frequency"
                 )
-    try:
+    with placed(f"{where}: "):
         u = waveforms(kind)[kind].samples(**values)
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from None
     if len(u) < 2 or np.ptp(u) == 0:
         raise InputError(
             f"{where}: {len(u)} samples that do not move; expected a signal"

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any, ClassVar, Protocol
 
 from hystbench.blocks.base import Block
-from hystbench.errors import InputError
+from hystbench.errors import InputError, placed
 from hystbench.record import FloatArray
 
 
@@ -119,9 +119,6 @@ def attached(chain: Sequence[Block]) -> list[Any]:
             steps.append(block)
             continue
         before = steps.pop() if steps else None
-        try:
+        with placed(f"chain: block {position + 1} ({block.name}): "):
             steps.append(block.attach(before))
-        except InputError as error:
-            where = f"chain: block {position + 1} ({block.name})"
-            raise InputError(f"{where}: {error}") from None
     return steps
