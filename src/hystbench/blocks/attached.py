@@ -16,6 +16,10 @@ class Simulated(Protocol):
         """Compute the output, as :meth:`Block.simulate` does."""
 
 
+Others = Sequence[tuple[Any, FloatArray]]
+"""Steps with numbers near those of another one, each with what enters it."""
+
+
 class AttachedBlock(Block):
     """A block that has no output of its own: it belongs to the block before it.
 
@@ -41,11 +45,7 @@ class AttachedBlock(Block):
 
 
 def near(
-    step: Any,
-    z: FloatArray,
-    u: FloatArray,
-    dt: float,
-    others: Sequence[tuple[Any, FloatArray]],
+    step: Any, z: FloatArray, u: FloatArray, dt: float, others: Others
 ) -> list[FloatArray]:
     """Simulate a step of a chain, and others of its kind with numbers near.
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.attached import AttachedBlock
+from hystbench.blocks.attached import AttachedBlock, Others
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError
@@ -40,11 +39,7 @@ class Dynamics(HeldBlock):
 
     @abstractmethod
     def motions(
-        self,
-        z: FloatArray,
-        dt: float,
-        forces: tuple[Force, ...],
-        others: Sequence[tuple[Driven, FloatArray]],
+        self, z: FloatArray, dt: float, forces: tuple[Force, ...], others: Others
     ) -> list[Motion]:
         """Compute how the coordinate moves, and how others with numbers near do.
 
@@ -80,11 +75,7 @@ class Dynamics(HeldBlock):
         return self.driven(z, dt, ())
 
     def near(
-        self,
-        z: FloatArray,
-        u: FloatArray,
-        dt: float,
-        others: Sequence[tuple[Dynamics, FloatArray]],
+        self, z: FloatArray, u: FloatArray, dt: float, others: Others
     ) -> list[FloatArray]:
         """Compute the output, and those of others near, without a force inside."""
         every = [(Driven(host), own) for host, own in others]
@@ -211,11 +202,7 @@ class Driven:
         return self.host.driven(z, dt, self.forces)
 
     def near(
-        self,
-        z: FloatArray,
-        u: FloatArray,
-        dt: float,
-        others: Sequence[tuple[Driven, FloatArray]],
+        self, z: FloatArray, u: FloatArray, dt: float, others: Others
     ) -> list[FloatArray]:
         """Compute the output, and those of others with numbers near."""
         motions = self.host.motions(z, dt, self.forces, others)

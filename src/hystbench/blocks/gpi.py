@@ -4,7 +4,7 @@ import numpy as np
 
 from hystbench.blocks.parameter import HUGE, a_threshold, choice, numbers
 from hystbench.blocks.step import PASSED, Sampling, Step
-from hystbench.blocks.wrapping import PlayBlock
+from hystbench.blocks.wrapping import Growth, PlayBlock
 from hystbench.envelope import Envelope
 from hystbench.operators import generalized_play, generalized_prandtl_ishlinskii
 from hystbench.rdgpi.model import STARTS
@@ -42,7 +42,7 @@ class GeneralizedPrandtlIshlinskii(PlayBlock, name="gpi", place="base"):
     start: str = choice("operators before the first sample", STARTS, "rest")
 
     def grow(
-        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+        self, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute Eq. 9 with all thresholds times ``growth``."""
         left, right, rounds = self._envelopes(v)

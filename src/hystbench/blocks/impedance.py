@@ -1,11 +1,11 @@
 """Block ``impedance``: the force that a given motion takes."""
 
-from collections.abc import Sequence
 from functools import lru_cache, partial
 from math import factorial
 
 import numpy as np
 
+from hystbench.blocks.attached import Others
 from hystbench.blocks.curve import (
     AHEAD,
     POINTS,
@@ -16,7 +16,7 @@ from hystbench.blocks.curve import (
     through_samples,
     weighed,
 )
-from hystbench.blocks.force import Driven, Dynamics, Force, Motion, against, exported
+from hystbench.blocks.force import Dynamics, Force, Motion, against, exported
 from hystbench.blocks.held import Hold
 from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
@@ -111,11 +111,7 @@ class Impedance(Dynamics, name="impedance", place="base"):
         )
 
     def motions(
-        self,
-        z: FloatArray,
-        dt: float,
-        forces: tuple[Force, ...],
-        others: Sequence[tuple[Driven, FloatArray]],
+        self, z: FloatArray, dt: float, forces: tuple[Force, ...], others: Others
     ) -> list[Motion]:
         """Give the motion and the forces that it meets, and those of others.
 

@@ -1,6 +1,5 @@
 """Block ``mechanism``: one coordinate whose forces act inside the dynamics."""
 
-from collections.abc import Sequence
 from functools import lru_cache
 from math import ceil, sqrt
 from typing import Any
@@ -8,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from hystbench import kernels
+from hystbench.blocks.attached import Others
 from hystbench.blocks.curve import held_lines
 from hystbench.blocks.force import Driven, Dynamics, Force, Motion, exported, rows
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
@@ -89,11 +89,7 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
             return motion.acceleration + self.blend * motion.velocity
 
     def motions(
-        self,
-        z: FloatArray,
-        dt: float,
-        forces: tuple[Force, ...],
-        others: Sequence[tuple[Driven, FloatArray]],
+        self, z: FloatArray, dt: float, forces: tuple[Force, ...], others: Others
     ) -> list[Motion]:
         """Compute how the coordinate moves, and how others with numbers near do.
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from hystbench.blocks.parameter import HUGE, a_threshold, numbers
 from hystbench.blocks.step import Sampling, Step
-from hystbench.blocks.wrapping import PlayBlock
+from hystbench.blocks.wrapping import Growth, PlayBlock
 from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
@@ -33,7 +33,7 @@ class PrandtlIshlinskii(PlayBlock, name="prandtl-ishlinskii", place="material"):
     cube_weights: tuple[float, ...] = a_threshold("1/U^2", "c_i")
 
     def grow(
-        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+        self, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Add the weighted plays with all thresholds times ``growth``."""
         plays = growing_play(v, self.thresholds, growth)

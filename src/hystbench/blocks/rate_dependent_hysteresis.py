@@ -16,7 +16,7 @@ from hystbench.blocks.curve import (
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
-from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
+from hystbench.blocks.wrapping import Growth, Hysteresis, WrappingBlock
 from hystbench.record import FloatArray
 
 FORMS = ("growing-thresholds", "excess-field", "acting-field")
@@ -66,12 +66,7 @@ class RateDependentHysteresis(
             inner.check_growth()
 
     def wrap(
-        self,
-        inner: Hysteresis,
-        v: FloatArray,
-        u: FloatArray,
-        dt: float,
-        growth: FloatArray | None = None,
+        self, inner: Hysteresis, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Drive the hysteresis with larger thresholds or with less field."""
         fine = SHORT_STEPS if self.holding == "band-limited" and len(v) > 2 else 1

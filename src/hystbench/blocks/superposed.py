@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
-from hystbench.blocks.attached import AttachedBlock, Simulated, near
+from hystbench.blocks.attached import AttachedBlock, Others, Simulated, near
 from hystbench.blocks.force import Driven, Force
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.errors import InputError
@@ -64,11 +63,7 @@ class Superposed:
         return _kept(self.inner, z, u, dt) + _kept(self.by, z, u, dt)
 
     def near(
-        self,
-        z: FloatArray,
-        u: FloatArray,
-        dt: float,
-        others: Sequence[tuple[Superposed, FloatArray]],
+        self, z: FloatArray, u: FloatArray, dt: float, others: Others
     ) -> list[FloatArray]:
         """Compute the output, and those of others with numbers near."""
         inner = near(self.inner, z, u, dt, [(x.inner, own) for x, own in others])

@@ -11,12 +11,15 @@ from hystbench.blocks.base import Block
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
+Growth = FloatArray | None
+"""Factor on all thresholds at each sample, shape (n,); None for one."""
+
 
 class Hysteresis(Protocol):
     """Hysteresis that a block can wrap: a block, or one that is wrapped already."""
 
     def grow(
-        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+        self, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute the output with all thresholds times ``growth``.
 
@@ -43,7 +46,7 @@ class HystereticBlock(Block):
     hysteretic = True
 
     def grow(
-        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+        self, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute the output; thresholds that grow are refused."""
         if growth is not None:
@@ -63,7 +66,7 @@ class PlayBlock(HystereticBlock):
 
     @abstractmethod
     def grow(
-        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+        self, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute the output with all thresholds times ``growth``."""
 
@@ -101,12 +104,7 @@ class WrappingBlock(AttachedBlock):
 
     @abstractmethod
     def wrap(
-        self,
-        inner: Hysteresis,
-        v: FloatArray,
-        u: FloatArray,
-        dt: float,
-        growth: FloatArray | None = None,
+        self, inner: Hysteresis, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute the output of the hysteresis as the block changes it.
 
@@ -136,10 +134,10 @@ class Wrapped:
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output, as :meth:`Block.simulate` does."""
-        return self.by.wrap(self.inner, z, u, dt)
+        return self.by.wrap(self.inner, z, u, dt, None)
 
     def grow(
-        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+        self, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute the output with all thresholds times ``growth``."""
         return self.by.wrap(self.inner, v, u, dt, growth)
