@@ -1,7 +1,5 @@
 """An LMS filter on a record as the settings of a job ask for it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Nonlinear least squares with a few unknowns between bounds."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

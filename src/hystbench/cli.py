@@ -8,8 +8,6 @@ and ``hystbench --help`` for nothing. So is all else that takes time to import: 
 Ctrl-C is to be one line from the first moment on.
 """
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import os

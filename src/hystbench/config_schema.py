@@ -1,7 +1,5 @@
 """The schema of config.yaml: what all configs have, and the keys of each filter."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import MISSING
 from pathlib import Path

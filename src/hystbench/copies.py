@@ -1,7 +1,5 @@
 """Whether a record is a copy of another: all of it or a piece, as it is or rounded."""
 
-from __future__ import annotations
-
 from functools import cached_property
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Measured records: a dataset.yaml and the files of measurements that it names."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Mapping, Sequence

@@ -5,8 +5,6 @@ cannot be there: a search leaves it out. The causes that are left say what the e
 is called there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path

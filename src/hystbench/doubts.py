@@ -4,8 +4,6 @@ A copy that is held out is refused. The rest are warnings, one line each, with w
 write in dataset.yaml where it is meant after all.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations, pairwise
 

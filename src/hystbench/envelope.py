@@ -4,8 +4,6 @@ Equation numbers are those of Zhang and Ma, "Modeling of Rate-Dependent Hysteres
 Using a GPO-Based Adaptive Filter".
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields
@@ -15,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hystbench import kernels
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 from hystbench.record import FloatArray
 
 
@@ -47,8 +45,7 @@ class NamedNumbers:
         """
         known = {item.name: item for item in fields(cls)}  # type: ignore[arg-type]
         for name in parameters:
-            if name not in known:
-                raise InputError(f"{cls.place}.{name}: unknown; {nearest(name, known)}")
+            refuse_unknown(name, known, f"{cls.place}.{name}: unknown")
         for name, item in known.items():
             if item.default is MISSING and name not in parameters:
                 raise InputError(f"{cls.place}.{name}: missing")

@@ -1,10 +1,9 @@
 """What a user did wrong, said in one line."""
 
-from __future__ import annotations
-
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
 
 class InputError(ValueError):
@@ -55,6 +54,35 @@ def nearest(name: object, known: Iterable[object]) -> str:
     if not names:
         return "expected none, as there is none"
     return "expected one of " + ", ".join(names)
+
+
+def refuse_unknown(name: object, known: Iterable[object], told: str) -> None:
+    """Refuse a name that is not one of those known.
+
+    Parameters
+    ----------
+    name, known
+        As for :func:`nearest`.
+    told : str
+        What is said of the name, before the nearest one: ``hold: 'x' is unknown``.
+
+    Raises
+    ------
+    InputError
+        If the name is not known.
+    """
+    names = tuple(known)
+    if name not in names:
+        raise InputError(f"{told}; {nearest(name, names)}")
+
+
+@contextmanager
+def placed(place: str) -> Iterator[None]:
+    """Let a refusal within the block begin with a place: ``chain: block 2: ``."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{place}{error}") from None
 
 
 def _without_leading_zeros(name: str) -> str:

@@ -1,7 +1,5 @@
 """Writing files whole or not at all, and over no file of somebody else's."""
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import errno

@@ -1,7 +1,5 @@
 """The group of all commands, each imported when it is called."""
 
-from __future__ import annotations
-
 import ast
 import importlib
 from collections.abc import Iterator, Mapping
@@ -13,7 +11,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from hystbench import __version__
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 
 COMMANDS = "hystbench.commands"
 JOBS = f"{COMMANDS}.jobs"
@@ -72,10 +70,7 @@ class LazyGroup(click.Group):
         if cmd_name == "job" and self.package == COMMANDS:
             about = "Run a job of the workflow."
             return LazyGroup("job", JOBS, job_lines(), help=about)
-        if cmd_name not in self.lines:
-            raise InputError(
-                f"no {self.noun} {cmd_name!r}; {nearest(cmd_name, self.lines)}"
-            )
+        refuse_unknown(cmd_name, self.lines, f"no {self.noun} {cmd_name!r}")
         module = cmd_name.replace("-", "_")
         command: click.Command = getattr(
             importlib.import_module(f"{self.package}.{module}"), module

@@ -1,7 +1,5 @@
 """A cache on disk: files that a later run may use again, bounded in size."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from collections.abc import Callable

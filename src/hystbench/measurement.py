@@ -1,7 +1,5 @@
 """A twin measured: a model simulated on a signal, as a record."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

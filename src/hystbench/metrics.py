@@ -1,7 +1,5 @@
 """How far a model's output lies from the plant's."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

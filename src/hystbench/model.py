@@ -19,7 +19,7 @@ from hystbench.blocks.base import Block, RandomBlock
 from hystbench.blocks.held import HOLDS, HeldBlock, Hold
 from hystbench.blocks.parameter import Value
 from hystbench.blocks.simulated_column import SimulatedColumn
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, nearest, placed, refuse_unknown
 from hystbench.files import write_text
 from hystbench.model_content import Provenance, place_of, read_content
 from hystbench.record import Channel, FloatArray, Record
@@ -64,16 +64,12 @@ class Model:
         _ = self.steps
         for key, names in (("free", self.free), ("provenance", self.provenance)):
             for name in names:
-                try:
+                with placed(f"{key}: "):
                     self._find(name)
-                except InputError as error:
-                    raise InputError(f"{key}: {error}") from None
         for name, share in self.tolerances.items():
-            if name not in self.free:
-                raise InputError(
-                    f"free: a tolerance for {name!r}, which is not free; "
-                    f"{nearest(name, self.free)}"
-                )
+            refuse_unknown(
+                name, self.free, f"free: a tolerance for {name!r}, which is not free"
+            )
             number = isinstance(share, int | float) and not isinstance(share, bool)
             if not (number and 0 < share < np.inf):
                 raise InputError(
@@ -160,8 +156,7 @@ class Model:
         InputError
             If there is no such hold.
         """
-        if hold not in HOLDS:
-            raise InputError(f"hold: {hold!r} is unknown; {nearest(hold, HOLDS)}")
+        refuse_unknown(hold, HOLDS, f"hold: {hold!r} is unknown")
         chain = []
         for block in self.chain:
             if isinstance(block, HeldBlock):
@@ -230,11 +225,8 @@ class Model:
             changes.setdefault(position, {})[parameter] = value
         chain = list(self.chain)
         for position, change in changes.items():
-            try:
+            with placed(place_of(position, chain[position].name)):
                 chain[position] = replace(chain[position], **change)
-            except InputError as error:
-                place = place_of(position, chain[position].name)
-                raise InputError(f"{place}{error}") from None
         return replace(self, chain=tuple(chain))
 
     @classmethod
@@ -253,10 +245,8 @@ class Model:
             If a key, block or parameter is unknown or missing, or a value is of the
             wrong type or out of bounds.
         """
-        try:
+        with placed(f"{place}: "):
             return cls(**read_content(content))
-        except InputError as error:
-            raise InputError(f"{place}: {error}") from None
 
     def to_mapping(self) -> dict[str, Any]:
         """Return the model as a YAML file holds it."""

@@ -1,13 +1,11 @@
 """What a model file holds: read key by key, with where each parameter comes from."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
-from hystbench.errors import InputError, nearest, short
+from hystbench.errors import InputError, nearest, placed, refuse_unknown, short
 from hystbench.record import Channel
 from hystbench.units import check_known
 
@@ -32,10 +30,7 @@ class Provenance:
 
     def __post_init__(self) -> None:
         """Refuse a source that is none of the three."""
-        if self.source not in SOURCES:
-            raise InputError(
-                f"source: {self.source!r} is unknown; {nearest(self.source, SOURCES)}"
-            )
+        refuse_unknown(self.source, SOURCES, f"source: {self.source!r} is unknown")
         if not isinstance(self.note, str) or not self.note.strip():
             raise InputError(f"note: expected a sentence, got {short(self.note)}")
 
@@ -113,10 +108,8 @@ def _channel(content: object, place: str) -> Channel:
 def _provenance(content: object, place: str) -> Provenance:
     keys = ("source", "note")
     content = _mapping(content, place, required=keys, known=keys)
-    try:
+    with placed(place):
         return Provenance(**content)
-    except InputError as error:
-        raise InputError(f"{place}{error}") from None
 
 
 def place_of(position: int, name: str) -> str:
@@ -135,9 +128,7 @@ def _block(content: object, position: int) -> Block:
     if not isinstance(content, dict) or not content:
         raise InputError(f"{where}{short(content)}; expected {_BLOCK}")
     first = next(iter(content))
-    if first not in known:
-        near = nearest(first, known)
-        raise InputError(f"{where}unknown block {short(first)}; {near}")
+    refuse_unknown(first, known, f"{where}unknown block {short(first)}")
     if len(content) > 1:
         raise InputError(
             f"{where}{len(content)} keys ({', '.join(map(str, content))}); expected "
@@ -146,7 +137,5 @@ def _block(content: object, position: int) -> Block:
     ((name, values),) = content.items()
     place = place_of(position, name)
     values = _mapping({} if values is None else values, place)
-    try:
+    with placed(place):
         return known[name].from_mapping(values)
-    except InputError as error:
-        raise InputError(f"{place}{error}") from None

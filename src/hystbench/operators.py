@@ -4,8 +4,6 @@ Equation numbers are those of Zhang and Ma, "Modeling of Rate-Dependent Hysteres
 Using a GPO-Based Adaptive Filter".
 """
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np

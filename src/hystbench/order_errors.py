@@ -1,7 +1,5 @@
 """Error of each filter against its order (Figure 7)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Whether an input repeats itself, and after how many samples."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy import fft
 

@@ -1,7 +1,5 @@
 """What physical quantities a device takes and gives, and which causes the other."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal, get_args
 

@@ -22,6 +22,9 @@ Mask = NDArray[np.bool_]
 Origin = Literal["twin", "measured"]
 Use = Literal["fit", "hold-out"]
 
+KEPT = ("name", "dt", "input", "output", "origin", "use", "period_samples")
+"""What an archive holds of a record beside its arrays."""
+
 
 @dataclass(frozen=True)
 class Channel:
@@ -184,22 +187,14 @@ class Record:
 
     def save(self, path: str | Path) -> None:
         """Write the record as a NumPy archive (no pickle), all of it or nothing."""
-        about = {
-            "name": self.name,
-            "dt": self.dt,
-            "input": asdict(self.input),
-            "output": asdict(self.output),
-            "origin": self.origin,
-            "use": self.use,
-            "period_samples": self.period_samples,
-        }
+        about = json.dumps({key: getattr(self, key) for key in KEPT}, default=asdict)
         with atomic_path(path) as temporary, temporary.open("wb") as stream:
             arrays: dict[str, FloatArray | Mask] = {"u": self.u, "y": self.y}
             if self.simulated is not None:
                 arrays["simulated"] = self.simulated
             if self.interpolated is not None:
                 arrays["interpolated"] = self.interpolated
-            np.savez(stream, **arrays, about=np.array(json.dumps(about)))  # type: ignore[arg-type]
+            np.savez(stream, **arrays, about=np.array(about))  # type: ignore[arg-type]
 
 
 def load_record(path: str | Path) -> Record:
@@ -218,16 +213,5 @@ def load_record(path: str | Path) -> Record:
             interpolated = archive.get("interpolated")
     except (OSError, KeyError, ValueError) as error:
         raise InputError(f"{path}: not a record of hystbench ({error})") from error
-    return Record(
-        name=about["name"],
-        dt=about["dt"],
-        u=u,
-        y=y,
-        input=Channel(**about["input"]),
-        output=Channel(**about["output"]),
-        origin=about["origin"],
-        use=about["use"],
-        period_samples=about["period_samples"],
-        simulated=simulated,
-        interpolated=interpolated,
-    )
+    about |= {key: Channel(**about[key]) for key in ("input", "output")}
+    return Record(u=u, y=y, simulated=simulated, interpolated=interpolated, **about)

@@ -1,7 +1,5 @@
 """What is registered under a name: by its file inside, by an entry point outside."""
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import pkgutil

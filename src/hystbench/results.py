@@ -1,7 +1,5 @@
 """Run: one model on one record, its errors and its learning curve, as files."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any, Literal
 

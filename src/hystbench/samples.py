@@ -1,7 +1,5 @@
 """The samples of a record: checked, made whole, their interval found."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast

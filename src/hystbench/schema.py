@@ -1,7 +1,5 @@
 """Checking YAML against a JSON Schema, with errors of one line."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

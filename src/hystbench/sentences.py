@@ -1,7 +1,5 @@
 """Words and numbers as they stand in a sentence."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 

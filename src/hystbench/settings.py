@@ -4,15 +4,13 @@ Each job gets the settings that it depends on and no others, so that Snakemake
 reruns what a changed setting changes and nothing else.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from hystbench.dataset import Dataset
-from hystbench.errors import InputError, nearest
+from hystbench.errors import refuse_unknown
 from hystbench.filters import filter_class, registry
 from hystbench.filters.keys import keys_of
 from hystbench.plants import model_files
@@ -137,8 +135,7 @@ class Settings:
             signals = [*signals, *self.config["excitations"]]
         models = [*registry(), "rdgpi"]
         for name, known in ((path.parent.name, signals), (path.stem, models)):
-            if name not in known:
-                raise InputError(f"{target}: no {name!r}; {nearest(name, known)}")
+            refuse_unknown(name, known, f"{target}: no {name!r}")
 
     @property
     def model_file(self) -> str:

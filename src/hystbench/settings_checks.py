@@ -1,7 +1,5 @@
 """config.yaml checked as a whole, before anything runs."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -10,7 +8,7 @@ from hystbench.config_schema import config_schema
 from hystbench.dataset import Dataset, load_dataset
 from hystbench.doubts import doubts
 from hystbench.envelope import fewest_samples
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, nearest, refuse_unknown
 from hystbench.plants import model_files, packaged_models
 from hystbench.published import load_errors
 from hystbench.schema import check_against_schema
@@ -127,10 +125,7 @@ def _check_names(
 ) -> None:
     known = list(known)
     for key, name in named:
-        if name not in known:
-            raise InputError(
-                f"{place}: {key}: no signal {name!r}; {nearest(name, known)}"
-            )
+        refuse_unknown(name, known, f"{place}: {key}: no signal {name!r}")
 
 
 def _check_twin(place: str, config: Mapping[str, Any]) -> None:

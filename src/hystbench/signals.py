@@ -4,8 +4,6 @@ A signal is defined in config.yaml by one kind and its parameters, for example
 ``sine: {frequency_hz: 40}``. A kind is a :class:`hystbench.waveforms.base.Waveform`.
 """
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, placed, refuse_unknown
 from hystbench.files import atomic_path
 from hystbench.record import FloatArray
 from hystbench.units import plain
@@ -97,14 +95,12 @@ def check_definition(
     place = f"{place}: excitations: {name}"
     ((kind, given),) = definition.items()
     known = waveforms(kind)
-    if kind not in known:
-        raise InputError(f"{place}: unknown kind {kind!r}; {nearest(kind, known)}")
+    refuse_unknown(kind, known, f"{place}: unknown kind {kind!r}")
     waveform = known[kind]
     parameters = inspect.signature(waveform.samples).parameters
     expected = list(parameters)
     for key in given:
-        if key not in expected:
-            raise InputError(f"{place}: unknown key {key!r}; {nearest(key, expected)}")
+        refuse_unknown(key, expected, f"{place}: unknown key {key!r}")
     values = {key: common[key] for key in expected if key in common} | dict(given)
     for key in expected:
         if key not in values:
@@ -162,10 +158,8 @@ def make_signal(
                     f"{where}: {key}: {highest:g}; expected below {nyquist:g} Hz, "
                     "half the sampling frequency"
                 )
-    try:
+    with placed(f"{where}: "):
         u = waveforms(kind)[kind].samples(**values)
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from None
     if len(u) < 2 or np.ptp(u) == 0:
         raise InputError(
             f"{where}: {len(u)} samples that do not move; expected a signal"

@@ -6,8 +6,6 @@ left out. A kind is a type with its help, and with what reads it where the type 
 does not say: ``Annotated[float, "Interval in seconds."]``.
 """
 
-from __future__ import annotations
-
 import inspect
 import json
 from collections.abc import Callable, Mapping

@@ -1,7 +1,5 @@
 """Algorithm 1 on a slow record as the settings of a job ask for it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Reading text files of users: what is no text in UTF-8 is told as what it is."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from hystbench.errors import InputError, nearest

@@ -4,8 +4,6 @@ Messages and files keep the user's unit in letters that any program reads: ``um`
 is shown, axes and pages, is written by :func:`hystbench.figures.style.unit_text`.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from contextlib import suppress

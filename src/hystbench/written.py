@@ -11,8 +11,6 @@ takes its place, and describes the file that it replaces as well: whenever a run
 off, what is there is known.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import re

@@ -159,7 +159,7 @@ def acting(v, coefficient, exponent, dt):
     block = RateDependentHysteresis(
         coefficient=coefficient, exponent=exponent, form="acting-field", hold="linear"
     )
-    return block.wrap(straight, v, v, dt)
+    return block.wrap(straight, v, v, dt, None)
 
 
 @pytest.mark.parametrize("exponent", [0.4, 0.5, 0.7, 1.0, 1.6])

@@ -147,7 +147,7 @@ def blocks(x):
         yield block.name, (block.simulate(x, x, DT),)
     wrapped = RateDependentHysteresis(
         coefficient=0.01, exponent=0.5, form="acting-field"
-    ).wrap(each[-1], x, x, DT)
+    ).wrap(each[-1], x, x, DT, None)
     yield "acting field", (wrapped,)
     forces = (
         FrictionForce(coulomb=0.2, presliding_distance=1e-3),

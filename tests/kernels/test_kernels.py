@@ -9,7 +9,7 @@ from hypothesis.extra.numpy import arrays
 from hystbench import kernels
 from hystbench.envelope import Envelope
 from hystbench.errors import InputError
-from hystbench.libraries import compiled
+from hystbench.libraries import Loops
 from hystbench.operators import generalized_play, state_space
 
 
@@ -81,7 +81,7 @@ def test_same_bytes_at_any_alignment():
 
 def test_a_missing_library_says_how_to_build_it(tmp_path):
     with pytest.raises(InputError, match="pip install --no-deps") as caught:
-        compiled(tmp_path / "_kernels.so", {}, "the compiled kernels")
+        Loops(tmp_path / "_kernels.so", {}, "the compiled kernels")
     assert "\n" not in str(caught.value)
 
 

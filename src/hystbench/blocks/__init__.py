@@ -3,8 +3,6 @@
 A new block is a new module in this package; it is found by its class's ``name``.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 from hystbench.blocks.base import Block

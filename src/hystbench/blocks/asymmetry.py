@@ -1,16 +1,10 @@
 """Block ``asymmetry``: positive and negative halves differ."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.base import PolynomialBlock
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class Asymmetry(PolynomialBlock):
+class Asymmetry(PolynomialBlock, name="asymmetry", place="material"):
     """Even-order part of magnetostriction: ``y = z + coefficient z^2``.
 
     References
@@ -19,12 +13,6 @@ class Asymmetry(PolynomialBlock):
        Press, 2000: strain follows the square of the magnetisation.
     """
 
-    name: ClassVar = "asymmetry"
-    place: ClassVar = "material"
+    terms = (0.0, 1.0, "coefficient")
 
     coefficient: float = number("1/Y", "weight of the square", -HUGE, HUGE)
-
-    @property
-    def coefficients(self) -> tuple[float, ...]:
-        """Those of the polynomial, the constant first."""
-        return 0.0, 1.0, self.coefficient

@@ -1,14 +1,11 @@
 """Blocks that change the block before them in the chain instead of a signal."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
 from hystbench.blocks.base import Block
-from hystbench.errors import InputError
+from hystbench.errors import InputError, placed
 from hystbench.record import FloatArray
 
 
@@ -19,7 +16,10 @@ class Simulated(Protocol):
         """Compute the output, as :meth:`Block.simulate` does."""
 
 
-@dataclass(frozen=True)
+Others = Sequence[tuple[Any, FloatArray]]
+"""Steps with numbers near those of another one, each with what enters it."""
+
+
 class AttachedBlock(Block):
     """A block that has no output of its own: it belongs to the block before it.
 
@@ -45,11 +45,7 @@ class AttachedBlock(Block):
 
 
 def near(
-    step: Any,
-    z: FloatArray,
-    u: FloatArray,
-    dt: float,
-    others: Sequence[tuple[Any, FloatArray]],
+    step: Any, z: FloatArray, u: FloatArray, dt: float, others: Others
 ) -> list[FloatArray]:
     """Simulate a step of a chain, and others of its kind with numbers near.
 
@@ -123,9 +119,6 @@ def attached(chain: Sequence[Block]) -> list[Any]:
             steps.append(block)
             continue
         before = steps.pop() if steps else None
-        try:
+        with placed(f"chain: block {position + 1} ({block.name}): "):
             steps.append(block.attach(before))
-        except InputError as error:
-            where = f"chain: block {position + 1} ({block.name})"
-            raise InputError(f"{where}: {error}") from None
     return steps

@@ -1,10 +1,5 @@
 """Block ``backlash``: play at the output joint."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, number
 from hystbench.blocks.step import Sampling, Step
@@ -12,8 +7,7 @@ from hystbench.operators import play
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class Backlash(Block):
+class Backlash(Block, name="backlash", place="mechanics"):
     """Play operator of the output: it moves when the gap is used up (Eqs. 1 and 2).
 
     The joint starts in the middle of its gap.
@@ -23,9 +17,6 @@ class Backlash(Block):
     .. [1] M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis, Springer,
        1989.
     """
-
-    name: ClassVar = "backlash"
-    place: ClassVar = "mechanics"
 
     half_width: float = number("Y", "half of the gap", 0.0, HUGE)
 

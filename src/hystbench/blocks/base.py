@@ -6,25 +6,27 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields
 from functools import cache
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, dataclass_transform
 
 import numpy as np
 
 from hystbench.blocks.parameter import Parameter
 from hystbench.blocks.step import Sampling, Step, polynomial
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 from hystbench.record import FloatArray
 
 Place = Literal["base", "drive", "material", "inside", "mechanics", "sensor"]
 
 
+@dataclass_transform(frozen_default=True, kw_only_default=True)
 @dataclass(frozen=True)
 class Block(ABC):
     """One physical effect in the chain from input u to output y.
 
-    A subclass is a frozen dataclass. Its fields are declared with
-    :func:`~hystbench.blocks.parameter.number` and its kin; it sets ``name``
-    and ``place``, and says in its docstring what it computes and after whom.
+    A subclass is made a frozen dataclass. Its fields are declared with
+    :func:`~hystbench.blocks.parameter.number` and its kin; it says its name and
+    place in the line of its class, and in its docstring what it computes and after
+    whom.
     """
 
     name: ClassVar[str]
@@ -37,8 +39,21 @@ class Block(ABC):
     seen: ClassVar[bool] = True
     """Whether it says what it does inside, or is a whole simulator of somebody's."""
 
+    curve: ClassVar[str] = ""
+    """Function of the step of a block without memory, which takes its parameters."""
+
     no_step: ClassVar[str] = "has no step that could be exported"
     """Why the block cannot be exported, if it cannot."""
+
+    def __init_subclass__(
+        cls, name: str = "", place: Place | None = None, curve: str = ""
+    ) -> None:
+        """Make a subclass a dataclass, and keep what the line of its class says."""
+        super().__init_subclass__()
+        for key, said in (("name", name), ("place", place), ("curve", curve)):
+            if said:
+                setattr(cls, key, said)
+        dataclass(frozen=True)(cls)
 
     @classmethod
     @cache
@@ -59,8 +74,7 @@ class Block(ABC):
         """
         known = cls.parameters()
         for key in values:
-            if key not in known:
-                raise InputError(f"unknown parameter {key!r}; {nearest(key, known)}")
+            refuse_unknown(key, known, f"unknown parameter {key!r}")
         for item in fields(cls):
             if item.name not in values and item.default is MISSING:
                 about = item.metadata["parameter"]
@@ -109,7 +123,9 @@ class Block(ABC):
         InputError
             If it cannot be said.
         """
-        raise InputError(f"{self.name}: {self.no_step}")
+        if not self.curve:
+            raise InputError(f"{self.name}: {self.no_step}")
+        return Step(self.curve, self.constants(*self.parameters()))
 
     def constants(self, *names: str) -> dict[str, Any]:
         """Give parameters as constants of a step, a sequence as an array."""
@@ -141,10 +157,16 @@ class Block(ABC):
 class PolynomialBlock(Block):
     """A block whose output is a polynomial of what enters it."""
 
+    terms: ClassVar[tuple[float | str, ...]]
+    """Its coefficients, the constant first: numbers, or names of parameters."""
+
     @property
-    @abstractmethod
     def coefficients(self) -> tuple[float, ...]:
         """Those of the polynomial, the constant first."""
+        return tuple(
+            getattr(self, term) if isinstance(term, str) else term
+            for term in self.terms
+        )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the polynomial by Horner's scheme."""
@@ -159,7 +181,6 @@ class PolynomialBlock(Block):
         return polynomial(*self.coefficients)
 
 
-@dataclass(frozen=True)
 class RandomBlock(Block):
     """A block that adds a random signal.
 

@@ -1,16 +1,10 @@
 """Block ``bouc-wen-force``: Bouc and Wen's hysteresis, which may grow stiffer."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class BoucWenForce(Force):
+class BoucWenForce(Force, name="bouc-wen-force", law="hysteretic"):
     """Bouc and Wen's hysteresis of exponent one, by Wen's numbers.
 
     ``dF/dq = stiffness - |F| (beta sgn(F dq) + gamma)``. On loading the stiffness falls
@@ -37,8 +31,6 @@ class BoucWenForce(Force):
        hysteresis models", Comptes Rendus Mecanique 332 (2004) 51-57.
     """
 
-    name: ClassVar = "bouc-wen-force"
-
     stiffness: float = number("U/Q", "where the force is zero", 0.0, HUGE)
     beta: float = number(
         "1/Q", "half of what unloading is stiffer than loading, a force", 0.0, HUGE
@@ -59,9 +51,9 @@ class BoucWenForce(Force):
         """
         return 4.0 * self.stiffness
 
-    def law(self) -> tuple[str, tuple[float, ...]]:
+    def numbers(self) -> tuple[float, ...]:
         """Give the stiffness, and how it falls on loading and grows on unloading."""
-        return "hysteretic", (
+        return (
             self.stiffness,
             self.beta + self.gamma,
             self.beta - self.gamma,

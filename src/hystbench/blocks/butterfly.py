@@ -1,19 +1,13 @@
 """Block ``butterfly``: strain that follows the square of a hysteretic field."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.parameter import HUGE, number
 from hystbench.blocks.step import Sampling, Step
-from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
+from hystbench.blocks.wrapping import Growth, Hysteresis, WrappingBlock
 from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class Butterfly(WrappingBlock):
+class Butterfly(WrappingBlock, name="butterfly", place="material"):
     """Even-order part of the strain beside the hysteresis that it wraps.
 
     ``y = inner[v] + coefficient P[v]^2`` with v what enters the hysteresis and P the
@@ -29,19 +23,11 @@ class Butterfly(WrappingBlock):
        Press, 2000.
     """
 
-    name: ClassVar = "butterfly"
-    place: ClassVar = "material"
-
     coefficient: float = number("Y/U^2", "weight of the square", -HUGE, HUGE)
     threshold: float = number("U", "half the width of the play", 0.0, HUGE)
 
     def wrap(
-        self,
-        inner: Hysteresis,
-        v: FloatArray,
-        u: FloatArray,
-        dt: float,
-        growth: FloatArray | None = None,
+        self, inner: Hysteresis, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Add the square, whose threshold grows with those inside."""
         moved = growing_play(v, [self.threshold], growth)

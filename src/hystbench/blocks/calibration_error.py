@@ -1,16 +1,10 @@
 """Block ``calibration-error``: a sensor read with the wrong gain and zero."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.base import PolynomialBlock
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class CalibrationError(PolynomialBlock):
+class CalibrationError(PolynomialBlock, name="calibration-error", place="sensor"):
     """Sensor with gain and zero error: ``y = gain z + offset``.
 
     References
@@ -18,13 +12,7 @@ class CalibrationError(PolynomialBlock):
     .. [1] JCGM 200:2012, International vocabulary of metrology (VIM), 4.28.
     """
 
-    name: ClassVar = "calibration-error"
-    place: ClassVar = "sensor"
+    terms = ("offset", "gain")
 
     gain: float = number("-", "ratio of read to true output", 0.1, 10.0)
     offset: float = number("Y", "reading at zero", -HUGE, HUGE, default=0.0)
-
-    @property
-    def coefficients(self) -> tuple[float, ...]:
-        """Those of the polynomial, the constant first."""
-        return self.offset, self.gain

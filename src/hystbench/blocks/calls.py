@@ -1,7 +1,5 @@
 """Calls of simulators of somebody's own: kept, counted, bounded, and told of."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

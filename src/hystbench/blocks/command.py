@@ -1,7 +1,5 @@
 """Block ``command``: a simulator that is a program of its own, in any language."""
 
-from __future__ import annotations
-
 import os
 import re
 import shlex
@@ -10,9 +8,7 @@ import signal
 import subprocess
 import tempfile
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
 
 import numpy as np
 
@@ -28,8 +24,7 @@ APART = re.compile(r",*[;\s][;,\s]*")
 DECIMAL_COMMA = re.compile(r"(^|,)[+-]?\d*,\d+([eE][+-]?\d+)?$")
 
 
-@dataclass(frozen=True)
-class Command(Simulator):
+class Command(Simulator, name="command"):
     """A command line that reads u and writes y: ``y = program(u)``.
 
     It gets a CSV table with the columns time_s and u and a row a sample, on its
@@ -43,8 +38,6 @@ class Command(Simulator):
     ----------
     By definition.
     """
-
-    name: ClassVar = "command"
 
     command: str = text("command line of a program that reads u and writes y")
     timeout_s: float = number("s", "longest run", 1e-3, 1e6, 600.0)

@@ -1,10 +1,5 @@
 """Block ``creep``: slow displacement that follows a step."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.linear import LinearBlock
@@ -12,8 +7,7 @@ from hystbench.blocks.parameter import numbers
 from hystbench.blocks.state_space import StateSpace
 
 
-@dataclass(frozen=True)
-class Creep(LinearBlock):
+class Creep(LinearBlock, name="creep", place="mechanics"):
     """Sum of slow first-order lags beside the direct path.
 
     ``Y(s) = Z(s) (1 + sum_j m_j / (1 + s tau_j))``: several time constants, spread
@@ -25,9 +19,6 @@ class Creep(LinearBlock):
        compensation for piezoactuators: atomic force microscopy application", Journal
        of Dynamic Systems, Measurement, and Control 123 (2001) 35-43.
     """
-
-    name: ClassVar = "creep"
-    place: ClassVar = "mechanics"
 
     magnitudes: tuple[float, ...] = numbers(
         "-", "m_j", -10.0, 10.0, as_many_as="time_constants_s"

@@ -6,8 +6,6 @@ samples late, takes the same curve. A sine is met within 1e-12 of its amplitude 
 0.15 of the sampling rate, within 1e-8 up to a fifth and within 3e-6 up to a quarter.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import lru_cache
 

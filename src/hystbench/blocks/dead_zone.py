@@ -1,20 +1,13 @@
 """Block ``dead-zone``: small commands do nothing."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, number
-from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class DeadZone(Block):
+class DeadZone(Block, name="dead-zone", place="drive", curve="dead_zone"):
     """Zero between ``-half_width`` and ``half_width``, straight and shifted outside.
 
     ``v = z - clip(z, -half_width, half_width)``.
@@ -25,15 +18,8 @@ class DeadZone(Block):
        Press, 2021: saturation, rate limits and dead zones of actuators.
     """
 
-    name: ClassVar = "dead-zone"
-    place: ClassVar = "drive"
-
     half_width: float = number("U", "command at which motion starts", 0.0, HUGE)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Take off the dead zone."""
         return z - np.clip(z, -self.half_width, self.half_width)
-
-    def step(self, sampling: Sampling) -> Step:
-        """Take off the dead zone."""
-        return Step("dead_zone", {"half_width": self.half_width})

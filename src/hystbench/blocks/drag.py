@@ -1,16 +1,10 @@
 """Block ``drag``: a force inside a mechanism that grows with the velocity squared."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class Drag(Force):
+class Drag(Force, name="drag", law="drag"):
     """The drag of a fluid in turbulent flow, ``F = coefficient q' |q'|``.
 
     References
@@ -18,10 +12,4 @@ class Drag(Force):
     .. [1] G. K. Batchelor, An Introduction to Fluid Dynamics, Cambridge, 1967.
     """
 
-    name: ClassVar = "drag"
-
     coefficient: float = number("U s^2/Q^2", "of the velocity squared", 0.0, HUGE)
-
-    def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give the coefficient."""
-        return "drag", (self.coefficient,)

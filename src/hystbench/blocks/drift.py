@@ -1,10 +1,5 @@
 """Block ``drift``: the zero wanders slowly."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.base import Block
@@ -14,8 +9,7 @@ from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class Drift(Block):
+class Drift(Block, name="drift", place="sensor"):
     """Slow motion of the zero: ``y = z + slope t + path(t)``.
 
     Time t starts at 0 in each record. The path starts at zero and goes in straight
@@ -27,9 +21,6 @@ class Drift(Block):
     .. [1] A. J. Fleming, "A review of nanometer resolution position sensors",
        Sensors and Actuators A 190 (2013) 106-126: drift of sensors.
     """
-
-    name: ClassVar = "drift"
-    place: ClassVar = "sensor"
 
     slope: float = number("Y/s", "steady rate", -HUGE, HUGE)
     path: tuple[float, ...] = numbers(

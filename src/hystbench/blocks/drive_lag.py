@@ -1,17 +1,11 @@
 """Block ``drive-lag``: first-order lag of amplifier and coil."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.parameter import number
 from hystbench.blocks.state_space import StateSpace, lag
 
 
-@dataclass(frozen=True)
-class DriveLag(LinearBlock):
+class DriveLag(LinearBlock, name="drive-lag", place="drive"):
     """First-order lag, as of a coil's L/R: ``V(s) = U(s) / (1 + s tau)``.
 
     References
@@ -19,9 +13,6 @@ class DriveLag(LinearBlock):
     .. [1] G. Engdahl (ed.), Handbook of Giant Magnetostrictive Materials, Academic
        Press, 2000: a coil driven through its resistance.
     """
-
-    name: ClassVar = "drive-lag"
-    place: ClassVar = "drive"
 
     time_constant_s: float = number("s", "tau", 1e-7, 1e3)
 

@@ -1,20 +1,13 @@
 """Block ``drive-saturation``: the amplifier runs out of current."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, TINY, number
-from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class DriveSaturation(Block):
+class DriveSaturation(Block, name="drive-saturation", place="drive", curve="clip"):
     """Hard limit of the drive: ``v = clip(z, -limit, limit)``.
 
     References
@@ -23,15 +16,8 @@ class DriveSaturation(Block):
        Press, 2021: saturation, rate limits and dead zones of actuators.
     """
 
-    name: ClassVar = "drive-saturation"
-    place: ClassVar = "drive"
-
     limit: float = number("U", "largest current either way", TINY, HUGE)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Clip the current."""
         return np.clip(z, -self.limit, self.limit)
-
-    def step(self, sampling: Sampling) -> Step:
-        """Clip the current."""
-        return Step("clip", {"limit": self.limit})

@@ -1,10 +1,6 @@
 """Block ``eddy-diffusion``: the field diffuses into the rod against eddy currents."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar
 
 import numpy as np
 
@@ -22,8 +18,7 @@ HALF_SPACE = np.geomspace(1e-3, 1e6, MODES)
 GEOMETRIES = ("slab", "rod", "half-space")
 
 
-@dataclass(frozen=True)
-class EddyDiffusion(LinearBlock):
+class EddyDiffusion(LinearBlock, name="eddy-diffusion", place="drive"):
     """Mean field of a conductor in an alternating field.
 
     ``V(s) = U(s) tanh(q) / q`` for a slab, ``V(s) = U(s) 2 I1(q) / (q I0(q))`` for a
@@ -42,9 +37,6 @@ class EddyDiffusion(LinearBlock):
        cylindrical magnetic actuator including eddy currents", IEEE Transactions on
        Magnetics 41 (2005) 1248-1258.
     """
-
-    name: ClassVar = "eddy-diffusion"
-    place: ClassVar = "drive"
 
     time_constant_s: float = number("s", "tau", 1e-12, 1e3)
     geometry: str = choice("shape of the conductor", GEOMETRIES, GEOMETRIES[0])

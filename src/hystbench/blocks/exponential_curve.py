@@ -1,20 +1,15 @@
 """Block ``exponential-curve``: each step more gives more, by the same factor."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, number
-from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class ExponentialCurve(Block):
+class ExponentialCurve(
+    Block, name="exponential-curve", place="drive", curve="exponential"
+):
     """A diode or a valve of equal percentage: ``y = (exp(c z) - 1) / c``, c curvature.
 
     A straight line of slope one at zero, and for a curvature of zero throughout. A
@@ -28,9 +23,6 @@ class ExponentialCurve(Block):
        characteristics and rangeability, 2009.
     """
 
-    name: ClassVar = "exponential-curve"
-    place: ClassVar = "drive"
-
     curvature: float = number("1/U", "growth for each unit of the input", -HUGE, HUGE)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
@@ -39,7 +31,3 @@ class ExponentialCurve(Block):
             return z.copy()
         with np.errstate(over="ignore"):
             return np.asarray(np.expm1(self.curvature * z) / self.curvature)
-
-    def step(self, sampling: Sampling) -> Step:
-        """Bend what enters."""
-        return Step("exponential", {"curvature": self.curvature})

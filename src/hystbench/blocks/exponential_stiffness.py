@@ -1,16 +1,10 @@
 """Block ``exponential-stiffness``: a spring inside a mechanism that grows steeply."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-@dataclass(frozen=True)
-class ExponentialStiffness(Force):
+class ExponentialStiffness(Force, name="exponential-stiffness", law="sinh"):
     """A spring beside the linear one, ``F = coefficient (reach sinh(q / reach) - q)``.
 
     It hardly acts below the reach, where it is a cube, and grows as an exponential
@@ -21,11 +15,5 @@ class ExponentialStiffness(Force):
     .. [1] W. Lacarbonara, Nonlinear Structural Mechanics, Springer, 2013.
     """
 
-    name: ClassVar = "exponential-stiffness"
-
     coefficient: float = number("U/Q", "its linear part, which is left out", 0.0, HUGE)
     reach: float = number("Q", "distance beyond which it grows steeply", TINY, HUGE)
-
-    def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give the coefficient and the reach."""
-        return "sinh", (self.coefficient, self.reach)

@@ -1,15 +1,12 @@
 """Block ``external``: a simulator that a user brings as a Python function."""
 
-from __future__ import annotations
-
 import importlib
 import re
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -23,8 +20,7 @@ FORM = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*(\.[^\W\d]\w*)*")
 """``package.module:function``."""
 
 
-@dataclass(frozen=True)
-class External(Simulator):
+class External(Simulator, name="external"):
     """A Python function ``y = function(u, dt)`` as a block.
 
     ``u`` is a copy of the samples that enter, shape (n,), ``dt`` the sampling interval
@@ -37,8 +33,6 @@ class External(Simulator):
     ----------
     By definition.
     """
-
-    name: ClassVar = "external"
 
     function: str = text("package.module:function of u and dt, which gives y")
 

@@ -1,27 +1,24 @@
 """Block ``fmu``: a Functional Mock-up Unit for co-simulation."""
 
-from __future__ import annotations
-
 import atexit
 import shutil
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from hystbench.blocks.parameter import text
 from hystbench.blocks.simulator import FileSimulator, same_file
-from hystbench.errors import InputError, in_line, nearest
+from hystbench.errors import InputError, in_line, refuse_unknown
 from hystbench.libraries import library
 from hystbench.record import FloatArray
 
 EXPECTED = "a Functional Mock-up Unit (.fmu)"
 
 
-@dataclass(frozen=True)
-class Fmu(FileSimulator):
+class Fmu(FileSimulator, name="fmu"):
     """A Functional Mock-up Unit (FMI 1 to 3) in co-simulation, run by FMPy.
 
     One step of communication is one sampling interval. The input is set at the
@@ -33,8 +30,7 @@ class Fmu(FileSimulator):
        (co-simulation).
     """
 
-    name: ClassVar = "fmu"
-    expected: ClassVar = EXPECTED
+    expected = EXPECTED
 
     file: str = text(EXPECTED)
     input: str = text("variable that is the input; its only input by default", "")
@@ -113,11 +109,7 @@ def _variable(unit: _Unit, label: str, causality: str, asked: str) -> str:
         v.name for v in unit.description.modelVariables if v.causality == causality
     ]
     if asked:
-        if asked not in names:
-            raise InputError(
-                f"{label}: {causality}: no {causality} {asked!r}; "
-                f"{nearest(asked, names)}"
-            )
+        refuse_unknown(asked, names, f"{label}: {causality}: no {causality} {asked!r}")
         return asked
     if len(names) != 1:
         raise InputError(

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.attached import AttachedBlock
+from hystbench.blocks.attached import AttachedBlock, Others
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError
@@ -35,17 +34,12 @@ class Motion(NamedTuple):
     """Sum of the forces inside."""
 
 
-@dataclass(frozen=True)
 class Dynamics(HeldBlock):
     """A block with a coordinate, which meets forces: a mechanism or an impedance."""
 
     @abstractmethod
     def motions(
-        self,
-        z: FloatArray,
-        dt: float,
-        forces: tuple[Force, ...],
-        others: Sequence[tuple[Driven, FloatArray]],
+        self, z: FloatArray, dt: float, forces: tuple[Force, ...], others: Others
     ) -> list[Motion]:
         """Compute how the coordinate moves, and how others with numbers near do.
 
@@ -81,11 +75,7 @@ class Dynamics(HeldBlock):
         return self.driven(z, dt, ())
 
     def near(
-        self,
-        z: FloatArray,
-        u: FloatArray,
-        dt: float,
-        others: Sequence[tuple[Dynamics, FloatArray]],
+        self, z: FloatArray, u: FloatArray, dt: float, others: Others
     ) -> list[FloatArray]:
         """Compute the output, and those of others near, without a force inside."""
         every = [(Driven(host), own) for host, own in others]
@@ -96,23 +86,30 @@ class Dynamics(HeldBlock):
         return self.driven_step(sampling, ())
 
 
-@dataclass(frozen=True)
-class Force(AttachedBlock):
+class Force(AttachedBlock, place="inside"):
     """A force against the motion of the mechanism before it in the chain.
 
     It depends on the position q and the velocity q', and may remember a distance.
     """
 
-    place: ClassVar = "inside"
-    hosts: ClassVar = "mechanism or impedance"
+    hosts = "mechanism or impedance"
 
-    @abstractmethod
-    def law(self) -> tuple[str, tuple[float, ...] | FloatArray]:
-        """Give the kernel's law, one of :data:`LAWS`, and its numbers.
+    law: ClassVar[str]
+    """The kernel's law, one of :data:`LAWS`; the line of a subclass says it."""
+
+    def __init_subclass__(cls, law: str = "", **about: Any) -> None:
+        """Keep the law that the line of a class says."""
+        super().__init_subclass__(**about)
+        if law:
+            cls.law = law
+
+    def numbers(self) -> tuple[float, ...] | FloatArray:
+        """Give the numbers of the law: the block's own, unless a subclass has others.
 
         Of a force that is the sum of several of one law, the numbers of each, a row for
         each.
         """
+        return tuple(getattr(self, name) for name in self.parameters())
 
     @property
     def stiffest(self) -> float:
@@ -121,10 +118,9 @@ class Force(AttachedBlock):
 
     def rows(self) -> FloatArray:
         """Give rows of the kernel: the law's number, then its own and zeros."""
-        kind, numbers = self.law()
-        own = np.atleast_2d(np.asarray(numbers, dtype=np.float64))
+        own = np.atleast_2d(np.asarray(self.numbers(), dtype=np.float64))
         found = np.zeros((len(own), ROW))
-        found[:, 0] = LAWS.index(kind)
+        found[:, 0] = LAWS.index(self.law)
         found[:, 1 : 1 + own.shape[1]] = own
         return found
 
@@ -194,7 +190,7 @@ class Driven:
     host: Dynamics
     forces: tuple[Force, ...] = ()
 
-    hysteretic: ClassVar[bool] = False
+    hysteretic = False
     name: ClassVar[str] = "mechanism"
 
     def taking(self, force: Force) -> Driven:
@@ -206,11 +202,7 @@ class Driven:
         return self.host.driven(z, dt, self.forces)
 
     def near(
-        self,
-        z: FloatArray,
-        u: FloatArray,
-        dt: float,
-        others: Sequence[tuple[Driven, FloatArray]],
+        self, z: FloatArray, u: FloatArray, dt: float, others: Others
     ) -> list[FloatArray]:
         """Compute the output, and those of others with numbers near."""
         motions = self.host.motions(z, dt, self.forces, others)

@@ -1,10 +1,5 @@
 """Block ``friction``: a force against the motion that the input is."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.base import Block
@@ -14,8 +9,7 @@ from hystbench.blocks.step import Sampling, Step, foretold
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class Friction(Block):
+class Friction(Block, name="friction", place="mechanics"):
     """Coulomb friction, smoothed: ``y = z + coulomb tanh((du/dt) / velocity_scale)``.
 
     For models with motion in and force out. The velocity is a central difference of
@@ -27,9 +21,6 @@ class Friction(Block):
        analysis tools and compensation methods for the control of machines with
        friction", Automatica 30 (1994) 1083-1138.
     """
-
-    name: ClassVar = "friction"
-    place: ClassVar = "mechanics"
 
     coulomb: float = number("Y", "force at high velocity", -HUGE, HUGE)
     velocity_scale: float = number(

@@ -1,16 +1,10 @@
 """Block ``friction-force``: dry friction inside a mechanism."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-@dataclass(frozen=True)
-class FrictionForce(Force):
+class FrictionForce(Force, name="friction-force", law="friction"):
     """Coulomb friction that gives way by a small distance before it slides.
 
     ``F = (coulomb + static_excess) z / presliding_distance`` with z the way, held where
@@ -27,8 +21,6 @@ class FrictionForce(Force):
        IEEE Transactions on Automatic Control 50 (2005) 1883-1887.
     """
 
-    name: ClassVar = "friction-force"
-
     coulomb: float = number("U", "force of sliding", 0.0, HUGE)
     presliding_distance: float = number("Q", "way from rest to sliding", TINY, HUGE)
     static_excess: float = number(
@@ -38,9 +30,9 @@ class FrictionForce(Force):
         "Q/s", "velocity at which the static force has faded", 0.0, HUGE, 0.0
     )
 
-    def law(self) -> tuple[str, tuple[float, ...]]:
+    def numbers(self) -> tuple[float, ...]:
         """Give both forces, the velocity and the distance."""
-        return "friction", (
+        return (
             self.coulomb,
             self.static_excess,
             self.stribeck_velocity,

@@ -1,16 +1,10 @@
 """Block ``gain``: a static straight line."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.base import PolynomialBlock
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class Gain(PolynomialBlock):
+class Gain(PolynomialBlock, name="gain", place="base"):
     """Static gain with an offset: ``y = value z + offset``.
 
     References
@@ -18,13 +12,7 @@ class Gain(PolynomialBlock):
     By definition.
     """
 
-    name: ClassVar = "gain"
-    place: ClassVar = "base"
+    terms = ("offset", "value")
 
     value: float = number("Y/U", "static gain", -HUGE, HUGE)
     offset: float = number("Y", "output at zero", -HUGE, HUGE, default=0.0)
-
-    @property
-    def coefficients(self) -> tuple[float, ...]:
-        """Those of the polynomial, the constant first."""
-        return self.offset, self.value

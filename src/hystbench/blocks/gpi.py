@@ -1,24 +1,17 @@
 """Block ``gpi``: generalized Prandtl-Ishlinskii hysteresis."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
-from hystbench.blocks.base import Place
 from hystbench.blocks.parameter import HUGE, a_threshold, choice, numbers
 from hystbench.blocks.step import PASSED, Sampling, Step
-from hystbench.blocks.wrapping import PlayBlock
+from hystbench.blocks.wrapping import Growth, PlayBlock
 from hystbench.envelope import Envelope
 from hystbench.operators import generalized_play, generalized_prandtl_ishlinskii
 from hystbench.rdgpi.model import STARTS
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class GeneralizedPrandtlIshlinskii(PlayBlock):
+class GeneralizedPrandtlIshlinskii(PlayBlock, name="gpi", place="base"):
     """Weighted sum of generalized play operators (paper, Eqs. 3-6 and 9).
 
     ``y(t) = sum_i w_i F_{r_i}[z](t)`` with the envelope functions
@@ -35,9 +28,6 @@ class GeneralizedPrandtlIshlinskii(PlayBlock):
        734-744.
     """
 
-    name: ClassVar = "gpi"
-    place: ClassVar[Place] = "base"
-
     envelope: tuple[float, ...] = numbers(
         "-, 1/U, -, -",
         "a0 to a7 of Eqs. 5 and 6",
@@ -52,7 +42,7 @@ class GeneralizedPrandtlIshlinskii(PlayBlock):
     start: str = choice("operators before the first sample", STARTS, "rest")
 
     def grow(
-        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+        self, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute Eq. 9 with all thresholds times ``growth``."""
         left, right, rounds = self._envelopes(v)

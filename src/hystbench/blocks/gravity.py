@@ -1,16 +1,10 @@
 """Block ``gravity``: the moment of a weight inside a mechanism that turns."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class Gravity(Force):
+class Gravity(Force, name="gravity", law="gravity"):
     """A pendulum's moment, ``F = amplitude (sin(q + angle) - sin(angle))``, q in rad.
 
     References
@@ -18,11 +12,5 @@ class Gravity(Force):
     .. [1] L. D. Landau, E. M. Lifshitz, Mechanics, Pergamon, 1976.
     """
 
-    name: ClassVar = "gravity"
-
     amplitude: float = number("U", "weight times its arm", -HUGE, HUGE)
     angle: float = number("rad", "of the arm to the vertical at q = 0", -3.2, 3.2, 0.0)
-
-    def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give moment and angle."""
-        return "gravity", (self.amplitude, self.angle)

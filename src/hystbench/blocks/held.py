@@ -1,8 +1,5 @@
 """Blocks with memory of time: how their input moves between two samples."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
 from typing import ClassVar, Literal, cast
 
 from hystbench.blocks.base import Block
@@ -12,7 +9,6 @@ Hold = Literal["zero-order", "linear", "band-limited"]
 HOLDS: tuple[Hold, ...] = ("zero-order", "linear", "band-limited")
 
 
-@dataclass(frozen=True)
 class HeldBlock(Block):
     """A block whose output depends on the input between the samples.
 

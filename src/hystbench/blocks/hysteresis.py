@@ -1,16 +1,11 @@
 """Block ``hysteresis``: hysteresis that a base model without any lacks."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
-from hystbench.blocks.base import Place
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 
 
-@dataclass(frozen=True)
-class MaterialHysteresis(GeneralizedPrandtlIshlinskii):
+class MaterialHysteresis(
+    GeneralizedPrandtlIshlinskii, name="hysteresis", place="material"
+):
     """The block ``gpi`` as an effect in a chain whose base has no hysteresis.
 
     References
@@ -20,6 +15,3 @@ class MaterialHysteresis(GeneralizedPrandtlIshlinskii):
        micropositioning control", IEEE/ASME Transactions on Mechatronics 16 (2011)
        734-744.
     """
-
-    name: ClassVar = "hysteresis"
-    place: ClassVar[Place] = "material"

@@ -1,21 +1,15 @@
 """Block ``hysteresis-shape``: what a hysteresis of the wrong shape lacks."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.parameter import HUGE, a_threshold, numbers
 from hystbench.blocks.step import Sampling, Step
-from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
+from hystbench.blocks.wrapping import Growth, Hysteresis, WrappingBlock
 from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class HysteresisShape(WrappingBlock):
+class HysteresisShape(WrappingBlock, name="hysteresis-shape", place="material"):
     """Rate-independent correction beside the hysteresis that it wraps.
 
     ``y = inner[v] + sum_k c_k v^k + sum_i (w_i P_i + s_i P_i^2)`` with v what enters
@@ -31,9 +25,6 @@ class HysteresisShape(WrappingBlock):
        Control 9 (2003) 407-418.
     """
 
-    name: ClassVar = "hysteresis-shape"
-    place: ClassVar = "material"
-
     thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
     weights: tuple[float, ...] = a_threshold("Y/U", "w_i", optional=False)
     square_weights: tuple[float, ...] = a_threshold("Y/U^2", "s_i")
@@ -47,12 +38,7 @@ class HysteresisShape(WrappingBlock):
         return len(self.thresholds)
 
     def wrap(
-        self,
-        inner: Hysteresis,
-        v: FloatArray,
-        u: FloatArray,
-        dt: float,
-        growth: FloatArray | None = None,
+        self, inner: Hysteresis, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Add the correction, whose thresholds grow with those inside."""
         weights = np.array([self.weights, self.square_weights or [0.0] * self.count])

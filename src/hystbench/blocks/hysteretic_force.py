@@ -1,16 +1,10 @@
 """Block ``hysteretic-force``: a force inside a mechanism that remembers the way."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-@dataclass(frozen=True)
-class HystereticForce(Force):
+class HystereticForce(Force, name="hysteretic-force", law="hysteretic"):
     """Bouc and Wen's hysteresis of exponent one, ``F = largest z``.
 
     ``yield_distance dz/dq = 1 - |z| (sharing + (1 - sharing) sgn(z dq))``, z between -1
@@ -27,8 +21,6 @@ class HystereticForce(Force):
        and Control Using the Bouc-Wen Model, Wiley, 2007.
     """
 
-    name: ClassVar = "hysteretic-force"
-
     largest: float = number("U", "force at which it yields wholly", 0.0, HUGE)
     yield_distance: float = number("Q", "way in which it yields", TINY, HUGE)
     sharing: float = number(
@@ -39,10 +31,10 @@ class HystereticForce(Force):
         0.5,
     )
 
-    def law(self) -> tuple[str, tuple[float, ...]]:
+    def numbers(self) -> tuple[float, ...]:
         """Give the stiffness, and how it falls on loading and grows on unloading."""
         softens = 1.0 / self.yield_distance
-        return "hysteretic", (
+        return (
             self.largest * softens,
             softens,
             (1.0 - 2.0 * self.sharing) * softens,

@@ -1,15 +1,11 @@
 """Block ``impedance``: the force that a given motion takes."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache, partial
 from math import factorial
-from typing import ClassVar
 
 import numpy as np
 
+from hystbench.blocks.attached import Others
 from hystbench.blocks.curve import (
     AHEAD,
     POINTS,
@@ -20,7 +16,7 @@ from hystbench.blocks.curve import (
     through_samples,
     weighed,
 )
-from hystbench.blocks.force import Driven, Dynamics, Force, Motion, against, exported
+from hystbench.blocks.force import Dynamics, Force, Motion, against, exported
 from hystbench.blocks.held import Hold
 from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
@@ -57,8 +53,7 @@ def _differences(order: int) -> FloatArray:
 RATE, CURVATURE = _differences(1), _differences(2)
 
 
-@dataclass(frozen=True)
-class Impedance(Dynamics):
+class Impedance(Dynamics, name="impedance", place="base"):
     """Force of a device that is moved: ``y = m q'' + c q' + k q + F(q, q') + bias``.
 
     F is the sum of the forces that follow it in the chain. The input is the position q,
@@ -80,9 +75,7 @@ class Impedance(Dynamics):
        grids", Mathematics of Computation 51 (1988) 699-706.
     """
 
-    name: ClassVar = "impedance"
-    place: ClassVar = "base"
-    smooths: ClassVar = False
+    smooths = False
 
     mass: float = number("Y s^2/U", "m", -HUGE, HUGE)
     damping: float = number("Y s/U", "c, of a viscous force", -HUGE, HUGE)
@@ -118,11 +111,7 @@ class Impedance(Dynamics):
         )
 
     def motions(
-        self,
-        z: FloatArray,
-        dt: float,
-        forces: tuple[Force, ...],
-        others: Sequence[tuple[Driven, FloatArray]],
+        self, z: FloatArray, dt: float, forces: tuple[Force, ...], others: Others
     ) -> list[Motion]:
         """Give the motion and the forces that it meets, and those of others.
 

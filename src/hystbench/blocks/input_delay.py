@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import ceil, floor
-from typing import ClassVar
 
 import numpy as np
 
 from hystbench.blocks.curve import AHEAD, POINTS, value_at, weighed
-from hystbench.blocks.held import HeldBlock, Hold
+from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import choice, number
 from hystbench.blocks.starts import path_from
 from hystbench.blocks.step import Sampling, Step, smooth_curve
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class InputDelay(HeldBlock):
+class InputDelay(HeldBlock, name="input-delay", place="drive"):
     """Pure delay: ``v(t) = z(t - delay_s + lead_s)``.
 
     Before a record the input had its first value (``settled``), or was zero (``rest``);
@@ -36,11 +33,8 @@ class InputDelay(HeldBlock):
        Magazine 13 (1996) 30-60.
     """
 
-    name: ClassVar = "input-delay"
-    place: ClassVar = "drive"
-
-    own_hold: ClassVar[Hold] = "band-limited"
-    smooths: ClassVar[bool] = False
+    own_hold = "band-limited"
+    smooths = False
 
     delay_s: float = number("s", "time between command and answer", 0.0, 1e3)
     lead_s: float = number(

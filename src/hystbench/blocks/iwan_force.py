@@ -1,10 +1,5 @@
 """Block ``iwan-force``: elements in parallel that slip one after the other."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.force import Force
@@ -16,8 +11,7 @@ ELEMENTS = 12
 a percent of the largest, and within one where nearly all slip at once or soon."""
 
 
-@dataclass(frozen=True)
-class IwanForce(Force):
+class IwanForce(Force, name="iwan-force", law="slider"):
     """A sum of stops, elastic and perfectly plastic: a joint that slips bit by bit.
 
     ``F = stiffness sum of s_i E_i[q]``; E_i is the way since the last turn, held
@@ -39,8 +33,6 @@ class IwanForce(Force):
     .. [2] D. J. Segalman, "A four-parameter Iwan model for lap-type joints", Journal of
        Applied Mechanics 72 (2005) 752-760.
     """
-
-    name: ClassVar = "iwan-force"
 
     stiffness: float = number("U/Q", "where nothing slips", 0.0, HUGE)
     slip_distance: float = number("Q", "way from rest to where all slip", TINY, HUGE)
@@ -78,7 +70,7 @@ class IwanForce(Force):
         means = largest / np.maximum(shares, TINY)
         return shares, np.clip(means, edges[:-1], edges[1:]) * self.slip_distance
 
-    def law(self) -> tuple[str, FloatArray]:
+    def numbers(self) -> FloatArray:
         """Give sliders without a gap: a stiffness and a reach each."""
         shares, thresholds = self.elements()
-        return "slider", np.column_stack([self.stiffness * shares, thresholds])
+        return np.column_stack([self.stiffness * shares, thresholds])

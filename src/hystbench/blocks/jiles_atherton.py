@@ -1,10 +1,6 @@
 """Block ``jiles-atherton``: hysteresis of domain walls held by pinning sites."""
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -21,8 +17,7 @@ LARGEST_COUPLING = 2.9
 """In units of ``shape``: at 3 the slope is infinite."""
 
 
-@dataclass(frozen=True)
-class JilesAtherton(HystereticBlock):
+class JilesAtherton(HystereticBlock, name="jiles-atherton", place="material"):
     """Jiles-Atherton hysteresis of a biased transducer [1]_.
 
     With the field ``h = bias + z`` and the effective field ``e = h + coupling m``,
@@ -50,9 +45,6 @@ class JilesAtherton(HystereticBlock):
     .. [3] A. J. Bergqvist, "A simple vector generalization of the Jiles-Atherton model
        of hysteresis", IEEE Transactions on Magnetics 32 (1996) 4213-4215.
     """
-
-    name: ClassVar = "jiles-atherton"
-    place: ClassVar = "material"
 
     saturation: float = number("Y", "output that m = 1 stands for, Ms", -HUGE, HUGE)
     shape: float = number("U", "a, width of the anhysteretic curve", TINY, HUGE)

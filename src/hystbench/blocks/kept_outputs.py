@@ -5,8 +5,6 @@ input and the sampling interval. It is an archive of NumPy with one array of num
 nothing else is ever read. The folder is a cache: who deletes it loses time alone.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import sysconfig

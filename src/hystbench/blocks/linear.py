@@ -1,9 +1,7 @@
 """Linear blocks: what a state-space system answers to an input, for a stated hold."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -27,7 +25,6 @@ from hystbench.blocks.step import Sampling, Step, smooth_curve
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
 class LinearBlock(HeldBlock):
     """A linear, time-invariant block.
 

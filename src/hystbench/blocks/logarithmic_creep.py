@@ -1,10 +1,5 @@
 """Block ``logarithmic-creep``: slow displacement over decades of time."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.linear import LinearBlock
@@ -16,8 +11,7 @@ ELEMENTS = 12
 """Lags that stand for all between: two a decade over six decades."""
 
 
-@dataclass(frozen=True)
-class LogarithmicCreep(LinearBlock):
+class LogarithmicCreep(LinearBlock, name="logarithmic-creep", place="mechanics"):
     """First-order lags at all time constants between two, beside the direct path.
 
     ``Y(s) = Z(s) (1 + magnitude sum_j w_j / (1 + s tau_j))`` with ``ELEMENTS`` time
@@ -35,9 +29,6 @@ class LogarithmicCreep(LinearBlock):
        compensation for a piezoelectric actuator using a fractional-order Maxwell
        resistive capacitor approach", Smart Materials and Structures 22 (2013) 115020.
     """
-
-    name: ClassVar = "logarithmic-creep"
-    place: ClassVar = "mechanics"
 
     magnitude: float = number("-", "displacement in all", -HUGE, HUGE)
     first_time_s: float = number("s", "shortest time constant", 1e-6, 1e6)

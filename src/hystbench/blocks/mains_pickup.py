@@ -1,10 +1,5 @@
 """Block ``mains-pickup``: a tone that the input does not explain."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.base import Block
@@ -13,8 +8,7 @@ from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class MainsPickup(Block):
+class MainsPickup(Block, name="mains-pickup", place="sensor"):
     """Hum of the mains: ``y = z + sum_h amplitude_h sin(2 pi h f t + phase_h)``.
 
     h counts from 1, the fundamental; t is 0 at the first sample of each record.
@@ -23,9 +17,6 @@ class MainsPickup(Block):
     ----------
     .. [1] H. W. Ott, Electromagnetic Compatibility Engineering, Wiley, 2009.
     """
-
-    name: ClassVar = "mains-pickup"
-    place: ClassVar = "sensor"
 
     frequency_hz: float = number("Hz", "f, of the fundamental", 1e-3, 1e6)
     amplitudes: tuple[float, ...] = numbers("Y", "one a harmonic", -HUGE, HUGE)

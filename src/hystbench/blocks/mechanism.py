@@ -1,17 +1,13 @@
 """Block ``mechanism``: one coordinate whose forces act inside the dynamics."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil, sqrt
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.base import Place
+from hystbench.blocks.attached import Others
 from hystbench.blocks.curve import held_lines
 from hystbench.blocks.force import Driven, Dynamics, Force, Motion, exported, rows
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
@@ -30,8 +26,7 @@ CONTACT = 10
 """Steps of an interval that a stiff contact may ask for: it is stable without."""
 
 
-@dataclass(frozen=True)
-class Mechanism(Dynamics):
+class Mechanism(Dynamics, name="mechanism", place="base"):
     """A coordinate q of a machine: ``m q'' + c q' + k q + F(q, q') = gain z + bias``.
 
     F is the sum of the forces that follow it in the chain; without one it is linear. A
@@ -52,9 +47,7 @@ class Mechanism(Dynamics):
        Nonlinear Science 6 (1996) 449-467.
     """
 
-    name: ClassVar = "mechanism"
-    place: ClassVar[Place] = "base"
-    reference: ClassVar = "Gonzalez, J. Nonlinear Sci. 6 (1996)"
+    reference = "Gonzalez, J. Nonlinear Sci. 6 (1996)"
 
     mass: float = number("U s^2/Q", "m; Q is the unit of the coordinate", TINY, HUGE)
     damping: float = number("U s/Q", "c, of a viscous force", 0.0, HUGE)
@@ -96,11 +89,7 @@ class Mechanism(Dynamics):
             return motion.acceleration + self.blend * motion.velocity
 
     def motions(
-        self,
-        z: FloatArray,
-        dt: float,
-        forces: tuple[Force, ...],
-        others: Sequence[tuple[Driven, FloatArray]],
+        self, z: FloatArray, dt: float, forces: tuple[Force, ...], others: Others
     ) -> list[Motion]:
         """Compute how the coordinate moves, and how others with numbers near do.
 

@@ -1,10 +1,7 @@
 """Block ``onnx``: a neural network, or any other graph, in a file of ONNX."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -24,8 +21,7 @@ BATCH = ("batch", "n_batch", "batch_size", "n")
 """Names of a free axis that is not time, in small letters."""
 
 
-@dataclass(frozen=True)
-class Onnx(FileSimulator):
+class Onnx(FileSimulator, name="onnx"):
     """A graph of ONNX that maps a sequence u to a sequence y, run by onnxruntime.
 
     Its first input takes all n samples at once: one axis is free and is time, the
@@ -40,8 +36,7 @@ class Onnx(FileSimulator):
     .. [1] Open Neural Network Exchange, Intermediate Representation Specification.
     """
 
-    name: ClassVar = "onnx"
-    expected: ClassVar = EXPECTED
+    expected = EXPECTED
 
     file: str = text(EXPECTED)
 

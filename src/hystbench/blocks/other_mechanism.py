@@ -1,16 +1,10 @@
 """Block ``other-mechanism``: another mode with forces of its own."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.superposed import BesideBlock
 
 
-@dataclass(frozen=True)
-class OtherMechanism(Mechanism, BesideBlock):
+class OtherMechanism(Mechanism, BesideBlock, name="other-mechanism", place="inside"):
     """A mechanism with the input of the one before it, added to its output.
 
     A structure has a joint that moves in several of its modes: each of them is a
@@ -24,6 +18,3 @@ class OtherMechanism(Mechanism, BesideBlock):
        industrial structure using a modal framework", Mechanical Systems and Signal
        Processing 84 (2017) 152-170.
     """
-
-    name: ClassVar = "other-mechanism"
-    place: ClassVar = "inside"

@@ -1,16 +1,10 @@
 """Block ``other-modes``: what else a force moves beside a mechanism."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.superposed import BesideBlock
 from hystbench.blocks.transfer_function import TransferFunction
 
 
-@dataclass(frozen=True)
-class OtherModes(TransferFunction, BesideBlock):
+class OtherModes(TransferFunction, BesideBlock, name="other-modes", place="inside"):
     """Linear response to what drives the mechanism before it, added to its output.
 
     A structure of several modes is a ``mechanism`` for one of them, in which forces
@@ -21,6 +15,3 @@ class OtherModes(TransferFunction, BesideBlock):
     .. [1] D. J. Ewins, Modal Testing: Theory, Practice and Application, 2nd ed.,
        Research Studies Press, 2000, chapter 2.
     """
-
-    name: ClassVar = "other-modes"
-    place: ClassVar = "inside"

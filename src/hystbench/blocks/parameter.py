@@ -1,13 +1,11 @@
 """Parameters of blocks: unit, meaning and bounds, stated where they are defined."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field
 from typing import Any, Literal
 
-from hystbench.errors import InputError, nearest, short
+from hystbench.errors import InputError, refuse_unknown, short
 
 Kind = Literal["number", "numbers", "choice", "text"]
 Value = float | tuple[float, ...] | str
@@ -66,10 +64,7 @@ class Parameter:
             If the value has the wrong type or length, or lies out of bounds.
         """
         if self.kind == "choice":
-            if value not in self.options:
-                raise InputError(
-                    f"{name}: {short(value)} is unknown; {nearest(value, self.options)}"
-                )
+            refuse_unknown(value, self.options, f"{name}: {short(value)} is unknown")
             return str(value)
         if self.kind == "text":
             if not isinstance(value, str) or not (value.strip() or self.may_be_empty):
@@ -99,9 +94,7 @@ class Parameter:
 
     def _in_order(self, name: str, value: Mapping[str, object]) -> list[object]:
         for key in value:
-            if key not in self.names:
-                near = nearest(key, self.names)
-                raise InputError(f"{name}: unknown key {key!r}; {near}")
+            refuse_unknown(key, self.names, f"{name}: unknown key {key!r}")
         for key in self.names:
             if key not in value:
                 raise InputError(f"{name}: expected the key {key!r}")

@@ -1,22 +1,15 @@
 """Block ``prandtl-ishlinskii``: play operators beside a linear path."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
-from hystbench.blocks.base import Place
 from hystbench.blocks.parameter import HUGE, a_threshold, numbers
 from hystbench.blocks.step import Sampling, Step
-from hystbench.blocks.wrapping import PlayBlock
+from hystbench.blocks.wrapping import Growth, PlayBlock
 from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class PrandtlIshlinskii(PlayBlock):
+class PrandtlIshlinskii(PlayBlock, name="prandtl-ishlinskii", place="material"):
     """Play operators beside the signal itself: ``y = z + sum_i w_i P_i[z]``.
 
     ``P_i`` is the play operator of threshold r_i (paper, Eqs. 1 and 2, w(0) = 0). The
@@ -34,16 +27,13 @@ class PrandtlIshlinskii(PlayBlock):
        Control 9 (2003) 407-418.
     """
 
-    name: ClassVar = "prandtl-ishlinskii"
-    place: ClassVar[Place] = "material"
-
     thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
     weights: tuple[float, ...] = a_threshold("-", "w_i", optional=False)
     square_weights: tuple[float, ...] = a_threshold("1/U", "s_i")
     cube_weights: tuple[float, ...] = a_threshold("1/U^2", "c_i")
 
     def grow(
-        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+        self, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Add the weighted plays with all thresholds times ``growth``."""
         plays = growing_play(v, self.thresholds, growth)

@@ -1,10 +1,6 @@
 """Block ``preisach``: hysteresis as a distribution of relays."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
 
 import numpy as np
 
@@ -16,8 +12,7 @@ from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class Preisach(HystereticBlock):
+class Preisach(HystereticBlock, name="preisach", place="material"):
     """Scalar Preisach model beside a reversible part [1]_.
 
     ``y = reversible z + integral of mu(a, b) R_ab[z] over b <= a``. The relay
@@ -37,9 +32,6 @@ class Preisach(HystereticBlock):
     .. [2] X. Tan, J. S. Baras, "Modeling and control of hysteresis in magnetostrictive
        actuators", Automatica 40 (2004) 1469-1480.
     """
-
-    name: ClassVar = "preisach"
-    place: ClassVar = "material"
 
     limit: float = number("U", "largest input at which a relay switches", TINY, HUGE)
     reversible: float = number("Y/U", "slope of the reversible part", -HUGE, HUGE)

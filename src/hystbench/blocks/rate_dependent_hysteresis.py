@@ -1,10 +1,5 @@
 """Block ``rate-dependent-hysteresis``: the loop widens with the rate."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench import kernels
@@ -21,14 +16,15 @@ from hystbench.blocks.curve import (
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
-from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
+from hystbench.blocks.wrapping import Growth, Hysteresis, WrappingBlock
 from hystbench.record import FloatArray
 
 FORMS = ("growing-thresholds", "excess-field", "acting-field")
 
 
-@dataclass(frozen=True)
-class RateDependentHysteresis(HeldBlock, WrappingBlock):
+class RateDependentHysteresis(
+    HeldBlock, WrappingBlock, name="rate-dependent-hysteresis", place="material"
+):
     """Hysteresis that depends on the rate of what enters it, v.
 
     With ``e = coefficient |dv/dt|^exponent``:
@@ -53,10 +49,7 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
        materials", IEEE Transactions on Magnetics 24 (1988) 621-630.
     """
 
-    name: ClassVar = "rate-dependent-hysteresis"
-    place: ClassVar = "material"
-
-    smooths: ClassVar[bool] = False
+    smooths = False
 
     coefficient: float = number(
         "(s/U)^exponent",
@@ -73,12 +66,7 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
             inner.check_growth()
 
     def wrap(
-        self,
-        inner: Hysteresis,
-        v: FloatArray,
-        u: FloatArray,
-        dt: float,
-        growth: FloatArray | None = None,
+        self, inner: Hysteresis, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Drive the hysteresis with larger thresholds or with less field."""
         fine = SHORT_STEPS if self.holding == "band-limited" and len(v) > 2 else 1

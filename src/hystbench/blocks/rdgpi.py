@@ -1,9 +1,7 @@
 """Block ``rdgpi``: rate-dependent generalized Prandtl-Ishlinskii hysteresis."""
 
-from __future__ import annotations
-
-from dataclasses import asdict, dataclass
-from typing import Any, ClassVar
+from dataclasses import asdict
+from typing import Any
 
 import numpy as np
 
@@ -16,8 +14,7 @@ from hystbench.rdgpi.model import STARTS, RateDependentGPI
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class RateDependentPrandtlIshlinskii(HystereticBlock):
+class RateDependentPrandtlIshlinskii(HystereticBlock, name="rdgpi", place="base"):
     """The paper's baseline of Table 4, as :mod:`hystbench.rdgpi` reads it.
 
     The rate is a central difference, so the output follows its input one sample
@@ -29,9 +26,6 @@ class RateDependentPrandtlIshlinskii(HystereticBlock):
        Prandtl-Ishlinskii model for smart actuators", Smart Materials and Structures
        17 (2008) 035026: the family; docs/rdgpi.md on this member of it.
     """
-
-    name: ClassVar = "rdgpi"
-    place: ClassVar = "base"
 
     alpha1: float = number("-", "scale of the thresholds' spacing", -1e3, 1e3)
     beta1: float = number("-", "spacing at rest, inside the logarithm", 1.0, 1e3)

@@ -1,16 +1,10 @@
 """Block ``relaxation-force``: a spring in series with a damper, inside a mechanism."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-@dataclass(frozen=True)
-class RelaxationForce(Force):
+class RelaxationForce(Force, name="relaxation-force", law="relaxation"):
     """Maxwell's branch: ``dF/dt = stiffness q' - F / relaxation_time_s``.
 
     Held at a place, the force fades; a slow motion meets a damper of ``stiffness
@@ -23,8 +17,6 @@ class RelaxationForce(Force):
     .. [1] J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., Wiley, 1980.
     """
 
-    name: ClassVar = "relaxation-force"
-
     stiffness: float = number("U/Q", "of the spring, met by a fast motion", 0.0, HUGE)
     relaxation_time_s: float = number(
         "s", "in which the force of a place fades to 37 %", TINY, HUGE
@@ -34,7 +26,3 @@ class RelaxationForce(Force):
     def stiffest(self) -> float:
         """That of the spring."""
         return self.stiffness
-
-    def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give the stiffness and the time."""
-        return "relaxation", (self.stiffness, self.relaxation_time_s)

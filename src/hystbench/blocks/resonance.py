@@ -1,10 +1,5 @@
 """Block ``resonance``: one mechanical mode beside a rigid path."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.linear import LinearBlock
@@ -12,8 +7,7 @@ from hystbench.blocks.parameter import number
 from hystbench.blocks.state_space import StateSpace
 
 
-@dataclass(frozen=True)
-class Resonance(LinearBlock):
+class Resonance(LinearBlock, name="resonance", place="mechanics"):
     """One mode that carries a part of the static displacement.
 
     ``G(s) = (1 - p) + p wn^2 / (s^2 + 2 zeta wn s + wn^2)``, with static gain one.
@@ -23,9 +17,6 @@ class Resonance(LinearBlock):
     .. [1] D. J. Ewins, Modal Testing: Theory, Practice and Application, 2nd ed.,
        Research Studies Press, 2000.
     """
-
-    name: ClassVar = "resonance"
-    place: ClassVar = "mechanics"
 
     frequency_hz: float = number("Hz", "undamped frequency wn / 2 pi", 1e-3, 1e6)
     damping_ratio: float = number("-", "zeta, share of critical damping", 1e-5, 10.0)

@@ -1,21 +1,14 @@
 """Block ``saturation``: the material's response levels off."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, TINY, number
-from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class Saturation(Block):
+class Saturation(Block, name="saturation", place="material", curve="saturation"):
     """Odd and soft saturation.
 
     Without a sharpness ``y = level tanh(z / level)``; with one, n, the algebraic law
@@ -26,9 +19,6 @@ class Saturation(Block):
     .. [1] G. Engdahl (ed.), Handbook of Giant Magnetostrictive Materials, Academic
        Press, 2000: magnetisation and strain saturate.
     """
-
-    name: ClassVar = "saturation"
-    place: ClassVar = "material"
 
     level: float = number("Y", "output that is never reached", TINY, HUGE)
 
@@ -52,7 +42,3 @@ class Saturation(Block):
             return self.level * np.tanh(ratio)
         size = 1.0 + np.abs(ratio) ** self.sharpness
         return z / size ** (1.0 / self.sharpness)
-
-    def step(self, sampling: Sampling) -> Step:
-        """Give the curve."""
-        return Step("saturation", self.constants("level", "sharpness"))

@@ -1,9 +1,6 @@
 """Block ``sensor-noise``: white noise of the displacement sensor."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass, replace
-from typing import ClassVar
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,8 +10,7 @@ from hystbench.blocks.step import Sampling, Step, polynomial
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class SensorNoise(RandomBlock):
+class SensorNoise(RandomBlock, name="sensor-noise", place="sensor"):
     """White Gaussian noise of zero mean added to the output.
 
     Without a random generator nothing is added.
@@ -24,9 +20,6 @@ class SensorNoise(RandomBlock):
     .. [1] A. J. Fleming, "A review of nanometer resolution position sensors",
        Sensors and Actuators A 190 (2013) 106-126.
     """
-
-    name: ClassVar = "sensor-noise"
-    place: ClassVar = "sensor"
 
     rms: float = number("Y", "standard deviation of a sample", 0.0, HUGE)
 

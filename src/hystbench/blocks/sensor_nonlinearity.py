@@ -1,16 +1,10 @@
 """Block ``sensor-nonlinearity``: a sensor whose reading is a curve."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.base import PolynomialBlock
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class SensorNonlinearity(PolynomialBlock):
+class SensorNonlinearity(PolynomialBlock, name="sensor-nonlinearity", place="sensor"):
     """Static polynomial of the true output: ``y = z + quadratic z^2 + cubic z^3``.
 
     References
@@ -20,13 +14,7 @@ class SensorNonlinearity(PolynomialBlock):
        displacement sensors and its polynomial calibration.
     """
 
-    name: ClassVar = "sensor-nonlinearity"
-    place: ClassVar = "sensor"
+    terms = (0.0, 1.0, "quadratic", "cubic")
 
     quadratic: float = number("1/Y", "weight of the square", -HUGE, HUGE)
     cubic: float = number("1/Y^2", "weight of the cube", -HUGE, HUGE)
-
-    @property
-    def coefficients(self) -> tuple[float, ...]:
-        """Those of the polynomial, the constant first."""
-        return 0.0, 1.0, self.quadratic, self.cubic

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import ClassVar
+from dataclasses import field
 
 import numpy as np
 
@@ -16,8 +15,7 @@ from hystbench.record import FloatArray, Record
 NEEDS_RERUN = "needs a simulator that can be run again"
 
 
-@dataclass(frozen=True, eq=False)
-class SimulatedColumn(Block):
+class SimulatedColumn(Block, name="simulated-column", place="base"):
     """The stored output of a simulator, a column beside each record's input.
 
     It answers to the inputs of its records alone, from their first sample on: what
@@ -35,11 +33,9 @@ class SimulatedColumn(Block):
     By definition.
     """
 
-    name: ClassVar = "simulated-column"
-    place: ClassVar = "base"
-    reruns: ClassVar = False
-    seen: ClassVar = False
-    no_step: ClassVar = (
+    reruns = False
+    seen = False
+    no_step = (
         "stored output cannot be turned into code; expected --part behind: what "
         "stands there takes the simulator's output"
     )

@@ -1,7 +1,5 @@
 """What all simulators of somebody's own have in common, in whatever form they come."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from hashlib import blake2b
 from pathlib import Path
@@ -10,13 +8,13 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hystbench.blocks.base import Block, Place
+from hystbench.blocks.base import Block
 from hystbench.blocks.calls import current
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 
-class Simulator(Block):
+class Simulator(Block, place="base"):
     """A whole simulator as a block: called with samples, it gives as many.
 
     Calls are counted, bounded and kept (:mod:`hystbench.blocks.calls`). It must give
@@ -29,9 +27,8 @@ class Simulator(Block):
     By definition.
     """
 
-    place: ClassVar[Place] = "base"
-    seen: ClassVar[bool] = False
-    no_step: ClassVar[str] = (
+    seen = False
+    no_step = (
         "a simulator of somebody's own cannot be turned into code; expected --part "
         "before or --part behind: it runs between the two"
     )

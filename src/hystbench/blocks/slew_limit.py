@@ -1,10 +1,5 @@
 """Block ``slew-limit``: the drive changes no faster than its rate."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench import kernels
@@ -14,8 +9,7 @@ from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class SlewLimit(Block):
+class SlewLimit(Block, name="slew-limit", place="drive"):
     """Output that follows its input with ``|dv/dt| <= rate``.
 
     It starts at the input's first sample. Exact for an input that moves straight
@@ -27,9 +21,6 @@ class SlewLimit(Block):
     .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton University
        Press, 2021: saturation, rate limits and dead zones of actuators.
     """
-
-    name: ClassVar = "slew-limit"
-    place: ClassVar = "drive"
 
     rate: float = number("U/s", "largest rate of the output", TINY, HUGE)
 

@@ -1,16 +1,10 @@
 """Block ``slider-with-gap``: dry friction in series with a clearance."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-@dataclass(frozen=True)
-class SliderWithGap(Force):
+class SliderWithGap(Force, name="slider-with-gap", law="slider"):
     """A spring behind a clearance that slides at a force.
 
     ``F = contact_stiffness dead_zone(z, gap)`` with z the way, held between plus and
@@ -23,13 +17,11 @@ class SliderWithGap(Force):
        Systems, World Scientific, 2003.
     """
 
-    name: ClassVar = "slider-with-gap"
-
     contact_stiffness: float = number("U/Q", "of the contact", TINY, HUGE)
     slip_force: float = number("U", "force at which it slides", 0.0, HUGE)
     gap: float = number("Q", "half of the clearance", 0.0, HUGE)
 
-    def law(self) -> tuple[str, tuple[float, ...]]:
+    def numbers(self) -> tuple[float, ...]:
         """Give the stiffness, the reach of the way and the gap."""
         reach = self.gap + self.slip_force / self.contact_stiffness
-        return "slider", (self.contact_stiffness, reach, self.gap)
+        return (self.contact_stiffness, reach, self.gap)

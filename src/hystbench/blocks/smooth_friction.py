@@ -1,16 +1,10 @@
 """Block ``smooth-friction``: friction inside a mechanism that a fluid makes smooth."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, TINY, number
 
 
-@dataclass(frozen=True)
-class SmoothFriction(Force):
+class SmoothFriction(Force, name="smooth-friction", law="smooth"):
     """Friction that grows with the velocity, ``F = level tanh(q' / velocity_scale)``.
 
     A lubricated or magnetorheological fluid yields like that. It creeps at rest, where
@@ -28,8 +22,6 @@ class SmoothFriction(Force):
        friction", Automatica 30 (1994) 1083-1138.
     """
 
-    name: ClassVar = "smooth-friction"
-
     coulomb: float = number("U", "force at high velocity", 0.0, HUGE)
     velocity_scale: float = number(
         "Q/s", "velocity at which 76 % of it are there", TINY, HUGE
@@ -40,12 +32,3 @@ class SmoothFriction(Force):
     stribeck_velocity: float = number(
         "Q/s", "velocity at which the excess has faded", 0.0, HUGE, 0.0
     )
-
-    def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give the force and its velocity, the excess and its own."""
-        return "smooth", (
-            self.coulomb,
-            self.velocity_scale,
-            self.static_excess,
-            self.stribeck_velocity,
-        )

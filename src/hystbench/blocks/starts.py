@@ -1,7 +1,5 @@
 """What was before the first sample of a record: the starts of linear dynamics."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Literal
 

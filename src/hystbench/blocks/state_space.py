@@ -1,7 +1,5 @@
 """A linear system in continuous time, and how it moves over a sampling interval."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import NamedTuple
 

@@ -6,8 +6,6 @@ function takes: constants, and states that are all zero at the start, unless
 :mod:`hystbench.export`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple

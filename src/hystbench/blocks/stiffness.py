@@ -1,16 +1,10 @@
 """Block ``stiffness``: a spring inside a mechanism that is not linear."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, number
 
 
-@dataclass(frozen=True)
-class Stiffness(Force):
+class Stiffness(Force, name="stiffness", law="stiffness"):
     """A spring beside the linear one, ``F = quadratic q^2 + cubic q^3``.
 
     A positive cube hardens, a negative one softens; a square makes both ways differ.
@@ -21,11 +15,5 @@ class Stiffness(Force):
        and their Behaviour, Wiley, 2011.
     """
 
-    name: ClassVar = "stiffness"
-
     quadratic: float = number("U/Q^2", "weight of the square", -HUGE, HUGE)
     cubic: float = number("U/Q^3", "weight of the cube", -HUGE, HUGE)
-
-    def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give both weights."""
-        return "stiffness", (self.quadratic, self.cubic)

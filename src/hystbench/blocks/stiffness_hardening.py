@@ -1,10 +1,5 @@
 """Block ``stiffness-hardening``: a mode whose spring stiffens with its displacement."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench import kernels
@@ -15,8 +10,7 @@ from hystbench.blocks.step import Sampling, Step, lines_of
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class StiffnessHardening(HeldBlock):
+class StiffnessHardening(HeldBlock, name="stiffness-hardening", place="mechanics"):
     """Duffing's oscillator beside a rigid path; it replaces a linear ``resonance``.
 
     ``y = (1 - p) z + p x`` with ``x'' + 2 zeta wn x' + wn^2 (x + coefficient x^3) =
@@ -32,9 +26,6 @@ class StiffnessHardening(HeldBlock):
     .. [1] I. Kovacic, M. J. Brennan (eds.), The Duffing Equation: Nonlinear Oscillators
        and their Behaviour, Wiley, 2011.
     """
-
-    name: ClassVar = "stiffness-hardening"
-    place: ClassVar = "mechanics"
 
     coefficient: float = number("1/Y^2", "weight of the cube", -HUGE, HUGE)
     frequency_hz: float = number("Hz", "undamped frequency wn / 2 pi", 1e-3, 1e6)

@@ -1,18 +1,12 @@
 """Block ``stop``: contact inside a mechanism beyond a clearance."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import HUGE, choice, number
 
 SIDES = {"both": 0.0, "upper": 1.0, "lower": -1.0}
 
 
-@dataclass(frozen=True)
-class Stop(Force):
+class Stop(Force, name="stop", law="stop"):
     """A spring that is met where q leaves a gap: ``F = contact_stiffness (x - gap)``.
 
     That is for ``x = q - centre`` above the gap, and likewise below ``-gap`` where the
@@ -24,8 +18,6 @@ class Stop(Force):
        oscillator", Journal of Sound and Vibration 90 (1983) 129-155.
     """
 
-    name: ClassVar = "stop"
-
     contact_stiffness: float = number("U/Q", "stiffness of the contact", 0.0, HUGE)
     gap: float = number("Q", "half of the clearance", 0.0, HUGE)
     centre: float = number("Q", "middle of the clearance", -HUGE, HUGE, 0.0)
@@ -36,7 +28,6 @@ class Stop(Force):
         """That of the contact."""
         return self.contact_stiffness
 
-    def law(self) -> tuple[str, tuple[float, ...]]:
+    def numbers(self) -> tuple[float, ...]:
         """Give stiffness, gap, centre and side."""
-        own = (self.contact_stiffness, self.gap, self.centre, SIDES[self.sides])
-        return "stop", own
+        return self.contact_stiffness, self.gap, self.centre, SIDES[self.sides]

@@ -1,10 +1,5 @@
 """Block ``store``: a tank whose outflow follows a power of its level."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench import kernels
@@ -22,8 +17,7 @@ STARTS = ("given", "settled")
 """At the level that is given, or where it rests under the first inflow."""
 
 
-@dataclass(frozen=True)
-class Store(HeldBlock):
+class Store(HeldBlock, name="store", place="base"):
     """Level h of a store, 0 to its height: ``h' = gain z + bias - rate h^exponent``.
 
     With an exponent of a half it is a tank with a free outlet (Torricelli), with one it
@@ -38,9 +32,6 @@ class Store(HeldBlock):
        combining soft and hard nonlinearities", Workshop on Nonlinear System
        Identification Benchmarks, 2016.
     """
-
-    name: ClassVar = "store"
-    place: ClassVar = "base"
 
     gain: float = number("Q/(U s)", "of the inflow", -HUGE, HUGE)
     rate: float = number("Q^(1-e)/s", "of the outflow", 0.0, HUGE)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
-from hystbench.blocks.attached import AttachedBlock, Simulated, near
+from hystbench.blocks.attached import AttachedBlock, Others, Simulated, near
 from hystbench.blocks.force import Driven, Force
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.errors import InputError
@@ -19,15 +18,13 @@ _Response = tuple[FloatArray, FloatArray]
 _KEPT: OrderedDict[tuple[int, float, Simulated], _Response] = OrderedDict()
 
 
-@dataclass(frozen=True)
-class BesideBlock(AttachedBlock):
+class BesideBlock(AttachedBlock, place="inside"):
     """A block with the input of the mechanism before it, added to its output.
 
     In the chain it stands behind the mechanism's forces.
     """
 
-    place: ClassVar = "inside"
-    hosts: ClassVar = "mechanism or a force inside one"
+    hosts = "mechanism or a force inside one"
 
     def attach(self, before: Any) -> Superposed:
         """Add the response to the output of the mechanism before."""
@@ -48,7 +45,7 @@ class Superposed:
     by: Any
     """The block beside, or a mechanism beside with the forces inside it."""
 
-    hysteretic: ClassVar[bool] = False
+    hysteretic = False
     name: ClassVar[str] = "mechanism and other modes"
 
     def taking(self, force: Force) -> Superposed:
@@ -66,11 +63,7 @@ class Superposed:
         return _kept(self.inner, z, u, dt) + _kept(self.by, z, u, dt)
 
     def near(
-        self,
-        z: FloatArray,
-        u: FloatArray,
-        dt: float,
-        others: Sequence[tuple[Superposed, FloatArray]],
+        self, z: FloatArray, u: FloatArray, dt: float, others: Others
     ) -> list[FloatArray]:
         """Compute the output, and those of others with numbers near."""
         inner = near(self.inner, z, u, dt, [(x.inner, own) for x, own in others])

@@ -1,7 +1,5 @@
 """The vocabulary of blocks as a table, for docs/model-files.md."""
 
-from __future__ import annotations
-
 from hystbench import files
 from hystbench.blocks import registry
 from hystbench.blocks.parameter import HUGE, Parameter

@@ -1,10 +1,5 @@
 """Block ``thermal-drift``: Joule heat expands the rod."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.base import Block
@@ -15,8 +10,7 @@ from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class ThermalDrift(Block):
+class ThermalDrift(Block, name="thermal-drift", place="mechanics"):
     """Expansion by the heat of the input: ``y = z + coefficient LP[u^2]``.
 
     LP is a first-order low-pass that starts cold: what the heat is made in and what
@@ -28,9 +22,6 @@ class ThermalDrift(Block):
     .. [1] G. Engdahl (ed.), Handbook of Giant Magnetostrictive Materials, Academic
        Press, 2000: losses and the heating of rod and coil.
     """
-
-    name: ClassVar = "thermal-drift"
-    place: ClassVar = "mechanics"
 
     coefficient: float = number("Y/U^2", "expansion at a steady input", -HUGE, HUGE)
     time_constant_s: float = number("s", "tau of the warming", 1e-6, 1e6)

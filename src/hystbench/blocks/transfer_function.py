@@ -1,22 +1,16 @@
 """Block ``transfer-function``: linear dynamics as a ratio of polynomials."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
-from hystbench.blocks.base import Place
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.parameter import HUGE, numbers
 from hystbench.blocks.state_space import StateSpace
 from hystbench.errors import InputError
 
 
-@dataclass(frozen=True)
-class TransferFunction(LinearBlock):
+class TransferFunction(LinearBlock, name="transfer-function", place="base"):
     """Proper, stable transfer function in descending powers of s.
 
     ``G(s) = (n_0 s^m + ... + n_m) / (d_0 s^k + ... + d_k)`` with m <= k. One pole may
@@ -28,9 +22,6 @@ class TransferFunction(LinearBlock):
     .. [1] T. Kailath, Linear Systems, Prentice-Hall, 1980, section 2.1 (controller
        canonical form).
     """
-
-    name: ClassVar = "transfer-function"
-    place: ClassVar[Place] = "base"
 
     numerator: tuple[float, ...] = numbers(
         "powers of s", "n_0 to n_m, descending", -HUGE, HUGE

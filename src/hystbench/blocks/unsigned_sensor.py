@@ -1,20 +1,13 @@
 """Block ``unsigned-sensor``: a sensor that does not show the sign."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import ClassVar
-
 import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, TINY, number
-from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
-@dataclass(frozen=True)
-class UnsignedSensor(Block):
+class UnsignedSensor(Block, name="unsigned-sensor", place="sensor", curve="magnitude"):
     """Magnitude of the true output, ``y = scale |z|``: pulses are counted either way.
 
     References
@@ -24,15 +17,8 @@ class UnsignedSensor(Block):
        2017-024: pulse counters that do not tell the direction of turning.
     """
 
-    name: ClassVar = "unsigned-sensor"
-    place: ClassVar = "sensor"
-
     scale: float = number("-", "of what is shown", TINY, HUGE)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Leave the sign out."""
         return self.scale * np.abs(z)
-
-    def step(self, sampling: Sampling) -> Step:
-        """Leave the sign out."""
-        return Step("magnitude", {"scale": self.scale})

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import Any, Protocol
 
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import Block
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
+Growth = FloatArray | None
+"""Factor on all thresholds at each sample, shape (n,); None for one."""
+
 
 class Hysteresis(Protocol):
     """Hysteresis that a block can wrap: a block, or one that is wrapped already."""
 
     def grow(
-        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+        self, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute the output with all thresholds times ``growth``.
 
@@ -34,17 +37,16 @@ class Hysteresis(Protocol):
         """Refuse by InputError if there are no thresholds that can grow."""
 
 
-@dataclass(frozen=True)
 class HystereticBlock(Block):
     """Hysteresis, which a :class:`WrappingBlock` may follow.
 
     That of play operators is a :class:`PlayBlock`.
     """
 
-    hysteretic: ClassVar[bool] = True
+    hysteretic = True
 
     def grow(
-        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+        self, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute the output; thresholds that grow are refused."""
         if growth is not None:
@@ -59,13 +61,12 @@ class HystereticBlock(Block):
         )
 
 
-@dataclass(frozen=True)
 class PlayBlock(HystereticBlock):
     """Hysteresis of play operators, whose thresholds can grow."""
 
     @abstractmethod
     def grow(
-        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+        self, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute the output with all thresholds times ``growth``."""
 
@@ -77,7 +78,6 @@ class PlayBlock(HystereticBlock):
         """Accept."""
 
 
-@dataclass(frozen=True)
 class WrappingBlock(AttachedBlock):
     """A block that changes the hysteresis before it, not a signal.
 
@@ -85,7 +85,7 @@ class WrappingBlock(AttachedBlock):
     together are one :class:`Wrapped` step.
     """
 
-    hosts: ClassVar = "hysteresis"
+    hosts = "hysteresis"
 
     def attach(self, before: Any) -> Wrapped:
         """Wrap the hysteresis before."""
@@ -104,12 +104,7 @@ class WrappingBlock(AttachedBlock):
 
     @abstractmethod
     def wrap(
-        self,
-        inner: Hysteresis,
-        v: FloatArray,
-        u: FloatArray,
-        dt: float,
-        growth: FloatArray | None = None,
+        self, inner: Hysteresis, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute the output of the hysteresis as the block changes it.
 
@@ -139,10 +134,10 @@ class Wrapped:
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output, as :meth:`Block.simulate` does."""
-        return self.by.wrap(self.inner, z, u, dt)
+        return self.by.wrap(self.inner, z, u, dt, None)
 
     def grow(
-        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+        self, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute the output with all thresholds times ``growth``."""
         return self.by.wrap(self.inner, v, u, dt, growth)

@@ -1,7 +1,5 @@
 """The base model that a solver gets: the plant's own loop, or the best GPI there is."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 
 import numpy as np

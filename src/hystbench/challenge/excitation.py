@@ -5,8 +5,6 @@ sampling rate: what the plant saw between two samples is the band-limited curve 
 them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial

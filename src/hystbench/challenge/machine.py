@@ -1,7 +1,5 @@
 """One machine with its records: drawn, read, and held against its best linear model."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache

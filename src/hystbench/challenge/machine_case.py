@@ -1,7 +1,5 @@
 """A case of a machine: its records, the base that is handed over, and the truth."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -132,18 +130,11 @@ def _used(machine: Machine, signals: InputsAndOutputs, use: str) -> InputsAndOut
 def _model(machine: Machine, spec: CaseSpec) -> Model | None:
     """The machine without its effects as a model file, of a quarter of the masses."""
     asked = spec.random(BASE).uniform() < AS_MODEL
-    part = machine.part
-    if not asked or part is None or machine.family != "mass-spring":
+    if not asked or machine.part is None or machine.family != "mass-spring":
         return None
     from hystbench.blocks.mechanism import Mechanism  # late: one of four wants it
 
-    block = Mechanism(
-        mass=part.mass,
-        damping=part.damping,
-        stiffness=part.stiffness,
-        output=machine.output,
-        hold="band-limited",
-    )
+    block = Mechanism(**_linear(machine), hold="band-limited")
     return Model("base", *machine.channels, (block,))
 
 

@@ -4,8 +4,6 @@ Commands are those of :mod:`hystbench.challenge.excitation`, whose nominal rate 
 4 kHz: a machine that is sampled at another rate sees the same samples.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

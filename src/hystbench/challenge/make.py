@@ -1,7 +1,5 @@
 """A case of any family from its spec: an actuator or a machine."""
 
-from __future__ import annotations
-
 from hystbench.challenge.case import Case, make_case
 from hystbench.challenge.machine_case import make_machine_case
 from hystbench.challenge.plant.inside import MACHINES

@@ -1,7 +1,5 @@
 """What a case is to be: its effects, its family, its noise; drawn from a seed."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -10,13 +8,13 @@ import numpy as np
 from hystbench.challenge.excitation import CAMPAIGNS
 from hystbench.challenge.plant import inside
 from hystbench.challenge.plant.effects import (
+    APART,
     IN_ACTUATOR,
     UNLISTED,
     VOCABULARY,
-    may_meet,
 )
 from hystbench.challenge.plant.hysteresis import DRAWS
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 
 CaseKind = Literal["single", "pair", "triple", "none", "unlisted"]
 CASE_KINDS: tuple[str, ...] = get_args(CaseKind)
@@ -72,8 +70,7 @@ class CaseSpec:
         words = {"kind": CASE_KINDS, "family": FAMILIES, "campaign": CAMPAIGNS}
         for key, known_words in words.items():
             word = getattr(self, key)
-            if word not in known_words:
-                raise InputError(f"{key}: {word!r}; {nearest(word, known_words)}")
+            refuse_unknown(word, known_words, f"{key}: {word!r}")
         if self.family in inside.MACHINES and self.campaign != "standard":
             raise InputError(
                 f"campaign: {self.campaign!r} of the family {self.family!r}; expected "
@@ -87,11 +84,9 @@ class CaseSpec:
                 )
         known = _known(self.kind, self.family)
         for name in self.effects:
-            if name not in known:
-                raise InputError(
-                    f"effect: {name!r} unknown in the family {self.family!r}; "
-                    f"{nearest(name, known)}"
-                )
+            refuse_unknown(
+                name, known, f"effect: {name!r} unknown in the family {self.family!r}"
+            )
         if len(self.effects) != COUNTS[self.kind]:
             raise InputError(
                 f"effect: {len(self.effects)} given, expected {COUNTS[self.kind]} for "
@@ -143,11 +138,10 @@ def _known(kind: str, family: str) -> list[str]:
 
 
 def _may_meet(names: tuple[str, ...], family: str) -> bool:
-    if family not in inside.MACHINES:
-        return may_meet(names)
+    """Tell whether effects may be hidden together in a family."""
+    pairs = inside.APART if family in inside.MACHINES else APART
     chosen = set(names)
-    apart = any(pair <= chosen for pair in inside.APART)
-    return len(chosen) == len(names) and not apart
+    return len(chosen) == len(names) and not any(pair <= chosen for pair in pairs)
 
 
 def kind_of(effects: tuple[str, ...]) -> str:
@@ -184,8 +178,7 @@ def draw_spec(
     InputError
         As :class:`CaseSpec`.
     """
-    if kind not in CASE_KINDS:
-        raise InputError(f"kind: {kind!r}; {nearest(kind, CASE_KINDS)}")
+    refuse_unknown(kind, CASE_KINDS, f"kind: {kind!r}")
     names = effects_of(kind, family, unlisted)
     if len(names) < COUNTS[kind]:
         raise InputError(

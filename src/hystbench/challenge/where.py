@@ -1,7 +1,5 @@
 """Where an effect shows: its power over each view's axis, from its true difference."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

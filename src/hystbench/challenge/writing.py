@@ -1,7 +1,5 @@
 """A case as files: the solver's folder, and the truth anywhere but in it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """``hystbench check``: what records are like, and which effects they can reveal."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

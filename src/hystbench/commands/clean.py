@@ -1,7 +1,5 @@
 """``hystbench clean``: remove what hystbench wrote, and nothing else."""
 
-from __future__ import annotations
-
 import click
 
 from hystbench.signature import Folder, command

@@ -1,7 +1,5 @@
 """``hystbench docs``: fill the tables of README.md and docs from results."""
 
-from __future__ import annotations
-
 import csv
 import re
 from functools import partial
@@ -10,7 +8,7 @@ from typing import Annotated
 
 import click
 
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 from hystbench.files import atomic_path, markdown_table, write_text
 from hystbench.signature import command
 
@@ -115,18 +113,16 @@ def _table(page: Path, source: Path, choice: str) -> str:
     asked = {}
     for part in filter(None, (part.strip() for part in choice.split(";"))):
         key, _, value = part.partition(":")
-        if key not in ("columns", "rows"):
-            near = nearest(key, ("columns", "rows"))
-            raise InputError(f"{page}: from {source}: unknown key {key!r}; {near}")
+        refuse_unknown(
+            key, ("columns", "rows"), f"{page}: from {source}: unknown key {key!r}"
+        )
         asked[key] = value.strip()
     columns = [
         name.strip() for name in asked.get("columns", ",".join(known)).split(",")
     ]
     wanted, _, value = (word.strip() for word in asked.get("rows", "").partition("="))
     for name in filter(None, (*columns, wanted)):
-        if name not in known:
-            near = nearest(name, known)
-            raise InputError(f"{page}: from {source}: no column {name!r}; {near}")
+        refuse_unknown(name, known, f"{page}: from {source}: no column {name!r}")
     chosen = (row for row in rows if not wanted or row[wanted] == value)
     return markdown_table(columns, ([row[name] for name in columns] for row in chosen))
 

@@ -1,7 +1,5 @@
 """``hystbench export``: write a model as code that runs elsewhere."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
@@ -12,7 +10,7 @@ from hystbench import options
 from hystbench.blocks.held import Hold
 from hystbench.blocks.step import LARGEST_POINTS, Sampling
 from hystbench.dataset import read_input
-from hystbench.errors import InputError
+from hystbench.errors import InputError, placed
 from hystbench.export import c, fmu, python
 from hystbench.export.described import Described, describe, exact_delay
 from hystbench.export.inverse import describe_inverse
@@ -172,10 +170,8 @@ def _compared(code: Described, system: Model, file: Path) -> str:
     from hystbench.export.compared import off  # late: it runs
 
     u = _record(system, file, code.sampling.dt)
-    try:
+    with placed(f"--compare: {file}: "):
         return f"{file}: {off(code, system, u).words}."
-    except InputError as error:
-        raise InputError(f"--compare: {file}: {error}") from None
 
 
 def _record(system: Model, file: Path, wanted: float) -> FloatArray:

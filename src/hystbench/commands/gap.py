@@ -1,7 +1,5 @@
 """``hystbench gap``: find what a simulator lacks, add it, show the gap shrink."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """``hystbench hide``: make records in which a plant hides effects."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

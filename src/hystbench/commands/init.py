@@ -1,7 +1,5 @@
 """``hystbench init``: propose a dataset.yaml for files of measurements."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from functools import partial

@@ -1,7 +1,5 @@
 """``hystbench invert``: the input that makes a model follow a reference."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,11 +1,9 @@
 """``hystbench load``: read and check one measured record."""
 
-from __future__ import annotations
-
 from hystbench import options
 from hystbench.dataset import load_dataset
 from hystbench.doubts import doubts
-from hystbench.errors import InputError, nearest
+from hystbench.errors import refuse_unknown
 from hystbench.signature import DatasetFile, Out, command
 
 
@@ -16,10 +14,7 @@ def load(dataset: DatasetFile, name: str, *, out: Out) -> None:
     Warnings that concern it are shown; for them the other records are read too.
     """
     measured = load_dataset(dataset)
-    if name not in measured.record_files:
-        raise InputError(
-            f"{dataset}: no record {name!r}; {nearest(name, measured.record_files)}"
-        )
+    refuse_unknown(name, measured.record_files, f"{dataset}: no record {name!r}")
     records = {other: measured.read(other) for other in measured.record_files}
     options.warn(doubts(measured, list(records.values()), name))
     records[name].save(out)

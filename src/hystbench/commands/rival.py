@@ -1,14 +1,12 @@
 """``hystbench rival``: a rival of the gap's solver, on a dataset."""
 
-from __future__ import annotations
-
 import importlib
 from pathlib import Path
 from typing import Annotated
 
 from hystbench import options
 from hystbench.entrants.task import read, write
-from hystbench.errors import InputError, nearest
+from hystbench.errors import refuse_unknown
 from hystbench.signature import DatasetFile, OutFolder, command
 from hystbench.written import writes
 
@@ -31,8 +29,7 @@ def rival(
 
     naive fits every effect by itself; random draws a name.
     """
-    if name not in RIVALS:
-        raise InputError(f"rival: no {name!r}; {nearest(name, RIVALS)}")
+    refuse_unknown(name, RIVALS, f"rival: no {name!r}")
     writes(out / "gap.json")
     rival = importlib.import_module(f"hystbench.entrants.{RIVALS[name]}")
     given = read(dataset, model)

@@ -1,7 +1,5 @@
 """``hystbench simulate``: run a model on one record."""
 
-from __future__ import annotations
-
 import zipfile
 from pathlib import Path
 from typing import Annotated, NamedTuple, cast

@@ -3,15 +3,13 @@
 Each row of a file is one of the classes here, a column a field.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
 from hystbench.compare.rows import names_of, read_items
-from hystbench.errors import InputError, nearest
+from hystbench.errors import refuse_unknown
 from hystbench.files import write_csv
 from hystbench.published import METRICS, Metric
 
@@ -141,11 +139,7 @@ def read_holdings(path: str | Path) -> dict[str, tuple[Holding, ...]]:
     """
     counts: dict[str, dict[str, list[bool]]] = {}
     for number, row in enumerate(read_items(path, TwinClaim), 1):
-        if row.holds not in HOLDS:
-            raise InputError(
-                f"{path}: row {number}: holds {row.holds!r}; "
-                f"{nearest(row.holds, HOLDS)}"
-            )
+        refuse_unknown(row.holds, HOLDS, f"{path}: row {number}: holds {row.holds!r}")
         if row.holds != "not testable":
             families = counts.setdefault(row.claim, {})
             families.setdefault(row.family, []).append(row.holds == "yes")

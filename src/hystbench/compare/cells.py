@@ -1,7 +1,5 @@
 """Ours beside every printed number: one row a signal, model and metric."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

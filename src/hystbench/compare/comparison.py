@@ -1,7 +1,5 @@
 """Ours beside theirs: cells, claims, summary, tables and verdict of a comparison."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path

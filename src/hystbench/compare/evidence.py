@@ -19,7 +19,7 @@ from hystbench.compare.beside import (
     read_spreads,
 )
 from hystbench.compare.rows import finite_or_infinite, read_items, read_rows
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 from hystbench.files import read_json
 from hystbench.order_errors import OrderError
 from hystbench.published import (
@@ -187,8 +187,7 @@ class ClaimEvidence:
 
 def _need(content: Mapping[str, Any], key: str, path: str | Path) -> Any:
     """Take a key of a file or say which is missing."""
-    if key not in content:
-        raise InputError(f"{path}: no key {key!r}; {nearest(key, content)}")
+    refuse_unknown(key, content, f"{path}: no key {key!r}")
     return content[key]
 
 
@@ -213,8 +212,7 @@ def read_run(path: str | Path) -> Run:
         return _need(content, key, path)
 
     status, diverged = need("status"), need("diverged")
-    if status not in ("finite", "diverged"):
-        raise InputError(f"{path}: status {status!r}; {nearest(status, _STATUSES)}")
+    refuse_unknown(status, _STATUSES, f"{path}: status {status!r}")
     if (status == "diverged") != (diverged is not None):
         raise InputError(f"{path}: status {status!r} and 'diverged' disagree")
     if status == "finite" and need("mse") is None:

@@ -1,7 +1,5 @@
 """Errors on a measured dataset, for which the paper has no numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 

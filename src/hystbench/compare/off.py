@@ -4,8 +4,6 @@ Each sentence is computed from the results. It says what goes with the distance,
 what causes it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Rows of the CSV files of results: read with checks, and written."""
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Callable, Iterable, Sequence
@@ -10,7 +8,7 @@ from pathlib import Path
 from types import NoneType
 from typing import TypeVar, get_args, get_type_hints
 
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 from hystbench.files import write_csv
 
 Item = TypeVar("Item")
@@ -28,9 +26,7 @@ def read_rows(path: str | Path, columns: tuple[str, ...]) -> list[dict[str, str]
         reader = csv.DictReader(stream)
         rows = list(reader)
     for column in columns:
-        if column not in (reader.fieldnames or ()):
-            known = nearest(column, reader.fieldnames or ())
-            raise InputError(f"{path}: no column {column!r}; {known}")
+        refuse_unknown(column, reader.fieldnames or (), f"{path}: no column {column!r}")
     return rows
 
 

@@ -4,8 +4,6 @@ All are over MSE alone: RE is the same error over the same record again. The
 filters' 52 pairs of Tables 1-3 count once each; Table 4's GPO column repeats them.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence

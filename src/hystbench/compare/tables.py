@@ -1,7 +1,5 @@
 """Tables 1-4 with ours beside the paper's, as CSV, Markdown and LaTeX."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path

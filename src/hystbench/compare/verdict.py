@@ -4,8 +4,6 @@ The words are in ``sentences.txt.j2`` and ``first.txt.j2``; every number comes f
 summary.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 

@@ -6,8 +6,6 @@ crashes on, hangs on or leaves without a readable ``gap.json`` is lost, with the
 the contest goes on.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import shutil

@@ -6,8 +6,6 @@ the same is done with what is left, as long as the criterion falls. The base is 
 reshaped and every sample counts: what a careful beginner would do.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import NamedTuple
 

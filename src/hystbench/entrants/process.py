@@ -1,7 +1,5 @@
 """A solver's process: begun in a folder of its own, and ended when its time is up."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib
 import os

@@ -1,7 +1,5 @@
 """The random namer: any effect of the vocabulary, or none. What luck alone scores."""
 
-from __future__ import annotations
-
 import hashlib
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a solver gets, read; and gap.json, written."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A model as C99: a header, and a source that allocates nothing."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Sequence
 from functools import cache, partial

@@ -1,7 +1,5 @@
 """How far exported code is from the simulation of a record that is at hand."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -17,7 +17,7 @@ from hystbench.blocks.step import (
 )
 from hystbench.blocks.superposed import Superposed
 from hystbench.blocks.wrapping import Wrapped
-from hystbench.errors import InputError
+from hystbench.errors import InputError, placed
 from hystbench.export.names import identifier, one_line, plain
 from hystbench.model import Model
 from hystbench.record import Channel, FloatArray
@@ -249,7 +249,7 @@ def pieces_of(model: Model) -> Callable[[Any, Sampling], Piece]:
         block: Block | Dynamics, tells: Block | Driven, sampling: Sampling
     ) -> Piece:
         """Ask for the step of a block, alone or with the forces inside it."""
-        try:
+        with placed(f"chain: block {places[id(block)]}: "):
             step = tells.step(sampling)
             size = sum(step.states.values())
             if size > LARGEST_STATE:
@@ -259,9 +259,6 @@ def pieces_of(model: Model) -> Callable[[Any, Sampling], Piece]:
                     "memory or a longer --dt"
                 )
             return Piece(labels[id(block)], step)
-        except InputError as error:
-            place = f"chain: block {places[id(block)]}: "
-            raise InputError(f"{place}{error}") from None
 
     def of_step(step: Any, sampling: Sampling) -> Piece:
         if isinstance(step, Driven):

@@ -1,7 +1,5 @@
 """A model as a source FMU for co-simulation, of FMI 2.0 or 3.0."""
 
-from __future__ import annotations
-
 import hashlib
 import uuid
 import zipfile

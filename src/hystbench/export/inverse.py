@@ -4,8 +4,6 @@ Each block is undone by itself, the last one first, with what is known at a samp
 reference so far. What that leaves, each step says of itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial

@@ -3,8 +3,6 @@
 And what is the same in the code of all models, but for such words.
 """
 
-from __future__ import annotations
-
 import keyword
 import re
 import sys

@@ -1,7 +1,5 @@
 """The parts of a model around a simulator of somebody's own, which run beside it."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from hystbench.errors import InputError

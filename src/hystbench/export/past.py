@@ -6,8 +6,6 @@ sample. Code that runs sample by sample knows none of them. It can start as on a
 that is at hand.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A model as a Python module, which compiles and calls the C beside it."""
 
-from __future__ import annotations
-
 import importlib.util
 import tempfile
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Steps that undo a block, for code that is given its output sample by sample."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial

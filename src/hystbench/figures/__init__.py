@@ -6,14 +6,12 @@ A figure is a function of a module here. It takes the files it needs by keyword
 :data:`FIGURES`; a module is imported when its figure is drawn.
 """
 
-from __future__ import annotations
-
 import importlib
 from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from hystbench.errors import InputError, nearest
+from hystbench.errors import refuse_unknown
 
 #: Module, function and first arguments of each. Those with a number redraw the figure
 #: of the paper with that number.
@@ -61,8 +59,7 @@ def module_of(name: str) -> str:
     InputError
         If there is no such figure.
     """
-    if name not in FIGURES:
-        raise InputError(f"no figure {name!r}; {nearest(name, FIGURES)}")
+    refuse_unknown(name, FIGURES, f"no figure {name!r}")
     return f"{__name__}.{FIGURES[name][0]}"
 
 

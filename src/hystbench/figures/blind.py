@@ -1,7 +1,5 @@
 """What came of the blind contest: shares of cases, with their intervals."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from math import ceil
 from pathlib import Path

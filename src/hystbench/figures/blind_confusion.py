@@ -1,7 +1,5 @@
 """What was answered first for each hidden effect of the blind contest."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

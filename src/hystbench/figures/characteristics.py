@@ -1,7 +1,5 @@
 """Figures 3 and 4: input and output of the operators, with arrows along the curves."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Figure 9: the chirp, the output of the GPO filter and its error."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

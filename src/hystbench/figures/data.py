@@ -1,7 +1,5 @@
 """What figures are drawn from: records, runs with their arrays, parts of records."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,7 +9,7 @@ import numpy as np
 
 from hystbench.compare.evidence import Run, read_run
 from hystbench.compare.rows import read_rows
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 from hystbench.record import FloatArray, Record, load_record
 
 
@@ -94,8 +92,7 @@ def read_records(
     found: dict[str, list[Output]] = {name: [] for name in records}
     for path, output in zip(runs, read_outputs(runs), strict=True):
         signal = output.run.signal
-        if signal not in found:
-            raise InputError(f"{path}: no record {signal!r}; {nearest(signal, found)}")
+        refuse_unknown(signal, found, f"{path}: no record {signal!r}")
         found[signal].append(output)
     for name, outputs in found.items():
         if not outputs:

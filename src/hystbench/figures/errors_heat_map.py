@@ -1,7 +1,5 @@
 """Ours over the published MSE of every signal and model."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

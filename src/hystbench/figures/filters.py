@@ -1,7 +1,5 @@
 """Errors of the filters: over their order (Figure 7), and over time as they learn."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A loop of a hold-out record: the simulator, and the same with what it lacked."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Identification: J by iteration, the envelope functions and the slow loop."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Loops with the output of the models: of every model, or with the error below each."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from pathlib import Path

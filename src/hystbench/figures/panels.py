@@ -1,7 +1,5 @@
 """Panels that several figures share: a record with a model's output over it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from matplotlib.axes import Axes

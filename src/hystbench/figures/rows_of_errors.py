@@ -4,8 +4,6 @@ Marks, not bars: a bar on a logarithmic scale has no honest foot. A diverged run
 cross right of the scale.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

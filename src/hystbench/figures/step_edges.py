@@ -1,7 +1,5 @@
 """How far each step size can go, beside Eq. 19's bound."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from matplotlib.axes import Axes

@@ -1,7 +1,5 @@
 """How every figure looks, and how it is written: the same bytes each time."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -20,7 +18,7 @@ from matplotlib.ticker import LogLocator, ScalarFormatter
 from numpy.typing import ArrayLike
 
 from hystbench import published
-from hystbench.errors import InputError, nearest
+from hystbench.errors import refuse_unknown
 from hystbench.files import atomic_path
 from hystbench.record import Channel
 
@@ -107,10 +105,7 @@ def save(figure: Figure, path: Path) -> None:
     InputError
         If the suffix is neither.
     """
-    if path.suffix not in _METADATA:
-        raise InputError(
-            f"{path}: {path.suffix!r} is no format; {nearest(path.suffix, _METADATA)}"
-        )
+    refuse_unknown(path.suffix, _METADATA, f"{path}: {path.suffix!r} is no format")
     plain_ticks(figure)
     with atomic_path(path) as temporary:
         figure.savefig(temporary, metadata=_METADATA[path.suffix])
@@ -186,8 +181,7 @@ def look(model: str) -> Look:
         If there is no such model.
     """
     known = PAPER if model in PAPER else looks()
-    if model not in known:
-        raise InputError(f"no model {model!r}; {nearest(model, known)}")
+    refuse_unknown(model, known, f"no model {model!r}")
     return known[model]
 
 

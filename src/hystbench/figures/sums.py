@@ -1,7 +1,5 @@
 """Figures 10 to 12: the end of a record of a sum of sines, and a filter's output."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -3,11 +3,9 @@
 An installed package adds one by an entry point of the group ``hystbench.filters``.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
-from hystbench.errors import InputError, nearest
+from hystbench.errors import refuse_unknown
 from hystbench.filters.base import AdaptiveFilter as AdaptiveFilter
 from hystbench.filters.bound import MOST_CORRECTION as MOST_CORRECTION
 from hystbench.filters.bound import Bound as Bound
@@ -46,6 +44,5 @@ def filter_class(name: str) -> type[AdaptiveFilter]:
     """
     # What is installed is asked last: it takes longer than to make a filter.
     known = FILTERS if name in FILTERS else registry()
-    if name not in known:
-        raise InputError(f"no filter {name!r}; {nearest(name, known)}")
+    refuse_unknown(name, known, f"no filter {name!r}")
     return known[name]

@@ -1,7 +1,5 @@
 """Backlash adaptive filter: play operators in place of delays."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar, Literal, get_args
 

@@ -1,7 +1,5 @@
 """Bound on the step size of an adaptive filter, Eq. 19."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Delayed adaptive filter: the linear transversal filter, the paper's Figure 1."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

@@ -1,7 +1,5 @@
 """GPO adaptive filter: generalized play operators along the delay line."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar

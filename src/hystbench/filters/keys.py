@@ -1,13 +1,11 @@
 """Keys of config.yaml that a filter has, declared where its parameters are."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Any
 
-from hystbench.errors import InputError, nearest, short
+from hystbench.errors import InputError, refuse_unknown, short
 
 
 @dataclass(frozen=True)
@@ -47,9 +45,7 @@ class Key:
     def check(self, name: str, value: object) -> None:
         """Refuse a value that is not one of its words or out of its bounds."""
         if self.words:
-            if value not in self.words:
-                near = nearest(value, self.words)
-                raise InputError(f"{name}: {short(value)} unknown; {near}")
+            refuse_unknown(value, self.words, f"{name}: {short(value)} unknown")
             return
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise InputError(f"{name}: expected a number, got {short(value)}")

@@ -1,7 +1,5 @@
 """Many filters at once, on all processors."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor

@@ -1,7 +1,5 @@
 """What the filters of play operators share: an operator on each tap."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,7 +8,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from hystbench import kernels
-from hystbench.errors import InputError, nearest
+from hystbench.errors import refuse_unknown
 from hystbench.filters.base import AdaptiveFilter
 from hystbench.filters.keys import choice
 from hystbench.filters.state import Chunk, End, positive
@@ -59,10 +57,7 @@ class PlayFilter(AdaptiveFilter):
         """Refuse parameters out of range."""
         super().__post_init__()
         positive("amplitude", self.amplitude)
-        if self.form not in FORMS:
-            raise InputError(
-                f"form: {self.form!r} unknown; {nearest(self.form, FORMS)}"
-            )
+        refuse_unknown(self.form, FORMS, f"form: {self.form!r} unknown")
 
     @property
     @abstractmethod

@@ -1,7 +1,5 @@
 """What a filter carries and gives, and the checks of what it is given."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import NamedTuple

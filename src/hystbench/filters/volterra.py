@@ -1,7 +1,5 @@
 """Second-order Volterra adaptive filter."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

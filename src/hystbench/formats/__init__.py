@@ -4,8 +4,6 @@ A module has ``read(path) -> Table``. It is imported when a file of its format i
 and so is the library that it needs. Nothing in a file is executed.
 """
 
-from __future__ import annotations
-
 import importlib
 from collections.abc import Collection
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What libraries raise of damaged files, in one line."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path

@@ -1,7 +1,5 @@
 """HDF5 files, by h5py: each numeric dataset is a column, or a matrix of them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

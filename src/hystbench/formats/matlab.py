@@ -1,7 +1,5 @@
 """MATLAB files: up to v7 by scipy, v7.3 (which is HDF5) by h5py."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any

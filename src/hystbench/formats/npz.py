@@ -1,7 +1,5 @@
 """NumPy archives (.npz), without pickled objects."""
 
-from __future__ import annotations
-
 import zipfile
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Parquet files, by pyarrow or fastparquet, whichever is there."""
 
-from __future__ import annotations
-
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any

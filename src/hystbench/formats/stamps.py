@@ -5,8 +5,6 @@ Read are ISO 8601 (``2024-02-28T23:59:59.5+01:00``), the year first or last with
 times of the day alone (``23:59:59,5``).
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 

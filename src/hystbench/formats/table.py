@@ -1,7 +1,5 @@
 """What a file of measurements holds: named columns of numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """TDMS files of LabVIEW, by nptdms: each group is a record, each channel a column."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Iterator
 from contextlib import contextmanager

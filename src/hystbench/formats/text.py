@@ -5,8 +5,6 @@ mark that make most of them whole rows. What stands above the first of them is t
 header, a row of units, and lines that are passed over.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 import re

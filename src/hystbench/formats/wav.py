@@ -1,7 +1,5 @@
 """WAV files: sound, or what a sound card measured."""
 
-from __future__ import annotations
-
 import warnings
 from pathlib import Path
 

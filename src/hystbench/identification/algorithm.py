@@ -5,8 +5,6 @@ Hysteresis Using a GPO-Based Adaptive Filter", Sensors 16(2), 205, 2016,
 doi:10.3390/s16020205.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 

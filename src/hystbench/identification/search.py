@@ -1,7 +1,5 @@
 """The search of Algorithm 1: down J from many starting points, the best kept."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import cast

@@ -16,8 +16,6 @@ Every point within :data:`LOWER` and :data:`UPPER` gives increasing envelopes wi
 the left one nowhere below the right one on the range.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import cast
 

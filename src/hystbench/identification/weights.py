@@ -1,7 +1,5 @@
 """Weights for given envelopes: a linear problem, solved exactly."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal, cast
 

@@ -1,7 +1,5 @@
 """A plain base for records of which no model is given: a loop of play operators."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A dataset looked at: what each record is like, what is wrong, what it can reveal."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache

@@ -1,7 +1,5 @@
 """A column of time: what it counts, and how evenly."""
 
-from __future__ import annotations
-
 import datetime as dt
 from dataclasses import dataclass
 from typing import NamedTuple

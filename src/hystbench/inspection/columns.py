@@ -1,7 +1,5 @@
 """Columns of files: which belong together, and which are time, input and output."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -11,7 +9,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 from hystbench.device_kinds import DeviceKind
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 from hystbench.formats import Column, Table
 from hystbench.inspection.clocks import clock_of
 from hystbench.inspection.names import (
@@ -165,11 +163,9 @@ def signals_of(parts: Sequence[Part], given: Flags, ask: Ask) -> ChosenColumns:
     simulated = [n for n in rest if is_simulated(told[n][0]) and n not in _asked(given)]
     rest = [name for name in rest if name not in simulated]
     for name in _asked(given):
-        if name not in common:
-            raise InputError(
-                f"{first.where}: no column {name!r} in all records; "
-                f"{nearest(name, common)}"
-            )
+        refuse_unknown(
+            name, common, f"{first.where}: no column {name!r} in all records"
+        )
     chosen = _channels(first, rest, told, given, ask)
     units, notes = {}, []
     for key, name in (("input", chosen[0]), ("output", chosen[1])):

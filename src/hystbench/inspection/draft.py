@@ -1,7 +1,5 @@
 """A dataset.yaml proposed from files: columns, units, records, periods and roles."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Records of a proposed dataset.yaml: entries, names, roles, missing samples."""
 
-from __future__ import annotations
-
 import math
 import os
 import re
@@ -15,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.dataset import RECORD_NAME
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 from hystbench.inspection.clocks import Ticks, ticks_of
 from hystbench.inspection.columns import LEAST, Ask, ChosenColumns, Flags, Part
 from hystbench.inspection.excitation import excitation_of
@@ -258,10 +256,7 @@ def with_roles(
     names = [record.name for record in records]
     if given.hold_out:
         for name in given.hold_out:
-            if name not in names:
-                raise InputError(
-                    f"--hold-out: no record {name!r}; {nearest(name, names)}"
-                )
+            refuse_unknown(name, names, f"--hold-out: no record {name!r}")
         held, why = given.hold_out, "the records held out are those asked for"
         if set(names) <= set(held):
             raise InputError("--hold-out: all records; expected at least one to fit")

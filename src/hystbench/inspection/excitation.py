@@ -1,7 +1,5 @@
 """What kind of input a record has, how fast and how large it is."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

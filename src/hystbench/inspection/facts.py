@@ -1,7 +1,5 @@
 """What each record is like: rate, jitter, period, clipping, delay, noise, levels."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path

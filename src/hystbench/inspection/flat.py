@@ -1,7 +1,5 @@
 """Where a channel repeats one value exactly: clipped at an end, or held and let go."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

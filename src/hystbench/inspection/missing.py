@@ -1,7 +1,5 @@
 """Where samples are missing: what can be bridged, and where a record is cut."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.inspection.excitation import excitation_of

@@ -1,7 +1,5 @@
 """What the names of columns tell: which is time, input or output, and in which unit."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """The page of a check."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from operator import attrgetter

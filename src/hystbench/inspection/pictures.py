@@ -1,7 +1,5 @@
 """Pictures of a check: loops of the records, bands and levels, effects by strength."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

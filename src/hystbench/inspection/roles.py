@@ -1,7 +1,5 @@
 """Which records to hold out: of another kind than those to fit, inside their range."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from hystbench.inspection.excitation import Excitation

@@ -4,8 +4,6 @@ Records that say the same are one line, and so are findings of one topic. What i
 off is told; the page has all.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from itertools import groupby
 from textwrap import wrap

@@ -1,7 +1,5 @@
 """What each effect would add to the output on given inputs, at points of its range."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

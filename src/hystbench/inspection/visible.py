@@ -6,8 +6,6 @@ has to stand out of the noise as far as the search for names asks. What is left 
 it beside a rival's best fit has to do so too, before one can be told from the other.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """What a check says, in words that the terminal and its page share."""
 
-from __future__ import annotations
-
 import math
 
 from hystbench.figures.style import unit_text

@@ -1,7 +1,5 @@
 """Writing a proposed dataset.yaml."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

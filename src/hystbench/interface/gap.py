@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from hystbench.dataset import Dataset
-from hystbench.errors import InputError, nearest
+from hystbench.errors import refuse_unknown
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence, load_evidence
 from hystbench.gap.run import Closed, closed_gap
@@ -159,8 +159,7 @@ class Gap:
         """
         import pandas as pd  # late: it takes half a second
 
-        if table not in TABLES:
-            raise InputError(f"to_frame: no table {table!r}; {nearest(table, TABLES)}")
+        refuse_unknown(table, TABLES, f"to_frame: no table {table!r}")
         if table == "ranking":
             return pd.DataFrame(self.content["ranking"], columns=list(RANKED))
         if table == "effects":

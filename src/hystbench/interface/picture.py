@@ -1,7 +1,5 @@
 """Figures as a notebook shows them."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """What is drawn of records and gaps: labelled, with units."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """How fast a reference may be: sines of one stroke, each with its own inverse."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The best linear approximation of a map, and a record filtered by its inverse."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, NamedTuple
 

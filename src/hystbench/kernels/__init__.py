@@ -6,24 +6,18 @@ they are: C order, float64. The callers in :mod:`hystbench.operators` and
 :mod:`hystbench.filters` see to shapes; what is here only passes pointers.
 """
 
-from __future__ import annotations
-
-import ctypes
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from hystbench.libraries import SIZE, compiled
+from hystbench.libraries import SIZE, Loops, address
 from hystbench.record import FloatArray
 
 WIDTH = 8
 """Lanes of a vector: the kernels want operators and weights padded to it."""
 
 LIBRARY = Path(__file__).with_name("_kernels.so")
-
-_FLOAT64 = np.dtype(np.float64)
-_NOTHING = ctypes.c_char * 0  # a place in memory, of no size
 
 _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_largest": (None, "iaa"),
@@ -58,40 +52,9 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
 }
 
 
-_library = compiled(LIBRARY, _SIGNATURES, "the compiled kernels")
-KERNELS = {name: getattr(_library, name) for name in _SIGNATURES}
+call = Loops(LIBRARY, _SIGNATURES, "the compiled kernels")
+KERNELS = call.functions
 """Every kernel by its name."""
-
-
-def call(name: str, *arguments: FloatArray | float | int) -> int:
-    """Call a kernel; an array must be of float64 in C order.
-
-    Returns
-    -------
-    int
-        What the kernel returns: the samples taken, 0 where it returns nothing.
-
-    Raises
-    ------
-    TypeError
-        If an array is of another kind.
-    """
-    plain = [
-        _address(value) if isinstance(value, np.ndarray) else value
-        for value in arguments
-    ]
-    return int(KERNELS[name](*plain) or 0)
-
-
-def _address(values: FloatArray) -> int:
-    """Where an array lies. Most calls are short: this is a good part of their time."""
-    flags = values.flags
-    if values.dtype != _FLOAT64 or not flags.c_contiguous:
-        raise TypeError("arrays of a kernel must be float64 in C order")
-    if flags.writeable:
-        buffer: Any = values
-        return ctypes.addressof(_NOTHING.from_buffer(buffer))
-    return values.ctypes.data  # six times slower, but takes read-only arrays
 
 
 def largest(values: FloatArray) -> float:
@@ -109,7 +72,7 @@ def padded(count: int) -> int:
 def aligned(values: FloatArray) -> FloatArray:
     """Copy to where no vector lies across two lines of the processor's cache."""
     space = np.empty(values.size + WIDTH)
-    start = -_address(space) % 64 // 8
+    start = -address(space) % 64 // 8
     out = space[start : start + values.size].reshape(values.shape)
     out[...] = values
     return out

@@ -1,7 +1,5 @@
 """Fits of one effect, each kind in its own way."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np

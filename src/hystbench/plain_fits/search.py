@@ -1,7 +1,5 @@
 """The search for the parameters of a block."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 import numpy as np

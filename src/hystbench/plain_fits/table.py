@@ -1,7 +1,5 @@
 """Where each effect acts, and what of it is searched, between which bounds."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

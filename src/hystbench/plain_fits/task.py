@@ -1,7 +1,5 @@
 """What is fitted, and what a fit gives."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property

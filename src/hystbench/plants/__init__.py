@@ -1,7 +1,5 @@
 """The package's own model files: the twin, and others like it."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -166,21 +166,11 @@ class Text:
 def load_text() -> Text:
     """Read the numbers of the text."""
     content: dict[str, Any] = parse_yaml(read_text("text.yaml"), "text.yaml")
-    chirp = content.pop("chirp")
-    random = content.pop("random_sum")
-    low, high = random["band_of_nyquist"]
-    return Text(
-        **{
-            **content,
-            "sine_frequencies_hz": tuple(map(float, content["sine_frequencies_hz"])),
-        },
-        chirp_from_hz=chirp["from_hz"],
-        chirp_to_hz=chirp["to_hz"],
-        chirp_minimum=Moment(**chirp["minimum"]),
-        chirp_resonance=Moment(**chirp["resonance"]),
-        random_band_of_nyquist=(low, high),
-        random_level=random["level"],
-    )
+    for key in ("chirp_minimum", "chirp_resonance"):
+        content[key] = Moment(**content[key])
+    for key in ("sine_frequencies_hz", "random_band_of_nyquist"):
+        content[key] = tuple(content[key])
+    return Text(**content)
 
 
 def in_order(models: Iterable[str]) -> list[str]:

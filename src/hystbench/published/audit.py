@@ -1,7 +1,5 @@
 """The audit of the paper's own numbers as one table."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import astuple, fields
 from pathlib import Path

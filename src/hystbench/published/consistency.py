@@ -5,8 +5,6 @@ rows of one signal must imply one RMS displacement within the rounding of their
 digits. Intervals on a line share a point if and only if each two of them do.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import combinations

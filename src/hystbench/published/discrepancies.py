@@ -1,13 +1,14 @@
 """Errors in the paper's tables, text and equations, each with its evidence.
 
-Where the printed numbers show the error, the evidence is computed from them.
+Where the printed numbers show the error, the evidence is computed from them. The words
+are in ``discrepancies.yaml``.
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -40,6 +41,24 @@ class AuditRow:
     where: str
     statement: str
     evidence: str
+
+
+@cache
+def _words() -> dict[str, Any]:
+    found: dict[str, Any] = parse_yaml(
+        read_text("discrepancies.yaml"), "discrepancies.yaml"
+    )
+    return found
+
+
+def _filled(words: Mapping[str, str], **numbers: Any) -> AuditRow:
+    """Make a row of words, filled with numbers."""
+    return AuditRow(**{key: text.format(**numbers) for key, text in words.items()})
+
+
+def _row(name: str, **numbers: Any) -> AuditRow:
+    """Make the row of what was found, filled with its numbers."""
+    return _filled(_words()["found"][name], **numbers)
 
 
 TABLE4_SIGNALS = (
@@ -81,44 +100,21 @@ def table4_rows(
     pairs: tuple[Pair, ...], rows: tuple[Table4Row, ...]
 ) -> Iterator[AuditRow]:
     """Check the column of the GPO filter and the labels of Table 4."""
-    repeats = table4_gpo_repeats(pairs, rows)
-    yield AuditRow(
-        "check" if repeats else "conflict",
-        "Table 4, GPO column",
-        "repeats Tables 1-3" if repeats else "differs from Tables 1-3",
-        f"{len(rows)} pairs of MSE and RE compared digit for digit",
-    )
+    found = "repeats" if table4_gpo_repeats(pairs, rows) else "differs"
+    yield _row(f"table-4-{found}", rows=len(rows))
     last = rows[-1]
     for pair in pairs:
         if pair.model == "gpo" and (pair.mse, pair.re) == (last.mse, last.re):
-            yield AuditRow(
-                "label",
-                "Table 4, last row",
-                "labelled Figure 9a, which is the chirp; it is the random sum of "
-                "Figure 12",
-                f"its GPO pair {last.mse.text}, {last.re.text} is that of "
-                f"{pair.signal} in Table {pair.table}",
-            )
+            yield _row("last-label", pair=pair)
 
 
 def frequency_list(pairs: tuple[Pair, ...], text: Text) -> Iterator[AuditRow]:
     """Compare the frequencies of the text with those of the tables."""
     tabled, told = set(_sines(pairs, "gpo")), set(text.sine_frequencies_hz)
     if tabled != told:
-        yield AuditRow(
-            "text",
-            "Section 4, list of sine frequencies",
-            "the text and Table 1 name different sines",
-            f"only in the text: {_hz(told - tabled)}; "
-            f"only in Table 1: {_hz(tabled - told)}",
-        )
+        yield _row("sines", told=_hz(told - tabled), tabled=_hz(tabled - told))
     if text.order_sweep_hz not in tabled:
-        yield AuditRow(
-            "text",
-            "Section 4, Figure 7",
-            "the sine of the order sweep is in no table",
-            f"{text.order_sweep_hz:g} Hz; Table 1 has {_hz(tabled)}",
-        )
+        yield _row("order-sweep", hz=text.order_sweep_hz, tabled=_hz(tabled))
 
 
 def _hz(frequencies: set[float]) -> str:
@@ -134,13 +130,7 @@ def gpo_not_best(pairs: tuple[Pair, ...]) -> Iterator[AuditRow]:
         for other in FILTERS:
             rival = mse[pair.signal, other]
             if rival.mse.value < pair.mse.value:
-                yield AuditRow(
-                    "contradiction",
-                    f"Table {pair.table}, {pair.signal}",
-                    "the text says that the GPO-based filter has the smallest errors",
-                    f"MSE of {other} {rival.mse.text} < gpo {pair.mse.text}; "
-                    f"RE {rival.re.text} against {pair.re.text}",
-                )
+                yield _row("gpo-not-best", pair=pair, rival=rival)
 
 
 def gpo_dips(pairs: tuple[Pair, ...]) -> Iterator[AuditRow]:
@@ -149,27 +139,15 @@ def gpo_dips(pairs: tuple[Pair, ...]) -> Iterator[AuditRow]:
     for (below, first), (above, second) in pairwise(row):
         if second.mse.value < first.mse.value:
             trend = "rises" if second.re.value > first.re.value else "falls"
-            yield AuditRow(
-                "contradiction",
-                f"Table 1, gpo, {above:g} Hz",
-                "the text says that the errors of the GPO-based filter increase with "
-                "frequency",
-                f"MSE falls from {first.mse.text} at {below:g} Hz to "
-                f"{second.mse.text}; RE {trend} from {first.re.text} to "
-                f"{second.re.text}",
-            )
+            numbers = {"first": first, "second": second, "trend": trend}
+            yield _row("gpo-dips", below=below, above=above, **numbers)
 
 
 def coarse_digits(pairs: tuple[Pair, ...]) -> Iterator[AuditRow]:
     """Find pairs printed so coarsely that they can contradict nothing."""
     for pair in pairs:
         if pair.rms.high > 2 * pair.rms.low:
-            yield AuditRow(
-                "rounding",
-                f"Table {pair.table}, {pair.signal}, {pair.model}",
-                "printed too coarsely to be checked",
-                f"RE {pair.re.text}: the pair implies an RMS of {pair.rms} um",
-            )
+            yield _row("coarse-digits", pair=pair)
 
 
 def chirp_rate(text: Text) -> Iterator[AuditRow]:
@@ -180,13 +158,7 @@ def chirp_rate(text: Text) -> Iterator[AuditRow]:
     ]
     rate = sum(rates) / len(rates)
     length = (text.chirp_to_hz - text.chirp_from_hz) / rate
-    yield AuditRow(
-        "inference",
-        "Section 4, Figure 9",
-        "the length of the chirp is not given; two moments of it fix its rate",
-        f"{rates[0]:.2f} and {rates[1]:.2f} Hz/s, so {text.chirp_from_hz:g} to "
-        f"{text.chirp_to_hz:g} Hz takes {length:.2f} s",
-    )
+    yield _row("chirp-rate", rates=rates, text=text, length=length)
 
 
 def crossings(
@@ -211,32 +183,14 @@ def envelopes(text: Text) -> Iterator[AuditRow]:
     """Check gamma_l > gamma_r and the start of Eqs. 4 and 12."""
     limit = text.amplitude_a
     for start, end, excess in crossings(text.envelope, -limit, limit):
-        yield AuditRow(
-            "contradiction",
-            "Section 4, published envelopes",
-            "Section 2 asks for gamma_l > gamma_r",
-            f"gamma_r >= gamma_l for {start:.3f} < u < {end:.3f} A, by at most "
-            f"{excess:.1e}",
-        )
+        yield _row("envelopes-cross", start=start, end=end, excess=excess)
     below = crossings(text.envelope, -2 * limit, -limit)
     if below:
-        _, end, excess = below[-1]
-        yield AuditRow(
-            "contradiction",
-            "Section 4, published envelopes",
-            "Section 2 asks for gamma_l > gamma_r",
-            f"gamma_r >= gamma_l again below {end:.4f} A, outside the sines' "
-            f"amplitude of {limit:g} A",
-        )
+        yield _row("envelopes-cross-below", end=below[-1][1], limit=limit)
     zero: FloatArray = np.zeros(1)
     eq4 = generalized_play(zero, zero, text.envelope)[0, 0]
     eq12 = generalized_play_eq12(zero, zero, text.envelope)[0, 0]
-    yield AuditRow(
-        "equation",
-        "Eqs. 4 and 12",
-        "Eq. 12 is called a rewriting of Eqs. 3-4; from rest they start apart",
-        f"x = 0, H = 0, r = 0: Eq. 4 gives {eq4:.4f}, Eq. 12 stays at {eq12:g}",
-    )
+    yield _row("start-of-plays", eq4=eq4, eq12=eq12)
 
 
 def units_of_sums(pairs: tuple[Pair, ...], text: Text) -> Iterator[AuditRow]:
@@ -250,22 +204,16 @@ def units_of_sums(pairs: tuple[Pair, ...], text: Text) -> Iterator[AuditRow]:
         amplitude = (sum(a**2 for a in lines.values()) / 2) ** 0.5
         gain = rms[signal].middle / amplitude
         if gain > max(gains):
-            yield AuditRow(
-                "unit",
-                f"Section 4, {signal}",
-                "the unit of u is not given; in amperes the sum moves the actuator "
-                "more than any sine does. A guess that fits: u is in volts",
-                f"RMS displacement per RMS input {gain:.1f} um/A; the sines give "
-                f"{min(gains):.1f} to {max(gains):.1f} um/A",
-            )
+            usual = {"least": min(gains), "most": max(gains)}
+            yield _row("units-of-sums", signal=signal, gain=gain, **usual)
 
 
 def wording(text: Text) -> Iterator[AuditRow]:
     """List what the words and the symbols of the paper leave wrong or open."""
     n = text.filter_length
     numbers = {"n": n, "taps": n + 1, "volterra": n + 1 + (n + 1) ** 2, "less": n - 1}
-    for row in parse_yaml(read_text("wording.yaml"), "wording.yaml"):
-        yield AuditRow(**row | {"evidence": row["evidence"].format(**numbers)})
+    for words in _words()["read"]:
+        yield _filled(words, **numbers)
 
 
 def discrepancies() -> tuple[AuditRow, ...]:

@@ -5,8 +5,6 @@ The ledger of claims judges the printed equations, also where two of them differ
 run.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

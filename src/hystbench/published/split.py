@@ -1,7 +1,5 @@
 """Which signals of the tables a calibration may see."""
 
-from __future__ import annotations
-
 CALIBRATION_SIGNALS = (
     "sine-010hz",
     "sine-020hz",

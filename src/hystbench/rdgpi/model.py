@@ -5,8 +5,6 @@ is here is a reading of those parameters, made from descriptions of the same fam
 of models; docs/rdgpi.md says what supports it and what does not.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal, NamedTuple
@@ -15,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hystbench.envelope import NamedNumbers
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 from hystbench.operators import rate_dependent_prandtl_ishlinskii
 from hystbench.record import FloatArray
 
@@ -90,10 +88,7 @@ class RateDependentGPI(NamedNumbers):
     def __post_init__(self) -> None:
         """Refuse parameters that define no model."""
         self.check_finite()
-        if self.start not in STARTS:
-            raise InputError(
-                f"rdgpi.start: {self.start!r} unknown; {nearest(self.start, STARTS)}"
-            )
+        refuse_unknown(self.start, STARTS, f"rdgpi.start: {self.start!r} unknown")
         if self.order < 0:
             raise InputError(f"rdgpi.order: {self.order} given, expected 0 or more")
         for name in ("lambda1", "lambda2"):

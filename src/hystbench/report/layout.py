@@ -1,7 +1,5 @@
 """Templates of a page, with the shared style and script inside."""
 
-from __future__ import annotations
-
 from importlib import resources
 
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined

@@ -1,7 +1,5 @@
 """The little markup of captions and verdicts as HTML."""
 
-from __future__ import annotations
-
 import re
 
 from markupsafe import Markup, escape

@@ -1,7 +1,5 @@
 """Pictures that stand inside a page."""
 
-from __future__ import annotations
-
 import base64
 import re
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Tables of a page: sorted and filtered in place, read on a phone."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass

@@ -6,8 +6,6 @@ best leads. Here the constant of the recorded input is varied, and each filter i
 a constant tap.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from statistics import geometric_mean

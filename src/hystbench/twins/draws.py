@@ -4,8 +4,6 @@ Each draw has its own phases and its own noise. Beside the reading of config.yam
 numbers of sines are run, so that what a reading changes can be seen.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from statistics import median
 from typing import Any

@@ -5,8 +5,6 @@ edge is the least at which the filter is of no use: its error is as large as the
 displacement, or it diverges.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ drawn. A step size never goes beyond the stability margin of the calibration: an
 experimenter would have seen that filter grow without end.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """What no step size changes on a twin: Algorithm 1 and the RDGPI model."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any

@@ -1,7 +1,5 @@
 """The errors on each twin, and in which experiments each claim of the paper holds."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 

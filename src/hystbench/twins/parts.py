@@ -7,15 +7,13 @@ The parts are JSON; :func:`join` puts them together. Each simulates the records 
 needs: kept in files, those of all twins would be a hundred megabytes.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 from hystbench.compare.evidence import ClaimEvidence, Run
-from hystbench.errors import InputError, nearest
+from hystbench.errors import refuse_unknown
 from hystbench.files import finite_or_none
 from hystbench.order_errors import OrderError, filters_by_order, order_errors
 from hystbench.record import Record
@@ -176,8 +174,7 @@ def _on_records(
 
 
 def _of(part: Mapping[str, dict[str, Any]], twin: Twin) -> dict[str, Any]:
-    if twin.name not in part:
-        raise InputError(f"{twin.place}: not run; {nearest(twin.name, part)}")
+    refuse_unknown(twin.name, part, f"{twin.place}: not run")
     return part[twin.name]
 
 

@@ -1,7 +1,5 @@
 """Twins: model files, each with the family of its hysteresis."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path

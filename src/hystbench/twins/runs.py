@@ -4,8 +4,6 @@ A twin's thirteen records and the four filters on them take a tenth of a second.
 takes longer, and imports more, is in :mod:`hystbench.twins.fits`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 

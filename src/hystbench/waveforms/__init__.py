@@ -3,8 +3,6 @@
 An installed package adds one by an entry point of the group ``hystbench.waveforms``.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 from hystbench.registered import classes_in, with_installed

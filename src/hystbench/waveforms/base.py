@@ -1,7 +1,5 @@
 """What a waveform must say so that config.yaml can define a signal by it."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import Any, ClassVar

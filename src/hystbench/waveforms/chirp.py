@@ -1,7 +1,5 @@
 """A sine whose frequency rises linearly (Table 2, Figure 9)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, ClassVar
 

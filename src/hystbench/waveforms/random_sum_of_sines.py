@@ -1,7 +1,5 @@
 """Sines of random phase in a band (Table 3, Figure 12)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 

@@ -1,7 +1,5 @@
 """A sine (Table 1, Figures 7 and 8)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, ClassVar
 

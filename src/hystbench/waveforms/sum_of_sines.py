@@ -1,7 +1,5 @@
 """Sines that start at zero phase (Table 3, Figures 10 and 11)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 

@@ -3,8 +3,6 @@
 What is table and no code stands in ``contest.yaml``.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from pathlib import Path
 from typing import Any

@@ -4,8 +4,6 @@ A case follows from its seed alone. So the judge makes it anew when the answers 
 there, and while solvers run there is no file of the truth at all.
 """
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from functools import partial

@@ -1,7 +1,5 @@
 """Cases that another plant made, judged as the contest's own."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

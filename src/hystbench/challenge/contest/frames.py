@@ -1,7 +1,5 @@
 """Judged cases as a data frame, read from CSV."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple, fields
 from pathlib import Path

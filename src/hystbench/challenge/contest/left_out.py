@@ -1,7 +1,5 @@
 """What a solver says of an effect that it may not name: blind by kind."""
 
-from __future__ import annotations
-
 from collections import Counter
 
 import pandas as pd

@@ -1,7 +1,5 @@
 """Parameters that a solver recovers, where the hidden form is the vocabulary's."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from statistics import NormalDist, median
 from typing import Any

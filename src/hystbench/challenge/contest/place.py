@@ -1,7 +1,5 @@
 """Whether a solver looked in the right place: its first view against the truth."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from typing import Any

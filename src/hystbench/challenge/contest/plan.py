@@ -1,7 +1,5 @@
 """Which cases a contest holds: sets of strata, each with seeds of its own."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +15,7 @@ from hystbench.challenge.spec import (
     draw_spec,
     effects_of,
 )
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, refuse_unknown
 
 #: The development set, the small one of the pipeline's test and the cases of all other
 #: tests.
@@ -102,8 +100,7 @@ def plan(
     """
     for key, words in (("without", without), ("only", only)):
         for word in words:
-            if word not in WORDS:
-                raise InputError(f"blind: {key}: {word!r}; {nearest(word, WORDS)}")
+            refuse_unknown(word, WORDS, f"blind: {key}: {word!r}")
     counts = sizes(name, scale)
     entries = []
     for number, (stratum, cases) in enumerate(zip(STRATA[name], counts, strict=True)):
@@ -128,8 +125,7 @@ def _wanted(spec: CaseSpec, without: Sequence[str], only: Sequence[str]) -> bool
 
 def sizes(name: str, scale: float = 1.0) -> list[int]:
     """Count the cases of each stratum of a set, as for :func:`plan`."""
-    if name not in STRATA:
-        raise InputError(f"blind: set: no set {name!r}; {nearest(name, SETS)}")
+    refuse_unknown(name, SETS, f"blind: set: no set {name!r}")
     most, counts = _SETS[name]["seeds"], []
     for stratum in STRATA[name]:
         counts.append(max(1, round(stratum.cases * scale)))

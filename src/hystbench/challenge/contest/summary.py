@@ -3,8 +3,6 @@
 All take a data frame of :func:`hystbench.challenge.contest.frames.frame`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """The score as files: one for each table that docs, figures and readers use."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any

@@ -4,14 +4,12 @@ They share no loop with it: what hides an effect and what finds it must not have
 mistake in common.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from hystbench.libraries import SIZE, compiled
+from hystbench.libraries import SIZE, Loops
 from hystbench.record import FloatArray
 
 LIBRARY = Path(__file__).with_name("_plant.so")
@@ -33,29 +31,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
 }
 
 
-_library = compiled(LIBRARY, _SIGNATURES, "the plant's compiled loops")
-
-
-def call(name: str, *arguments: FloatArray | float | int) -> int:
-    """Call a loop; an array must be of float64 in C order.
-
-    Raises
-    ------
-    MemoryError
-        If the loop found no room for its state.
-    """
-    plain: list[float | int] = []
-    for value in arguments:
-        if isinstance(value, np.ndarray):
-            if value.dtype != np.float64 or not value.flags.c_contiguous:
-                raise TypeError(f"{name}: arrays must be float64 in C order")
-            plain.append(value.ctypes.data)
-        else:
-            plain.append(value)
-    result = int(getattr(_library, name)(*plain) or 0)
-    if result < 0:
-        raise MemoryError(name)
-    return result
+call = Loops(LIBRARY, _SIGNATURES, "the plant's compiled loops")
 
 
 def run(

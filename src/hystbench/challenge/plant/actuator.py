@@ -1,7 +1,5 @@
 """The actuator: command, drive, material, mechanics and sensor, in continuous time."""
 
-from __future__ import annotations
-
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The drive: delay, amplifier and coil, eddy currents. Signals are currents in A."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.challenge import kernels

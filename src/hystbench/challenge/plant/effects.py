@@ -1,7 +1,5 @@
 """All effects by name: those of the vocabulary and those outside it."""
 
-from __future__ import annotations
-
 from hystbench.challenge.plant import drive, material, mechanics, sensor, unlisted
 from hystbench.challenge.plant.kind import read_kinds
 
@@ -14,9 +12,3 @@ VOCABULARY = {
 UNLISTED = {
     name: kind for name, kind in IN_ACTUATOR.items() if kind.use != "vocabulary"
 }
-
-
-def may_meet(names: tuple[str, ...]) -> bool:
-    """Tell whether effects may be hidden together."""
-    chosen = set(names)
-    return len(chosen) == len(names) and not any(pair <= chosen for pair in APART)

@@ -3,8 +3,6 @@
 The effects and their forces stand in ``inside.yaml``.
 """
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np

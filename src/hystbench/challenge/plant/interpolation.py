@@ -1,7 +1,5 @@
 """Values between the points of a table."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

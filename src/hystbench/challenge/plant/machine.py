@@ -5,8 +5,6 @@ part, the classical Runge-Kutta method for tanks, on a grid much finer than the
 record's.
 """
 
-from __future__ import annotations
-
 from dataclasses import astuple, dataclass
 from functools import lru_cache
 

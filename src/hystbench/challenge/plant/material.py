@@ -1,7 +1,5 @@
 """The material beside its hysteresis: bias, even terms, saturation, rate."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.challenge.plant.kind import Parameters, Run

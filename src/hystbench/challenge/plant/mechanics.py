@@ -1,7 +1,5 @@
 """The mechanics: modes, friction, a loose joint, creep and heat. Signals are in um."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The sensor: lag, nonlinearity, pickup, drift, calibration. Signals are in um."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -4,8 +4,6 @@ Some may be used while a solver is mended (``development``), the others only for
 transfer score (``transfer``).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from hystbench.challenge import kernels

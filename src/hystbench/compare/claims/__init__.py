@@ -4,8 +4,6 @@ The claims are the rows of ``claims.yaml``. A row names a measure, a function of
 the modules here, and the conditions on the numbers that it finds.
 """
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace

@@ -1,7 +1,5 @@
 """A claim of the paper, the test that it is put to, and what came out."""
 
-from __future__ import annotations
-
 import math
 import operator
 import re

@@ -1,7 +1,5 @@
 """Measures of the errors of Tables 1-4, taken alike of ours and of the paper's."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import Any

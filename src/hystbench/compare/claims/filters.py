@@ -1,7 +1,5 @@
 """Measures of the LMS algorithm, its step sizes, and the size of the filters."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from statistics import median

@@ -1,7 +1,5 @@
 """Measures of Algorithm 1 and of the thresholds and envelopes that it found."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

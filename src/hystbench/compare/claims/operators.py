@@ -1,7 +1,5 @@
 """Measures of the operators, envelopes and equations of Sections 1 to 3.1."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

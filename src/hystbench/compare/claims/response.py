@@ -1,7 +1,5 @@
 """Measures of the signals and of the actuator's response, read off the records."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Small measures that several claims share."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import pairwise
 

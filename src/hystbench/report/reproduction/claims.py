@@ -1,7 +1,5 @@
 """The paper's claims and the audit of its printed numbers, as tables."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Sequence
 from operator import itemgetter

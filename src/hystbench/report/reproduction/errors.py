@@ -1,7 +1,5 @@
 """Errors as tables: ours beside the paper's, held-out signals first."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 

@@ -1,7 +1,5 @@
 """Putting the page together."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from markupsafe import Markup

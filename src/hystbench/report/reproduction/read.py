@@ -1,7 +1,5 @@
 """What the page shows, read from the files of results."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

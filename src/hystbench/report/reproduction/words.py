@@ -1,7 +1,5 @@
 """The verdict in two sentences, and what is not there."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
