@@ -81,6 +81,13 @@ def test_the_models_output_follows(blocks):
     assert found.left == pytest.approx(error(model, found.u, reference), rel=1e-9)
 
 
+def test_an_integrator_is_refused():
+    integrator = {"numerator": [20.0], "denominator": [0.002, 1.0, 0.0]}
+    model = model_of(("gain", {}), ("transfer-function", integrator))
+    with pytest.raises(InputError, match="block 2: transfer-function: a pole at s = 0"):
+        feedforward(model, sine(20, 0.4, 0.0), DT)
+
+
 def test_plays_at_the_beginning_are_inverted_exactly():
     model = model_of(("gain", {"value": 2.0, "offset": -0.1}), ("gpi", {}))
     u = 0.2 * np.sin(2 * np.pi * 10 * TIME)

@@ -24,6 +24,7 @@ from hystbench.blocks.rdgpi import RateDependentPrandtlIshlinskii
 from hystbench.blocks.slew_limit import SlewLimit
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.superposed import Superposed
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.blocks.wrapping import HystereticBlock, Wrapped
 from hystbench.errors import InputError
 from hystbench.export import undone
@@ -146,6 +147,8 @@ def _undone(step: Simulated, ends: Ends) -> Iterator[Making]:
     elif isinstance(step, HystereticBlock | Wrapped):
         yield undone.hysteresis(step, ends)
     elif isinstance(step, LinearBlock):
+        if isinstance(step, TransferFunction) and step.integrates:
+            raise undone.CannotBe("a pole at s = 0 has no inverse that settles")
         yield from undone.linear(step)
     elif isinstance(step, Mechanism):
         yield from _motion(step, ())

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hystbench.blocks.gain import Gain
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.inverse.plays import FAR, Plays
 from hystbench.inverse.response import Response, best_linear, without
@@ -94,7 +95,8 @@ def feedforward(
     Raises
     ------
     InputError
-        If the reference does not move, or wants what no input makes.
+        If the reference does not move, or wants what no input makes, or if the model
+        integrates.
 
     References
     ----------
@@ -113,6 +115,12 @@ def feedforward(
             f"--band: {band:g} Hz; expected above 0 and at most {0.5 / dt:g} Hz, half "
             "the sampling rate"
         )
+    for place, block in enumerate(model.chain, start=1):
+        if isinstance(block, TransferFunction) and block.integrates:
+            raise InputError(
+                f"chain: block {place}: {block.name}: a pole at s = 0; expected none, "
+                "as the response of an integrator to a reference never ends"
+            )
     start = Start.of(model, limits)
     anywhere = Start.of(model, Limits())
     response = best_linear(
