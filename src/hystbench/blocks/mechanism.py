@@ -181,16 +181,24 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
     def _parts(self, dt: float, forces: tuple[Force, ...]) -> int:
         """Steps of an interval: one without forces, as the linear part is exact.
 
-        With forces they are short for the linear coordinate, and for a contact.
+        With forces they are short for the linear coordinate, and for a contact. Of a
+        damped coordinate the slow pole counts: what dies out fast is exact.
         """
         if not forces:
             return 1
         contact = max(item.stiffest for item in forces)
         linear, stiff = (
-            dt * max(sqrt(k / self.mass), self.damping / self.mass) / PHASE
+            dt * self._rate(k) / PHASE
             for k in (self.stiffness, self.stiffness + contact)
         )
         return max(1, min(ceil(linear), MOST), min(ceil(stiff), CONTACT))
+
+    def _rate(self, stiffness: float) -> float:
+        """Give the magnitude of the slower pole, in rad/s, for a stiffness."""
+        natural, half = sqrt(stiffness / self.mass), 0.5 * self.damping / self.mass
+        if half <= natural:
+            return natural
+        return natural * natural / (half + sqrt(half**2 - natural**2))
 
     def _steps(self, dt: float) -> FloatArray:
         """Weights of a step, and of an eighth of it."""
