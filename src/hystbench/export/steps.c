@@ -264,7 +264,8 @@ static double hb_outflow(double rate, double exponent, double h)
     return h > 0 ? rate * pow(h, exponent) : 0;
 }
 
-/* Runge-Kutta method of second order, over straight lines as for the mechanism. */
+/* Runge-Kutta method of second order, exact with an exponent of one, over straight lines
+ * as for the mechanism. */
 static double hb_store(double gain, double bias, int segments, int points,
                        int ahead, const double *corners, double ramp, int parts, double t,
                        double rate, double exponent, double height, double start,
@@ -277,18 +278,25 @@ static double hb_store(double gain, double bias, int segments, int points,
     const double first = history[1 + ahead];
     if (settled) start = first > 0 ? pow(first / rate, 1 / exponent) : 0;
     double h = moves ? *level : hb_least(start, height), over = 0;
+    const double lost = rate * t, kept = exp(-lost);
+    const double steady = lost > 1e-5 ? (1 - kept) / rate : t;
+    const double rising = lost > 1e-5 ? (t - steady) / lost : t / 2;
     for (int i = 0; i < segments && moves; i++) {
         const double now = hb_weighted(points, corners + i * points, history + 1);
         const double then = hb_weighted(points, corners + (i + 1) * points, history + 1);
         const double slope = ramp * (then - now) / parts;
         for (int s = 0; s < parts; s++) {
             const double from = now + s * slope;
-            const double rise = t / 2 * (from - hb_outflow(rate, exponent, h));
-            const double half = hb_least(height, hb_most(0, h + rise));
-            const double left = hb_outflow(rate, exponent, half);
-            h = hb_most(0, h + t * (from + slope / 2 - left));
+            if (exponent == 1) {
+                h = hb_most(0, kept * h + steady * from + rising * slope);
+            } else {
+                const double rise = t / 2 * (from - hb_outflow(rate, exponent, h));
+                const double half = hb_least(height, hb_most(0, h + rise));
+                const double left = hb_outflow(rate, exponent, half);
+                h = hb_most(0, h + t * (from + slope / 2 - left));
+            }
             if (h > height) {
-                over += h - height;
+                over += (h - height) * (exponent == 1 ? t / steady : 1);
                 h = height;
             }
         }
