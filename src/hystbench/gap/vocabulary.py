@@ -92,14 +92,20 @@ class Vocabulary:
     def words(self) -> list[str]:
         """Say what the user asked for and the device leaves out, a sentence each."""
         said = []
+
+        def all_of(names: tuple[str, ...], one: str, many: str) -> str:
+            return f"{listed(names)}: {one if len(names) == 1 else many}"
+
+        untried = "it was not tried", "they were not tried"
         if self.fixed:
-            said.append(f"you put in {listed(self.fixed)}: it is not a finding")
+            named = all_of(self.fixed, "it is not a finding", "they are not findings")
+            said.append(f"you put in {named}")
         if self.without:
-            said.append(f"you left out {listed(self.without)}: it was not tried")
+            said.append(f"you left out {all_of(self.without, *untried)}")
         if self.impossible:
             said.append(
                 f"the device is {self.kind}, as dataset.yaml says, and cannot have "
-                f"{listed(self.impossible)}: it was not tried"
+                f"{all_of(self.impossible, *untried)}"
             )
         return said
 

@@ -84,6 +84,16 @@ def test_a_spring_that_loses_nothing_is_no_hysteretic_force():
     assert item.effects == ()
 
 
+def test_a_spring_that_softens_and_loses_nothing_is_none_either():
+    """Bouc and Wen's loop with a sharing of one runs back along its way: a magnet."""
+
+    def magnet(q):
+        return 40.0 * q + 3.0 * np.sign(q) * -np.expm1(-abs(q) / 0.1)
+
+    item = best(lambda force, v: 0.0, magnet, ["hysteretic-force"])
+    assert item.effects == ()
+
+
 def test_elements_that_slip_one_after_the_other_are_a_hysteretic_force():
     """Forty of them, of one stiffness: they slip between zero and a way of 0.3."""
     slips = (np.arange(40) + 0.5) / 40

@@ -41,8 +41,9 @@ class Effect(ABC):
     """Forms that bend to much of what is there, as a path does: no law."""
     laws: ClassVar[tuple[str, ...]] = ()
     """Blocks of other laws of the effect, beside the one that has its name."""
-    vanishing: ClassVar[str] = ""
-    """Of its block inside the dynamics: without this number it is another effect."""
+    vanishing: ClassVar[Mapping[str, float]] = {}
+    """Of its blocks inside the dynamics: with a number at this value it is another
+    effect."""
     special: ClassVar[bool] = False
     """Whether it is offered only where its cause can be, as a weight where something
     turns: of a tie with a law that any device may have it is the likelier."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import ClassVar
 
 import numpy as np
 
@@ -23,7 +24,7 @@ class HystereticForce(ForceEffect):
     name = "hysteretic-force"
     shows = "branch"
     laws = ("bouc-wen-force", "iwan-force")
-    vanishing = "beta"
+    vanishing: ClassVar = {"beta": 0.0, "sharing": 1.0}
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer it weak, with short and long ways to yield, or as one that stiffens."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import ClassVar
 
 from hystbench.blocks.slider_with_gap import SliderWithGap as Block
 from hystbench.gap.effects.effect import ForceEffect
@@ -14,7 +15,7 @@ class SliderWithGap(ForceEffect):
 
     name = "slider-with-gap"
     shows = "branch"
-    vanishing = "gap"
+    vanishing: ClassVar = {"gap": 0.0}
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer narrow and wide clearances."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import product
 from math import ceil
 
 import numpy as np
@@ -301,12 +302,12 @@ def _vanishes(item: Fitted, score: Score) -> bool:
     """
     state = item.state
     for added in state.added:
-        name = effects()[added.effect].vanishing
-        for place in added.blocks if name else ():
+        without = effects()[added.effect].vanishing.items()
+        for place, (name, value) in product(added.blocks, without):
             if name not in state.chain[place].parameters():
                 continue  # another law of the effect
             chain = list(state.chain)
-            chain[place] = replace(chain[place], **{name: 0.0})
+            chain[place] = replace(chain[place], **{name: value})
             if judged(state.with_chain(tuple(chain)), score) < item.score + SCALE:
                 return True
     return False
