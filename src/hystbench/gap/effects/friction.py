@@ -20,7 +20,7 @@ SOON = 1e-3
 
 
 class Friction(Effect):
-    """Smooth Coulomb friction of what moves."""
+    """Dry friction: smooth behind the mechanics, by several laws inside."""
 
     name = "friction"
     shows = "branch"

@@ -10,7 +10,7 @@ from hystbench.gap.effects.law import Law, Moved
 
 
 class Gravity(ForceEffect):
-    """A pendulum."""
+    """The weight of a pendulum, by the sine of its angle."""
 
     name = "gravity"
     shows = "amplitude"

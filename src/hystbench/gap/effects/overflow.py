@@ -14,7 +14,7 @@ CAUGHT = 0.3
 
 
 class Overflow(StoreEffect):
-    """Overflow of the last store, of the others, and of all."""
+    """What a store spills above a level: of the last store, the others, or all."""
 
     name = "overflow"
     shows = "amplitude"

@@ -17,7 +17,7 @@ UNSIGNED = "unsigned-sensor"
 
 
 class SensorNonlinearity(Effect):
-    """A square and a cube behind the last block, or the magnitude."""
+    """A square and a cube behind the last block, or a sensor that shows no sign."""
 
     name = "sensor-nonlinearity"
     shows = "amplitude"

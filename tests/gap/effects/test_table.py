@@ -1,0 +1,25 @@
+"""The table of effects in the docs is the registry's."""
+
+from hystbench.blocks import registry
+from hystbench.files import markdown_table
+from hystbench.gap.effects import effects
+from tests.conftest import ROOT
+
+
+def table_of_effects():
+    """Give each effect with where it is tried first, what it is, and its blocks."""
+    rows = []
+    for name, effect in effects().items():
+        known = [x for x in dict.fromkeys((name, *effect.laws)) if x in registry()]
+        blocks = ", ".join(f"`{block}`" for block in known)
+        said = type(effect).__doc__.splitlines()[0].rstrip(".")
+        rows.append([f"`{name}`", effect.place, said, blocks])
+    return markdown_table(["effect", "place", "what is tried", "blocks"], rows)
+
+
+def test_the_page_on_the_gap_holds_the_table():
+    # To write it: python -c 'from tests.gap.effects.test_table import *;
+    # print(table_of_effects())' and paste it between the two comments.
+    page = (ROOT / "docs" / "gap.md").read_text(encoding="utf-8")
+    table = table_of_effects().rstrip()
+    assert f"<!-- effects -->\n\n{table}\n\n<!-- end of effects -->" in page
