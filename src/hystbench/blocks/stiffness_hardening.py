@@ -14,6 +14,9 @@ from hystbench.blocks.parameter import HUGE, number
 from hystbench.blocks.step import Sampling, Step, lines_of
 from hystbench.record import FloatArray
 
+STEP = 0.1
+"""Phase of the stiffened mode, in radians."""
+
 
 @dataclass(frozen=True)
 class StiffnessHardening(HeldBlock):
@@ -48,6 +51,10 @@ class StiffnessHardening(HeldBlock):
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Integrate the mode."""
+        return self.integrated(z, dt, STEP)
+
+    def integrated(self, z: FloatArray, dt: float, step: float) -> FloatArray:
+        """Integrate the mode in steps of at most so many radians of it."""
         v, fine = held_lines(z, self.holding)
         x = np.empty(len(v))
         kernels.call(
@@ -57,6 +64,7 @@ class StiffnessHardening(HeldBlock):
             self.damping_ratio,
             self.coefficient,
             float(self.holding != "zero-order"),
+            step,
             v,
             x,
         )

@@ -47,7 +47,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_curve_space": (SIZE, "iiiiaaafaa"),
     "hb_slew_limit": (None, "ifaa"),
     "hb_acting_field": (None, "ifffaa"),
-    "hb_hardening": (SIZE, "iffffaa"),
+    "hb_hardening": (SIZE, "ifffffaa"),
     "hb_mechanism": (SIZE, "iiiffaiaaaaaa"),
     "hb_forces": (None, "ifiaaaaa"),
     "hb_settle": (None, "ffiaaa"),
@@ -63,7 +63,15 @@ KERNELS = {name: getattr(_library, name) for name in _SIGNATURES}
 """Every kernel by its name."""
 
 
-def call(name: str, *arguments: FloatArray | float | int) -> int:
+class Fixed:
+    """An array that many calls take: where it lies is asked once."""
+
+    def __init__(self, values: FloatArray) -> None:
+        self.values = values  # kept, so that the place stays its own
+        self.place = _address(values)
+
+
+def call(name: str, *arguments: FloatArray | Fixed | float | int) -> int:
     """Call a kernel; an array must be of float64 in C order.
 
     Returns
@@ -77,7 +85,11 @@ def call(name: str, *arguments: FloatArray | float | int) -> int:
         If an array is of another kind.
     """
     plain = [
-        _address(value) if isinstance(value, np.ndarray) else value
+        _address(value)
+        if isinstance(value, np.ndarray)
+        else value.place
+        if isinstance(value, Fixed)
+        else value
         for value in arguments
     ]
     return int(KERNELS[name](*plain) or 0)

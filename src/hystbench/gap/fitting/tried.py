@@ -46,6 +46,9 @@ LEAST = 150
 EACH = 3
 """Of the scored samples, one of so many is looked at, where enough are left."""
 
+MORE = 4.0
+"""Times as much as at a glance that a variant may gain on all records."""
+
 Tried = tuple[Attempt, Trial]
 """A variant beside a model, and how it does over its grid."""
 
@@ -109,7 +112,7 @@ def on_all_records(
     for number in sorted(range(len(looks)), key=lambda k: -looks[k].gain):
         item = looks[number]
         variant = item.attempt.variant
-        if item.gain < least(most) and not variant.begun:
+        if MORE * item.gain < least(most) and not variant.begun:
             found[number] = item.attempt, item.as_seen(now)
             continue
         try:
