@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from math import ceil
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -238,18 +239,42 @@ def records_at_a_glance(count: int) -> int:
 
 @lru_cache(maxsize=1)
 def _half(state: ModelState, score: Score) -> tuple[ModelState, Score]:
-    """Give a model and its score on the half of the records with most of the gap."""
+    """Give a model and its score on the half of the records with most of the gap.
+
+    Of whole periods the first ones stand for all.
+    """
     slices = state.sample.slices
     count = len(slices)
     squares = [float(np.mean(state.residual[part] ** 2)) for part in slices]
     order = np.argsort(squares, kind="stable")[count - records_at_a_glance(count) :]
     kept = sorted(order.tolist())
-    if len(kept) == count:
+    records, positions, rows = [], [], []
+    for k in kept:
+        places = state.sample.positions[k]
+        records.append(_first_periods(state.records[k], len(places)))
+        positions.append(places[places < len(records[-1])])
+        rows.append(slices[k].start + np.arange(len(positions[-1])))
+    every = np.concatenate(rows)
+    if len(every) == len(score.directions):
         return state, score
-    rows = np.concatenate([np.arange(slices[k].start, slices[k].stop) for k in kept])
-    records = tuple(state.records[k] for k in kept)
-    few = state.on(records, state.sample.on(kept), rows)
-    return few, _on(few.sample, rows, score)
+    sample = replace(state.sample.on(kept), positions=tuple(positions))
+    few = state.on(tuple(records), sample, every)
+    return few, _on(few.sample, every, score)
+
+
+def _first_periods(record: Record, scored: int) -> Record:
+    """Give the first periods of a record, as many as hold enough scored samples.
+
+    The first one may be on the way from rest.
+    """
+    period = record.period_samples
+    if not period or not record.repeats or record.decay_s is not None:
+        return record
+    count = max(2, ceil(LEAST * len(record) / (scored * period)))
+    if count * period >= len(record):
+        return record
+    cut = record.cut(slice(count * period))
+    return replace(cut, period_samples=period)
 
 
 def _on(sample: ScoredSamples, rows: NDArray[np.intp], score: Score) -> Score:

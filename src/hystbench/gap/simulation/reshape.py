@@ -14,6 +14,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,14 +78,24 @@ def _behind(
     """Make signals of the hysteresis and send them through what follows it."""
     if simulation.loop is None:
         return np.zeros((len(sample), 0))
-    behind = simulation.chain[simulation.behind_hysteresis :]
-    at = None if behind else sample  # what nothing follows is wanted there alone
-    ways = make(simulation, simulation.loop, at)
-    if behind:
-        return np.column_stack(
-            [sample.take(_sent(simulation, behind, way)) for way in ways]
-        )
+    if simulation.behind_hysteresis < len(simulation.chain):
+        sent = _all_sent(simulation, make)
+        return np.column_stack([sample.take(way) for way in sent])
+    # What nothing follows is wanted at the scored samples alone.
+    ways = make(simulation, simulation.loop, sample)
     return np.column_stack([np.concatenate(way) for way in ways])
+
+
+@lru_cache(maxsize=2)
+def _all_sent(
+    simulation: Simulation,
+    make: Callable[[Simulation, int, ScoredSamples | None], list[Signals]],
+) -> list[Signals]:
+    """Give the signals behind all blocks: more than one choice of samples asks."""
+    behind = simulation.chain[simulation.behind_hysteresis :]
+    assert simulation.loop is not None  # noqa: S101  (for the type checker)
+    ways = make(simulation, simulation.loop, None)
+    return [_sent(simulation, behind, way) for way in ways]
 
 
 def orthonormal(columns: FloatArray) -> FloatArray:
