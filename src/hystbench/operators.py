@@ -6,6 +6,7 @@ Using a GPO-Based Adaptive Filter".
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -115,20 +116,34 @@ def generalized_prandtl_ishlinskii(
         or if a growth is negative.
     """
     left, right = _envelopes(left, right)
+    rest = growth is None
+    if isinstance(thresholds, tuple) and isinstance(weights, tuple):  # as of a block
+        spaced, weighted, size = _known_plays(thresholds, weights, rest)
+    else:
+        spaced, weighted, size = _plays(thresholds, weights, rest)
+    y, sizes = np.empty(len(left)), (len(left), size // kernels.WIDTH)
+    if growth is not None:
+        grown = (spaced, weighted, _growth(growth, len(left)), y)
+        kernels.call("hb_growing_prandtl_ishlinskii", *sizes, left, right, *grown)
+        return y
+    arrays = (left, right, spaced, weighted, np.zeros(size), y)
+    kernels.call("hb_prandtl_ishlinskii", *sizes, *arrays)
+    return y
+
+
+def _plays(
+    thresholds: ArrayLike, weights: ArrayLike, stand_still: bool
+) -> tuple[kernels.Fixed, kernels.Fixed, int]:
+    """Give thresholds and weights as the kernels take them, and their number there."""
     r, w = _thresholds(thresholds), _array(weights)
     if w.shape != r.shape:
         raise InputError(f"weights: {w.shape} given, {len(r)} expected")
-    y, weighted = np.empty(len(left)), kernels.pad(w)
-    sizes = (len(left), len(weighted) // kernels.WIDTH)
-    if growth is not None:
-        grown = (kernels.pad(r), weighted, _growth(growth, len(left)), y)
-        kernels.call("hb_growing_prandtl_ishlinskii", *sizes, left, right, *grown)
-        return y
     # an operator of infinite threshold never leaves zero
-    spaced, state = kernels.pad(r, np.inf), np.zeros(len(weighted))
-    arrays = (left, right, spaced, weighted, state, y)
-    kernels.call("hb_prandtl_ishlinskii", *sizes, *arrays)
-    return y
+    spaced = kernels.pad(r, np.inf if stand_still else 0.0)
+    return kernels.Fixed(spaced), kernels.Fixed(kernels.pad(w)), len(spaced)
+
+
+_known_plays = lru_cache(maxsize=64)(_plays)
 
 
 def growing_play(

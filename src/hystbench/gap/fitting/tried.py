@@ -251,7 +251,7 @@ def _half(state: ModelState, score: Score) -> tuple[ModelState, Score]:
     records, positions, rows = [], [], []
     for k in kept:
         places = state.sample.positions[k]
-        records.append(_first_periods(state.records[k], len(places)))
+        records.append(first_periods(state.records[k], len(places)))
         positions.append(places[places < len(records[-1])])
         rows.append(slices[k].start + np.arange(len(positions[-1])))
     every = np.concatenate(rows)
@@ -262,7 +262,7 @@ def _half(state: ModelState, score: Score) -> tuple[ModelState, Score]:
     return few, _on(few.sample, every, score)
 
 
-def _first_periods(record: Record, scored: int) -> Record:
+def first_periods(record: Record, scored: int) -> Record:
     """Give the first periods of a record, as many as hold enough scored samples.
 
     The first one may be on the way from rest.
