@@ -13,9 +13,10 @@ from tests.gap.made import record
 NOW = 100.0
 
 
-def looked_at(effect, gain, score, begun=False):
+def looked_at(effect, gain, score, begun=False, freedom=0.0):
     """A variant that gains so much at a glance, and scores so much on all records."""
-    variant = SimpleNamespace(effect=effect, grids={"x": np.arange(3.0)}, begun=begun)
+    grids = {"x": np.arange(3.0)}
+    variant = SimpleNamespace(effect=effect, grids=grids, begun=begun, freedom=freedom)
 
     def at(point):
         if score is None:
@@ -37,6 +38,12 @@ def test_what_gains_too_little_at_a_glance_stays_as_it_was_seen():
     enough = 40.0 / MORE
     looks = [looked_at("a", enough, 90.0), looked_at("b", 60.0, 20.0)]
     assert gains_of(looks, lambda most: most / 2)[0] == [10.0, 80.0]
+
+
+def test_a_charge_for_numbers_is_paid_once():
+    """Four times as much as at a glance are gained beside what its numbers cost."""
+    looks = [looked_at("a", -10.0, 60.0, freedom=10.0), looked_at("b", 60.0, 20.0)]
+    assert gains_of(looks, lambda most: most / 2)[0] == [40.0, 80.0]
 
 
 def test_what_needs_a_whole_fit_is_always_looked_at():

@@ -48,7 +48,7 @@ EACH = 3
 """Of the scored samples, one of so many is looked at, where enough are left."""
 
 MORE = 4.0
-"""Times as much as at a glance that a variant may gain on all records."""
+"""Times as much as at a glance that a variant may gain on all records, uncharged."""
 
 Tried = tuple[Attempt, Trial]
 """A variant beside a model, and how it does over its grid."""
@@ -71,6 +71,12 @@ class Seen(NamedTuple):
     attempt: Attempt
     points: tuple[Point, ...]
     gain: float
+
+    @property
+    def most(self) -> float:
+        """By how much it may lower the score if the other records show more of it."""
+        charge = PARAMETER * self.attempt.variant.freedom
+        return MORE * (self.gain + charge) - charge
 
     def on_all(self) -> Trial:
         """Score it on all records."""
@@ -110,10 +116,10 @@ def on_all_records(
         Why, of each effect whose variants all decline.
     """
     most, found, refused = -np.inf, {}, {}
-    for number in sorted(range(len(looks)), key=lambda k: -looks[k].gain):
+    for number in sorted(range(len(looks)), key=lambda k: -looks[k].most):
         item = looks[number]
         variant = item.attempt.variant
-        if MORE * item.gain < least(most) and not variant.begun:
+        if item.most < least(most) and not variant.begun:
             found[number] = item.attempt, item.as_seen(now)
             continue
         try:
