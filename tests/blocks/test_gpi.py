@@ -109,22 +109,3 @@ def test_a_file_names_the_coefficients():
     del by_name["a7"]
     with pytest.raises(InputError, match="envelope: expected the key 'a7'"):
         GeneralizedPrandtlIshlinskii.from_mapping(values)
-
-
-def test_blocks_near_are_simulated_as_they_are_alone():
-    block = GeneralizedPrandtlIshlinskii(
-        envelope=ENVELOPE, thresholds=(0.0, 0.1, 0.2), weights=(2.0, 1.0, 0.5)
-    )
-    z = np.sin(np.arange(300) / 11) * np.linspace(0.2, 0.65, 300)
-    later = np.roll(z, 3)
-    others = [
-        (replace(block, weights=(2.0, 1.2, 0.5)), z),
-        (replace(block, weights=(2.0, 1.2, 0.5), start="settled"), z),
-        (replace(block, envelope=(1.3, *ENVELOPE[1:])), z),
-        (replace(block, weights=(2.0, 1.2, 0.5)), later),
-    ]
-    own, *found = block.near(z, z, 1e-3, others)
-    assert np.array_equal(own, block.simulate(z, z, 1e-3))
-    for (other, given_input), output in zip(others, found, strict=True):
-        expected = other.simulate(given_input, given_input, 1e-3)
-        np.testing.assert_allclose(output, expected, rtol=0, atol=1e-13)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
 
@@ -64,31 +63,6 @@ class GeneralizedPrandtlIshlinskii(PlayBlock):
             left, right, self.thresholds, self.weights, growth
         )
         return y[-len(v) :] if rounds > 1 else y
-
-    def near(
-        self,
-        z: FloatArray,
-        u: FloatArray,
-        dt: float,
-        others: Sequence[tuple[GeneralizedPrandtlIshlinskii, FloatArray]],
-    ) -> list[FloatArray]:
-        """Simulate blocks near this one: other weights ask for its operators once.
-
-        Returns
-        -------
-        list of ndarray
-            The block's own output, then those of the others.
-        """
-        found = [self.simulate(z, u, dt)]
-        operators = None
-        for other, own in others:
-            if own is not z or replace(other, weights=self.weights) != self:
-                found.append(other.simulate(own, u, dt))
-                continue
-            operators = self.operators(z) if operators is None else operators
-            change = np.subtract(other.weights, self.weights)
-            found.append(found[0] + operators @ change)
-        return found
 
     def operators(self, v: FloatArray) -> FloatArray:
         """Compute the outputs of the operators without their weights.

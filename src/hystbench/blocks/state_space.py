@@ -23,7 +23,8 @@ class StateSpace(NamedTuple):
     @property
     def is_diagonal(self) -> bool:
         """Whether the states are modes, each by itself."""
-        return np.count_nonzero(self.a) == np.count_nonzero(self.a.diagonal())
+        apart = np.count_nonzero(self.a) - np.count_nonzero(self.a.diagonal())
+        return int(apart) == 0
 
     @property
     def static_gain(self) -> float:
