@@ -293,35 +293,6 @@ def state_space(
     return y, x[:size].copy()
 
 
-def modes(
-    factors: FloatArray,
-    b: FloatArray,
-    c: FloatArray,
-    d: float,
-    u: ArrayLike,
-    x0: FloatArray,
-) -> FloatArray:
-    """Output of :func:`state_space` where A is diagonal, in a faster loop.
-
-    Parameters
-    ----------
-    factors : ndarray, shape (s,)
-        Diagonal of A.
-    b, c, d, u, x0
-        As for :func:`state_space`.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-    """
-    u = _signal("u", u)
-    y = np.empty(len(u))
-    padded = [kernels.pad(values) for values in (factors, b, c)]
-    vectors = len(padded[0]) // kernels.WIDTH
-    kernels.call("hb_modes", len(u), vectors, *padded, float(d), u, kernels.pad(x0), y)
-    return y
-
-
 def follow_direction(v: FloatArray, left: FloatArray, right: FloatArray) -> None:
     """Rewrite envelopes in place so that Eq. 4 on them is Eq. 12.
 

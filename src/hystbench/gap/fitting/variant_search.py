@@ -217,31 +217,13 @@ def _retuned(state: ModelState, score: Score) -> Products:
     return score.shared(columns, state.change_charges(columns.shape[1]))
 
 
-def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
-    """Score a variant where it is best on its grid.
-
-    Parameters
-    ----------
-    attempt : Attempt
-    glance : Attempt, optional
-        The same on fewer samples, which then choose the point of the grid.
-
-    Raises
-    ------
-    Declined
-        If the blocks refuse every point of the grid: with what the last one said.
-    """
-    look = attempt if glance is None else glance
-    return best_of(attempt, [point for _, point in best_points(look)])
-
-
 def best_points(look: Attempt) -> list[tuple[float, Point]]:
     """Give the points of a grid that score least, with their scores, best first.
 
     Raises
     ------
     Declined
-        As :func:`coarse` does.
+        If the blocks refuse every point of the grid: with what the last one said.
     """
     axes = look.variant.grids.values()
     trials: list[tuple[float, Point]] = []
@@ -264,7 +246,7 @@ def best_of(attempt: Attempt, points: Sequence[Point]) -> Trial:
     Raises
     ------
     Declined
-        As :func:`coarse` does.
+        If the blocks refuse all of them: with what the last one said.
     """
     found = []
     refused: InputError | None = None
