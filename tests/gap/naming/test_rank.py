@@ -236,7 +236,7 @@ def test_what_gains_too_little_of_what_is_needed_is_not_refitted():
     known = [effects()["sensor-lag"]]
     (alone,) = rank(state, score, known, folds=False)
     assert alone.state is not None
-    (enough,) = rank(state, score, known, folds=False, needs=2 * alone.gain)
+    (enough,) = rank(state, score, known, folds=False, needs=alone.gain)
     assert enough.gain == alone.gain
     (less,) = rank(state, score, known, folds=False, needs=10 * alone.gain)
     assert less.state is None
