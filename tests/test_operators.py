@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from hystbench import operators
+from hystbench import kernels, operators
 from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope, equal_intervals, thresholds
 from hystbench.errors import InputError
 from hystbench.operators import (
@@ -338,13 +338,21 @@ def test_what_does_not_fit_is_refused(broken, told):
         broken()
 
 
+def modes(factors, b, c, d, u, x0):
+    y = np.empty(len(u))
+    padded = [kernels.pad(values) for values in (factors, b, c)]
+    vectors = len(padded[0]) // kernels.WIDTH
+    kernels.call("hb_modes", len(u), vectors, *padded, d, u, kernels.pad(x0), y)
+    return y
+
+
 @pytest.mark.parametrize("size", [1, 7, 8, 9, 24, 50, 70])
 def test_modes_are_a_diagonal_state_space(size):
     rng = np.random.default_rng(size)
     factors, b, c, x0 = rng.uniform(-0.99, 0.99, (4, size))
     u = rng.normal(size=200)
     expected, _ = operators.state_space(np.diag(factors), b, c, 0.3, u, x0)
-    found = operators.modes(factors, b, c, 0.3, u, x0)
+    found = modes(factors, b, c, 0.3, u, x0)
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11)
 
 

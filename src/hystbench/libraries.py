@@ -47,6 +47,14 @@ _NOTHING = ctypes.c_char * 0  # a place in memory, of no size
 FloatArray = NDArray[np.float64]
 
 
+class Fixed:
+    """An array that many calls take: where it lies is asked once."""
+
+    def __init__(self, values: FloatArray) -> None:
+        self.values = values  # kept, so that the place stays its own
+        self.place = address(values)
+
+
 class Loops:
     """A shared library of hystbench's own: its functions are called by their names.
 
@@ -80,7 +88,7 @@ class Loops:
             self.functions[name].restype = result
             self.functions[name].argtypes = [_KINDS[kind] for kind in arguments]
 
-    def __call__(self, name: str, *arguments: FloatArray | float | int) -> int:
+    def __call__(self, name: str, *arguments: FloatArray | Fixed | float | int) -> int:
         """Call a function; an array must be of float64 in C order.
 
         Returns
@@ -96,7 +104,11 @@ class Loops:
             If it found no room for its state.
         """
         plain = [
-            address(value) if isinstance(value, np.ndarray) else value
+            address(value)
+            if isinstance(value, np.ndarray)
+            else value.place
+            if isinstance(value, Fixed)
+            else value
             for value in arguments
         ]
         result = int(self.functions[name](*plain) or 0)

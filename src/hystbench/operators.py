@@ -4,6 +4,7 @@ Equation numbers are those of Zhang and Ma, "Modeling of Rate-Dependent Hysteres
 Using a GPO-Based Adaptive Filter".
 """
 
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -113,20 +114,34 @@ def generalized_prandtl_ishlinskii(
         or if a growth is negative.
     """
     left, right = _envelopes(left, right)
+    rest = growth is None
+    if isinstance(thresholds, tuple) and isinstance(weights, tuple):  # as of a block
+        spaced, weighted, size = _known_plays(thresholds, weights, rest)
+    else:
+        spaced, weighted, size = _plays(thresholds, weights, rest)
+    y, sizes = np.empty(len(left)), (len(left), size // kernels.WIDTH)
+    if growth is not None:
+        grown = (spaced, weighted, _growth(growth, len(left)), y)
+        kernels.call("hb_growing_prandtl_ishlinskii", *sizes, left, right, *grown)
+        return y
+    arrays = (left, right, spaced, weighted, np.zeros(size), y)
+    kernels.call("hb_prandtl_ishlinskii", *sizes, *arrays)
+    return y
+
+
+def _plays(
+    thresholds: ArrayLike, weights: ArrayLike, stand_still: bool
+) -> tuple[kernels.Fixed, kernels.Fixed, int]:
+    """Give thresholds and weights as the kernels take them, and their number there."""
     r, w = _thresholds(thresholds), _array(weights)
     if w.shape != r.shape:
         raise InputError(f"weights: {w.shape} given, {len(r)} expected")
-    y, weighted = np.empty(len(left)), kernels.pad(w)
-    sizes = (len(left), len(weighted) // kernels.WIDTH)
-    if growth is not None:
-        grown = (kernels.pad(r), weighted, _growth(growth, len(left)), y)
-        kernels.call("hb_growing_prandtl_ishlinskii", *sizes, left, right, *grown)
-        return y
     # an operator of infinite threshold never leaves zero
-    spaced, state = kernels.pad(r, np.inf), np.zeros(len(weighted))
-    arrays = (left, right, spaced, weighted, state, y)
-    kernels.call("hb_prandtl_ishlinskii", *sizes, *arrays)
-    return y
+    spaced = kernels.pad(r, np.inf if stand_still else 0.0)
+    return kernels.Fixed(spaced), kernels.Fixed(kernels.pad(w)), len(spaced)
+
+
+_known_plays = lru_cache(maxsize=64)(_plays)
 
 
 def growing_play(
@@ -274,35 +289,6 @@ def state_space(
     sizes = (len(u), len(x) // kernels.WIDTH, size)
     kernels.call("hb_state_space", *sizes, *arrays, float(d), u, x, y)
     return y, x[:size].copy()
-
-
-def modes(
-    factors: FloatArray,
-    b: FloatArray,
-    c: FloatArray,
-    d: float,
-    u: ArrayLike,
-    x0: FloatArray,
-) -> FloatArray:
-    """Output of :func:`state_space` where A is diagonal, in a faster loop.
-
-    Parameters
-    ----------
-    factors : ndarray, shape (s,)
-        Diagonal of A.
-    b, c, d, u, x0
-        As for :func:`state_space`.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-    """
-    u = _signal("u", u)
-    y = np.empty(len(u))
-    padded = [kernels.pad(values) for values in (factors, b, c)]
-    vectors = len(padded[0]) // kernels.WIDTH
-    kernels.call("hb_modes", len(u), vectors, *padded, float(d), u, kernels.pad(x0), y)
-    return y
 
 
 def follow_direction(v: FloatArray, left: FloatArray, right: FloatArray) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 from hystbench.blocks import registry
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.variant_search import best_of, best_points
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
@@ -114,3 +115,8 @@ def state_of(chain, given=None, count=300, **more):
 def plain_score(state, floor=1e-6):
     """A score without any direction of reshaping."""
     return Score(state.sample, np.zeros((len(state.sample), 0)), floor)
+
+
+def coarse(attempt):
+    """How a variant does at the best points of its grid."""
+    return best_of(attempt, [point for _, point in best_points(attempt)])

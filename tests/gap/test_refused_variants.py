@@ -8,9 +8,9 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Declined, Effect
 from hystbench.gap.fitting.tried import tried
-from hystbench.gap.fitting.variant_search import Attempt, coarse
+from hystbench.gap.fitting.variant_search import Attempt
 from hystbench.gap.naming.rank import rank
-from tests.gap.small import block, measured, plain_score, state_of
+from tests.gap.small import block, coarse, measured, plain_score, state_of
 
 NOISE = 0.02
 

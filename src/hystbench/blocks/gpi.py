@@ -1,5 +1,7 @@
 """Block ``gpi``: generalized Prandtl-Ishlinskii hysteresis."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from hystbench.blocks.parameter import HUGE, a_threshold, choice, numbers
@@ -67,7 +69,7 @@ class GeneralizedPrandtlIshlinskii(PlayBlock, name="gpi", place="base"):
     def _envelopes(self, v: FloatArray) -> tuple[FloatArray, FloatArray, int]:
         """Give the envelope functions of an input, and how often it passes."""
         rounds = 2 if self.start == "settled" else 1
-        envelope = Envelope(*self.envelope)
+        envelope = _envelope(*self.envelope)
         left, right = envelope.left(v), envelope.right(v)
         if rounds > 1:
             left, right = np.tile(left, rounds), np.tile(right, rounds)
@@ -81,3 +83,6 @@ class GeneralizedPrandtlIshlinskii(PlayBlock, name="gpi", place="base"):
         past = PASSED if self.start == "settled" else ""
         states = {"w": len(self.weights)}
         return Step("gpi", constants, states, grows=True, past=past)
+
+
+_envelope = lru_cache(maxsize=64)(Envelope)

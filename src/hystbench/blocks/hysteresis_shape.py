@@ -47,7 +47,7 @@ class HysteresisShape(WrappingBlock, name="hysteresis-shape", place="material"):
         y: FloatArray = inner.grow(v, u, dt, growth) + plays @ weights[0, used]
         if weights[1].any():
             y += (plays * plays) @ weights[1, used]
-        if self.powers:
+        if any(self.powers):
             y += v * np.polyval(self.powers[::-1], v)
         return y
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from hystbench import kernels, operators
+from hystbench import kernels
 from hystbench.blocks.curve import AHEAD, POINTS, continued
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.parameter import choice
@@ -265,12 +265,36 @@ def _curve_steps(
     return _padded_columns(phi), drive
 
 
+class Loop(NamedTuple):
+    """A system as a kernel takes it: what does not change from record to record."""
+
+    kernel: str
+    sizes: tuple[int, ...]
+    fixed: tuple[kernels.Fixed, ...]
+    d: float
+    following: FloatArray  # padded
+
+
+@lru_cache(maxsize=256)
+def _loop(a: bytes, b: bytes, c: bytes, d: float, dt: float, hold: Hold) -> Loop:
+    steps = _steps(a, b, c, d, dt, hold)
+    size = len(steps.b)
+    sizes: tuple[int, ...] = (kernels.padded(size) // kernels.WIDTH,)
+    if steps.phi.ndim == 1:
+        kernel, phi = "hb_modes", kernels.pad(steps.phi)
+    else:
+        kernel, sizes = "hb_state_space", (*sizes, size)
+        phi = _padded_columns(steps.phi)
+    fixed = (phi, kernels.pad(steps.b), kernels.pad(steps.c))
+    places = tuple(map(kernels.Fixed, fixed))
+    return Loop(kernel, sizes, places, steps.d, kernels.pad(steps.following))
+
+
 def _step_by_step(
     system: StateSpace, v: FloatArray, dt: float, hold: Hold
 ) -> FloatArray:
-    phi, b, c, d, following = _steps(*_bytes(system), dt, hold)
-    first = -following * v[0]
-    if phi.ndim == 1:
-        return operators.modes(phi, b, c, d, v, first)
-    y, _ = operators.state_space(phi, b, c, d, v, first)
+    v = np.asarray(v, dtype=np.float64, order="C")
+    loop = _loop(*_bytes(system), dt, hold)
+    y, state = np.empty(len(v)), loop.following * -v[0]
+    kernels.call(loop.kernel, len(v), *loop.sizes, *loop.fixed, loop.d, v, state, y)
     return y

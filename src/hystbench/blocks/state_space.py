@@ -21,7 +21,8 @@ class StateSpace(NamedTuple):
     @property
     def is_diagonal(self) -> bool:
         """Whether the states are modes, each by itself."""
-        return not (self.a - np.diag(np.diag(self.a))).any()
+        apart = np.count_nonzero(self.a) - np.count_nonzero(self.a.diagonal())
+        return int(apart) == 0
 
     @property
     def static_gain(self) -> float:
@@ -225,11 +226,11 @@ def _moments_of_modes(
     with np.errstate(all="ignore"):
         for m in range(1, points):
             above[m] = (m * above[m - 1] - drive) / poles
-        now = drive / (top + 1)
-        for m in range(top, 0, -1):
-            now = (drive + poles * now) / m
-            if m <= points:
-                below[m - 1] = now
+        # The way down to the last that is asked for, written out as a sum.
+        ratios = poles / np.arange(points + 1, top + 1)[:, None]
+        below[-1] = drive / points * (1 + np.cumprod(ratios, axis=0).sum(axis=0))
+        for m in range(points - 1, 0, -1):
+            below[m - 1] = (drive + poles * below[m]) / m
     rising = np.arange(points)[:, None] <= turn
     return np.where(rising, above, below)
 

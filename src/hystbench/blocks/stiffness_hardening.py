@@ -9,6 +9,9 @@ from hystbench.blocks.parameter import HUGE, number
 from hystbench.blocks.step import Sampling, Step, lines_of
 from hystbench.record import FloatArray
 
+STEP = 0.1
+"""Phase of the stiffened mode, in radians."""
+
 
 class StiffnessHardening(HeldBlock, name="stiffness-hardening", place="mechanics"):
     """Duffing's oscillator beside a rigid path; it replaces a linear ``resonance``.
@@ -39,6 +42,10 @@ class StiffnessHardening(HeldBlock, name="stiffness-hardening", place="mechanics
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Integrate the mode."""
+        return self.integrated(z, dt, STEP)
+
+    def integrated(self, z: FloatArray, dt: float, step: float) -> FloatArray:
+        """Integrate the mode in steps of at most so many radians of it."""
         v, fine = held_lines(z, self.holding)
         x = np.empty(len(v))
         kernels.call(
@@ -48,6 +55,7 @@ class StiffnessHardening(HeldBlock, name="stiffness-hardening", place="mechanics
             self.damping_ratio,
             self.coefficient,
             float(self.holding != "zero-order"),
+            step,
             v,
             x,
         )

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.libraries import SIZE, Loops, address
+from hystbench.libraries import Fixed as Fixed
 from hystbench.record import FloatArray
 
 WIDTH = 8
@@ -41,7 +42,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_curve_space": (SIZE, "iiiiaaafaa"),
     "hb_slew_limit": (None, "ifaa"),
     "hb_acting_field": (None, "ifffaa"),
-    "hb_hardening": (SIZE, "iffffaa"),
+    "hb_hardening": (SIZE, "ifffffaa"),
     "hb_mechanism": (SIZE, "iiiffaiaaaaaa"),
     "hb_forces": (None, "ifiaaaaa"),
     "hb_settle": (None, "ffiaaa"),

@@ -1,15 +1,13 @@
 /* A mode whose stiffness grows with its displacement. */
 #include "lanes.h"
 
-#define SUBSTEP 0.1  /* largest phase of the stiffened mode in one step, in radians */
-
 /* Displacement x of x'' + 2 damping w x' + w^2 (x + alpha x^3) = w^2 z from rest, with
  * phase = w dt and time in units of 1 / w.  z moves by the share ramp of a straight
  * line in each interval (1: straight, 0: a staircase).  Classical Runge-Kutta method, in
- * steps that the stiffness of the moment sets.  Returns the samples taken: fewer than n
- * where the mode has run away, as one that softens can; the rest is NaN. */
+ * steps of at most step radians of the stiffened mode.  Returns the samples taken: fewer
+ * than n where the mode has run away, as one that softens can; the rest is NaN. */
 EXPORT index_t hb_hardening(index_t n, double phase, double damping, double alpha,
-                            double ramp, const double *z, double *out)
+                            double ramp, double step, const double *z, double *out)
 {
 #define FORCE(at) (now + (at) * slope)
 #define BEND(x, v, f) ((f) - (x) * (1 + alpha * (x) * (x)) - 2 * damping * (v))
@@ -21,7 +19,7 @@ EXPORT index_t hb_hardening(index_t n, double phase, double damping, double alph
         const double now = z[k], slope = ramp * (z[k + 1] - now);
         const double reach = fmax(fabs(x), fabs(z[k + 1]));
         const double stiffness = sqrt(1 + 3 * fabs(alpha) * reach * reach);
-        const double steps = ceil(phase * fmax(stiffness, damping) / SUBSTEP);
+        const double steps = ceil(phase * fmax(stiffness, damping) / step);
         if (!(steps < 1e5)) break;
         const double h = phase / steps, part = 1 / steps;
         for (double s = 0; s < steps; s++) {

@@ -15,12 +15,13 @@ from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import FAR, added, finished, refit, sizes
 from hystbench.gap.fitting.state import Free
-from hystbench.gap.fitting.variant_search import Attempt, coarse, fine
+from hystbench.gap.fitting.variant_search import Attempt, fine
 from hystbench.gap.naming.rank import rank
 from tests.gap.small import (
     ENVELOPE,
     block,
     chains,
+    coarse,
     hysteresis,
     measured,
     plain_score,

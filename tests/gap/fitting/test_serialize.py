@@ -14,9 +14,10 @@ from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
-from hystbench.gap.fitting.variant_search import Attempt, coarse
+from hystbench.gap.fitting.variant_search import Attempt
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.model import load_model
+from tests.gap.small import coarse
 from tests.gap.tiny import write_tiny
 
 #: What an effect needs in the chain, and those that a chain with hysteresis refuses.

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from hystbench.errors import InputError
 from hystbench.gap.effects.effect import Declined
-from hystbench.gap.fitting.variant_search import Trial, coarse
+from hystbench.gap.fitting.variant_search import Trial
+from tests.gap.small import coarse
 
 
 def attempt(axes, score):

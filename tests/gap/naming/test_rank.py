@@ -254,3 +254,17 @@ def test_a_loop_that_bends_is_a_hysteresis_alone():
     first, *_ = rank(base, make_score(base, NOISE), known)
     assert (first.effect, first.form) == ("hysteresis", "generalized plays")
     assert first.state.power(NOISE**2) < 0.01 * base.power(NOISE**2)
+
+
+def test_what_gains_too_little_of_what_is_needed_is_not_refitted():
+    lag = block("sensor-lag", time_constant_s=0.004)
+    state = state_of(LOOP, measured((*LOOP, lag), NOISE, given=records() * 3))
+    score = make_score(state, NOISE)
+    known = [effects()["sensor-lag"]]
+    (alone,) = rank(state, score, known, folds=False)
+    assert alone.state is not None
+    (enough,) = rank(state, score, known, folds=False, needs=alone.gain)
+    assert enough.gain == alone.gain
+    (less,) = rank(state, score, known, folds=False, needs=10 * alone.gain)
+    assert less.state is None
+    assert less.gain <= alone.gain

@@ -180,3 +180,22 @@ def test_without_a_hysteresis_the_mechanics_stand_behind_every_curve():
     assert place_of_mechanics(lag, curve, gain) == 2
     assert place_of_mechanics(block("drive-saturation", limit=1.0), lag) == 1
     assert place_of_mechanics(lag, sensor) == 0
+
+
+def test_a_mode_that_is_not_linear_takes_longer_steps_where_models_are_compared():
+    hardening = block("stiffness-hardening", coefficient=2e-3, **MODE)
+    plain = Simulation((hysteresis(), hardening), records())
+    for quick, exact in zip(
+        replace(plain, quick=True).output, plain.output, strict=True
+    ):
+        missed = np.abs(quick - exact).max() / np.ptp(exact)
+        assert 0.0 < missed < 1e-3
+
+
+def test_models_of_a_chain_share_its_simulation():
+    given = records()
+    state = state_of((hysteresis(),), given)
+    assert state.settled().simulation is state.simulation
+    assert state.on(given[:1], state.sample.on([0]), slice(0, 3)).simulation is not (
+        state.simulation
+    )

@@ -121,7 +121,7 @@ class Score:
         """Give a score of residuals as they are, with no direction to spare."""
         return cls(sample, np.zeros((len(sample), 0)), floor)
 
-    @property
+    @cached_property
     def weight(self) -> float:
         """Independent samples that each record counts as."""
         return record_weight(len(self.sample.positions))
@@ -190,7 +190,7 @@ class Score:
         whole[:, 1:] /= scale
         charge = np.zeros(own) if stiffness is None else stiffness / scale**2
         found = self._products(whole, np.diag(np.concatenate([[0.0], charge])))
-        if beside is not None:
+        if beside is not None and len(beside.charge):
             found = self._joined(found, beside)
         flat, inner = found.grams.reshape(len(self.parts), -1), found.within.ravel()
         d = max(self.directions.shape[1], 1)
@@ -267,9 +267,9 @@ class Score:
         mixed, within = self._beyond(left, right), left.inside.T @ right.inside
         apart = np.zeros((len(left.charge), len(right.charge)))
         return left._replace(
-            charge=np.block([[left.charge, apart], [apart.T, right.charge]]),
-            grams=np.block([[left.grams, mixed], [mixed.mT, right.grams]]),
-            within=np.block([[left.within, within], [within.T, right.within]]),
+            charge=_square(left.charge, apart, right.charge),
+            grams=_square(left.grams, mixed, right.grams),
+            within=_square(left.within, within, right.within),
         )
 
     @cached_property
@@ -311,6 +311,15 @@ def _each(left: Rows, right: Rows) -> FloatArray:
     if isinstance(left, np.ndarray) and isinstance(right, np.ndarray):
         return np.asarray(left.mT @ right)
     return np.stack([one.T @ other for one, other in zip(left, right, strict=True)])
+
+
+def _square(first: FloatArray, mixed: FloatArray, second: FloatArray) -> FloatArray:
+    """Join products of two tables, shape (..., k, k); np.block takes far longer."""
+    k, size = first.shape[-1], first.shape[-1] + second.shape[-1]
+    out = np.empty((*first.shape[:-2], size, size))
+    out[..., :k, :k], out[..., k:, k:] = first, second
+    out[..., :k, k:], out[..., k:, :k] = mixed, mixed.mT
+    return out
 
 
 def _place(part: NDArray[np.intp]) -> slice | NDArray[np.intp]:

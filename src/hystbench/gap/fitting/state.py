@@ -18,6 +18,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects.variant import Beside, Refused, Values
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.reshape import orthonormal, reshapings
+from hystbench.gap.simulation.shared import in_short_steps, quick
 from hystbench.gap.simulation.simulation import Signals, Simulation
 from hystbench.record import FloatArray, Record
 
@@ -98,7 +99,7 @@ class ModelState:
     @cached_property
     def simulation(self) -> Simulation:
         """The chain on the records, simulated quickly."""
-        return Simulation(self.chain, self.records, self.hold, quick=True)
+        return quick(self.chain, self.records, self.hold)
 
     def on(
         self, records: tuple[Record, ...], sample: ScoredSamples, rows: NDArray[Any]
@@ -110,7 +111,7 @@ class ModelState:
     @cached_property
     def exact(self) -> Signals:
         """The chain's output, simulated in short steps."""
-        return Simulation(self.chain, self.records, self.hold, fine=True).output
+        return in_short_steps(self.chain, self.records, self.hold).output
 
     def settled(self) -> ModelState:
         """Give the state with what the quick simulation lacks made up for."""

@@ -5,10 +5,11 @@ Few samples choose a point of a grid, more search around it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import Any
+from math import ceil
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,13 +20,21 @@ from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.errors import InputError
 from hystbench.gap.effects.effect import Declined, Effect
 from hystbench.gap.effects.variant import Variant
+from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.fitting.variant_search import Attempt, Trial, coarse
+from hystbench.gap.fitting.variant_search import (
+    Attempt,
+    Point,
+    Trial,
+    best_of,
+    best_points,
+)
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.reshape import orthonormal
 from hystbench.gap.simulation.simulation import NOT_LINEAR
+from hystbench.gap.thresholds import PARAMETER
 from hystbench.record import Record
 
 ENOUGH = 4
@@ -38,12 +47,94 @@ LEAST = 150
 EACH = 3
 """Of the scored samples, one of so many is looked at, where enough are left."""
 
+MORE = 4.0
+"""Times as much as at a glance that a variant may gain on all records, uncharged."""
+
 Tried = tuple[Attempt, Trial]
 """A variant beside a model, and how it does over its grid."""
 
 
+class Seen(NamedTuple):
+    """A variant of which a part of the records was looked at.
+
+    Parameters
+    ----------
+    attempt : Attempt
+        On all records.
+    points : tuple of Point
+        Of its grid, those that do best at a glance.
+    gain : float
+        By how much it lowers the score if the other records are like those looked at;
+        without a grid all that it may be, as nothing was looked at.
+    """
+
+    attempt: Attempt
+    points: tuple[Point, ...]
+    gain: float
+
+    @property
+    def most(self) -> float:
+        """By how much it may lower the score if the other records show more of it."""
+        charge = PARAMETER * self.attempt.variant.freedom
+        return MORE * (self.gain + charge) - charge
+
+    def on_all(self) -> Trial:
+        """Score it on all records."""
+        return best_of(self.attempt, self.points)
+
+    def as_seen(self, now: float) -> Trial:
+        """Give it as it was seen, beside a model of such a score."""
+        values = dict(zip(self.attempt.variant.grids, self.points[0], strict=True))
+        return Trial(self.attempt.variant, values, now - self.gain)
+
+
 def tried(effect: Effect, state: ModelState, score: Score) -> tuple[list[Tried], str]:
     """Score every variant of an effect over its grid; or say why it declines."""
+    looks, why = seen(effect, state, score)
+    found, refused = on_all_records(looks, 0.0, lambda most: -np.inf)
+    return found, refused.get(effect.name, why)
+
+
+def on_all_records(
+    looks: Sequence[Seen], now: float, least: Callable[[float], float]
+) -> tuple[list[Tried], dict[str, str]]:
+    """Score variants on all records, best first; leave as seen what gains too little.
+
+    Parameters
+    ----------
+    looks : sequence of Seen
+    now : float
+        Score of the model without any of them.
+    least : callable
+        Tells by the most that one of them gains how much is enough.
+
+    Returns
+    -------
+    found : list of Tried
+        In the order of the looks.
+    refused : dict of str to str
+        Why, of each effect whose variants all decline.
+    """
+    most, found, refused = -np.inf, {}, {}
+    for number in sorted(range(len(looks)), key=lambda k: -looks[k].most):
+        item = looks[number]
+        variant = item.attempt.variant
+        if item.most < least(most) and not variant.begun:
+            found[number] = item.attempt, item.as_seen(now)
+            continue
+        try:
+            found[number] = item.attempt, item.on_all()
+        except Declined as reason:
+            refused[variant.effect] = str(reason)
+            continue
+        most = max(most, now - found[number][1].score)
+    for attempt, _ in found.values():
+        refused.pop(attempt.variant.effect, None)
+    return [found[number] for number in sorted(found)], refused
+
+
+def seen(effect: Effect, state: ModelState, score: Score) -> tuple[list[Seen], str]:
+    """Look at every variant of an effect over its grid; or say why it declines."""
     try:
         variants = list(effect.every_variant(state.simulation))
     except Declined as reason:
@@ -56,46 +147,65 @@ def tried(effect: Effect, state: ModelState, score: Score) -> tuple[list[Tried],
     if variants and not runnable:
         return [], NEEDS_RERUN
 
-    def read(content: Any) -> tuple[list[Tried], str]:
+    def read(content: Any) -> tuple[list[Seen], str]:
         kept, why = content
         found = [
-            (
+            Seen(
                 _thinned(Attempt(state, variants[number], score, number)),
-                Trial(variants[number], values, value),
+                tuple(map(tuple, points)),
+                gain,
             )
-            for number, values, value in kept
+            for number, points, gain in kept
         ]
         return found, why
 
     return remembered_of(
         state,
-        lambda: ["tried", effect.name, score.digest],
-        lambda: _tried(runnable, state, score),
+        lambda: ["seen", effect.name, score.digest],
+        lambda: _seen(runnable, state, score),
         lambda result: [
-            [[each.number, x.values, x.score] for each, x in result[0]],
+            [[x.attempt.number, x.points, x.gain] for x in result[0]],
             result[1],
         ],
         read,
     )
 
 
-def _tried(
+def _seen(
     runnable: Sequence[tuple[int, Variant]], state: ModelState, score: Score
-) -> tuple[list[Tried], str]:
-    """Score variants over their grids; say why none can be, if so."""
-    found: list[Tried] = []
+) -> tuple[list[Seen], str]:
+    """Look at variants over their grids; say why none can be, if so."""
+    found: list[Seen] = []
     refused = ""
     for number, item in runnable:
         attempt = Attempt(state, item, score, number)
         try:
-            glance = _glance_of(attempt)
-            attempt = _thinned(attempt)
-            trial = coarse(attempt, glance)
+            if item.grids:
+                found.append(_at_a_glance(attempt))
+            else:
+                found.append(Seen(_thinned(attempt), ((),), np.inf))
         except Declined as reason:
             refused = str(reason)
-            continue
-        found.append((attempt, trial))
     return found, "" if found else refused
+
+
+def _at_a_glance(attempt: Attempt) -> Seen:
+    """Look at a variant over its grid on few samples."""
+    look = _glance_of(attempt)
+    best = best_points(look)
+    charge = PARAMETER * attempt.variant.freedom
+    gain = _score_of(look.state, look.score) - best[0][0] + charge
+    more = _evidence(attempt.score) / _evidence(look.score)
+    points = tuple(point for _, point in best)
+    return Seen(_thinned(attempt), points, more * gain - charge)
+
+
+_score_of = lru_cache(maxsize=2)(score_of)
+
+
+def _evidence(score: Score) -> float:
+    """Count the independent samples of all records."""
+    return score.weight * len(score.sample.positions)
 
 
 def _needs_rerun(state: ModelState, variant: Variant) -> bool:
@@ -111,8 +221,6 @@ def _glance_of(attempt: Attempt) -> Attempt:
     taken, where blocks take steps of any length.
     """
     state, score, variant = attempt.state, attempt.score, attempt.variant
-    if not variant.grids:
-        return attempt
     half = _half(state, score)
     few = _coarser(*half) if _takes_any_step(state, variant) else half
     return Attempt(few[0], variant, few[1])
@@ -137,18 +245,42 @@ def records_at_a_glance(count: int) -> int:
 
 @lru_cache(maxsize=1)
 def _half(state: ModelState, score: Score) -> tuple[ModelState, Score]:
-    """Give a model and its score on the half of the records with most of the gap."""
+    """Give a model and its score on the half of the records with most of the gap.
+
+    Of whole periods the first ones stand for all.
+    """
     slices = state.sample.slices
     count = len(slices)
     squares = [float(np.mean(state.residual[part] ** 2)) for part in slices]
     order = np.argsort(squares, kind="stable")[count - records_at_a_glance(count) :]
     kept = sorted(order.tolist())
-    if len(kept) == count:
+    records, positions, rows = [], [], []
+    for k in kept:
+        places = state.sample.positions[k]
+        records.append(first_periods(state.records[k], len(places)))
+        positions.append(places[places < len(records[-1])])
+        rows.append(slices[k].start + np.arange(len(positions[-1])))
+    every = np.concatenate(rows)
+    if len(every) == len(score.directions):
         return state, score
-    rows = np.concatenate([np.arange(slices[k].start, slices[k].stop) for k in kept])
-    records = tuple(state.records[k] for k in kept)
-    few = state.on(records, state.sample.on(kept), rows)
-    return few, _on(few.sample, rows, score)
+    sample = replace(state.sample.on(kept), positions=tuple(positions))
+    few = state.on(tuple(records), sample, every)
+    return few, _on(few.sample, every, score)
+
+
+def first_periods(record: Record, scored: int) -> Record:
+    """Give the first periods of a record, as many as hold enough scored samples.
+
+    The first one may be on the way from rest.
+    """
+    period = record.period_samples
+    if not period or not record.repeats or record.decay_s is not None:
+        return record
+    count = max(2, ceil(LEAST * len(record) / (scored * period)))
+    if count * period >= len(record):
+        return record
+    cut = record.cut(slice(count * period))
+    return replace(cut, period_samples=period)
 
 
 def _on(sample: ScoredSamples, rows: NDArray[np.intp], score: Score) -> Score:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
@@ -216,22 +217,15 @@ def _retuned(state: ModelState, score: Score) -> Products:
     return score.shared(columns, state.change_charges(columns.shape[1]))
 
 
-def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
-    """Score a variant where it is best on its grid.
-
-    Parameters
-    ----------
-    attempt : Attempt
-    glance : Attempt, optional
-        The same on fewer samples, which then choose the point of the grid.
+def best_points(look: Attempt) -> list[tuple[float, Point]]:
+    """Give the points of a grid that score least, with their scores, best first.
 
     Raises
     ------
     Declined
         If the blocks refuse every point of the grid: with what the last one said.
     """
-    axes = attempt.variant.grids.values()
-    look = attempt if glance is None or not axes else glance
+    axes = look.variant.grids.values()
     trials: list[tuple[float, Point]] = []
     refused: InputError | None = None
     for point in itertools.product(*(axis.tolist() for axis in axes)):
@@ -241,8 +235,22 @@ def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
             raise Declined(str(error)) from error
         except InputError as error:
             refused = error  # values that the block itself refuses are no candidates
+    if not trials:
+        raise Declined(str(refused)) from refused
+    return sorted(trials)[: 1 + len(trials) // MANY]
+
+
+def best_of(attempt: Attempt, points: Sequence[Point]) -> Trial:
+    """Score a variant at the best of some points.
+
+    Raises
+    ------
+    Declined
+        If the blocks refuse all of them: with what the last one said.
+    """
     found = []
-    for _, point in sorted(trials)[: 1 + len(trials) // MANY]:
+    refused: InputError | None = None
+    for point in points:
         try:
             found.append(attempt.at(point))
         except InputError as error:

@@ -227,7 +227,7 @@ def advance(
         say(why if little else "nothing is left that an effect could gain")
         return replace(progress, closed=True)
     state, score = found
-    ranking = rank(state, score)
+    ranking = rank(state, score, needs=FURTHER if state.added else PAYS)
     deferred = progress.deferred
     if _shape_takes_more(ranking, state, floor):
         deferred = True

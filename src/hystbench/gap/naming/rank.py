@@ -18,7 +18,7 @@ from hystbench.gap.fitting.model_score import directions_of, score_of
 from hystbench.gap.fitting.refit import added, finished
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.fitting.tried import Tried, tried
+from hystbench.gap.fitting.tried import Seen, on_all_records, seen
 from hystbench.gap.fitting.variant_search import Trial, fine
 from hystbench.gap.naming.rounds import Candidate, TriedVariant, best_forms, in_order
 from hystbench.gap.thresholds import (
@@ -48,6 +48,7 @@ def rank(
     score: Score,
     known: Sequence[Effect] | None = None,
     folds: bool = True,
+    needs: float = 0.0,
 ) -> tuple[Candidate, ...]:
     """Try every effect beside a model, the likely ones to the end.
 
@@ -59,6 +60,9 @@ def rank(
         All that are offered by default.
     folds : bool
         Whether finalists that pay are judged anew on records held back.
+    needs : float
+        What an effect has to gain to be taken. One that gains too little of it on its
+        grid for a search and a refit to make up for is as good as it will be.
 
     Returns
     -------
@@ -74,18 +78,27 @@ def rank(
         if effect.name in have
     ]
     others = [effect for effect in known if effect.name not in have]
-    found: list[Tried] = []
+    looks: list[Seen] = []
     for effect in others:
-        trials, why = tried(effect, state, score)
-        found += trials
+        trials, why = seen(effect, state, score)
+        looks += trials
         if why:
             declined.append(Candidate(effect.name, effect.place, declined=why))
+    worth = needs * (1 - BEHIND)
+    found, refused = on_all_records(
+        looks, now, lambda most: max(min(_near(most), most * (1 - BEHIND)), worth)
+    )
+    declined += [
+        Candidate(effect.name, effect.place, declined=refused[effect.name])
+        for effect in others
+        if effect.name in refused
+    ]
     if not found:
         return tuple(declined)
     best = min(trial.score for _, trial in found)
-    reach = max(NEAR, (now - best) * STILL)
+    least = max(_near(now - best), worth)
     refined = [
-        fine(attempt, trial) if trial.score < best + reach else trial
+        fine(attempt, trial) if now - trial.score > least else trial
         for attempt, trial in found
     ]
     refined.sort(key=lambda trial: trial.score)
@@ -100,7 +113,10 @@ def rank(
     likely = [
         trial
         for number, trial in enumerate(of_effect.values())
-        if (number < FINALISTS and trial.score < now - (now - best) * (1 - BEHIND))
+        if (
+            number < FINALISTS
+            and trial.score < now - max((now - best) * (1 - BEHIND), worth)
+        )
         or (trial.variant.effect == SHAPE and now - trial.score > PAYS)
     ]
     shown = {trial.variant.effect for trial in likely}
@@ -149,6 +165,11 @@ def rank(
             first_on_folds(in_order([again, *candidates]), state, score)
         )
     return tuple(_beyond_others(candidates, state, score))
+
+
+def _near(gain: float) -> float:
+    """Give the least gain on a grid that a search may bring up to so much."""
+    return gain - max(NEAR, gain * STILL)
 
 
 def _beyond_others(

@@ -71,7 +71,7 @@ def named_apart(
     if least <= score.least(start.freedom + 1):
         return found  # noise alone, and what is their own charged, scores no less
     models = dict.fromkeys((named.state, without_shared(named.state), start))
-    likely = _likely(start, tuple(models), score)
+    likely = _likely(start, tuple(models), score, least)
     # Beside more than that they cannot be told from what the simulator does wrong.
     most = max(ABOVE_NOISE * square, unnamed_share * start.power(square))
     for _ in range(ROUNDS):
@@ -93,7 +93,7 @@ def named_apart(
         found, least = (apart, again, replace(own, share=share)), value
         if same:
             break  # naming has told all that it can
-        likely = _likely(start, (on_records(again.state, start.records),), score)
+        likely = _likely(start, (on_records(again.state, start.records),), score, least)
     return found
 
 
@@ -121,7 +121,7 @@ ROUNDS = 3
 
 
 def _likely(
-    start: ModelState, models: Sequence[ModelState], score: Score
+    start: ModelState, models: Sequence[ModelState], score: Score, least: float
 ) -> list[tuple[float, OwnValues]]:
     """Find what records have of their own beside models, and the scores with it.
 
@@ -139,6 +139,8 @@ def _likely(
             if value + own.charge >= best[0] - ENOUGH:
                 break
             best = value + own.charge, own
+            if best[0] > least + PAYS:
+                break  # found again beside it they gain less than that
             state = on_records(apart, start.records)
         if best[1].records:
             found.append(best)

@@ -21,6 +21,10 @@ SAMPLES = 1000
 """Scored samples of a record."""
 
 
+Line = tuple[NDArray[np.intp], FloatArray]
+"""Samples, and the shares of the way to the next ones."""
+
+
 @dataclass(frozen=True)
 class ScoredSamples:
     """Positions of the scored samples in each record.
@@ -91,20 +95,42 @@ class ScoredSamples:
         ndarray, shape (scored samples,) or (scored samples, k)
         """
         if self.apart:
-            among = zip(signals, self.positions, self.apart, strict=True)
-            taken = [_between(x, p / step) for x, p, step in among]
+            lines = self._lines(tuple(map(len, signals)))
+            taken = [_between(x, *at) for x, at in zip(signals, lines, strict=True)]
         else:
             taken = [x[p] for x, p in zip(signals, self.positions, strict=True)]
         if self.of_start:
             taken = [without(x, d) for x, d in zip(taken, self.of_start, strict=True)]
         return np.concatenate(taken)
 
+    def _lines(self, lengths: tuple[int, ...]) -> list[Line]:
+        """Give between which samples of signals of such lengths the scored ones lie."""
+        if lengths not in self._known_lines:
+            places = [
+                p / step for p, step in zip(self.positions, self.apart, strict=True)
+            ]
+            left = [
+                np.minimum(at.astype(np.intp), n - 2)
+                for at, n in zip(places, lengths, strict=True)
+            ]
+            self._known_lines[lengths] = [
+                (k, at - k) for k, at in zip(left, places, strict=True)
+            ]
+        return self._known_lines[lengths]
 
-def _between(signal: FloatArray, places: FloatArray) -> FloatArray:
-    """Give a signal, shape (n,) or (n, k), at places between its samples."""
-    left = np.minimum(places.astype(np.intp), len(signal) - 2)
-    part = (places - left).reshape(-1, *[1] * (signal.ndim - 1))
-    return np.asarray(signal[left] + part * (signal[left + 1] - signal[left]))
+    @cached_property
+    def _known_lines(self) -> dict[tuple[int, ...], list[Line]]:
+        return {}
+
+
+def _between(
+    signal: FloatArray, left: NDArray[np.intp], part: FloatArray
+) -> FloatArray:
+    """Give a signal, shape (n,) or (n, k), at places behind samples of it."""
+    if signal.ndim > 1:
+        part = part[:, None]
+    start = signal[left]
+    return np.asarray(start + part * (signal[left + 1] - start))
 
 
 def without(signal: FloatArray, column: FloatArray) -> FloatArray:

@@ -14,6 +14,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,14 +78,29 @@ def _behind(
     """Make signals of the hysteresis and send them through what follows it."""
     if simulation.loop is None:
         return np.zeros((len(sample), 0))
-    behind = simulation.chain[simulation.behind_hysteresis :]
-    at = None if behind else sample  # what nothing follows is wanted there alone
-    ways = make(simulation, simulation.loop, at)
-    if behind:
+    if simulation.behind_hysteresis < len(simulation.chain):
+        now = sample.take(simulation.output)
         return np.column_stack(
-            [sample.take(_sent(simulation, behind, way)) for way in ways]
+            [
+                (sample.take(after) - now) / change
+                for after, change in _all_sent(simulation, make)
+            ]
         )
+    # What nothing follows is wanted at the scored samples alone.
+    ways = make(simulation, simulation.loop, sample)
     return np.column_stack([np.concatenate(way) for way in ways])
+
+
+@lru_cache(maxsize=2)
+def _all_sent(
+    simulation: Simulation,
+    make: Callable[[Simulation, int, ScoredSamples | None], list[Signals]],
+) -> list[tuple[Signals, float]]:
+    """Send each way on; kept, as more than one choice of samples is asked for."""
+    behind = simulation.chain[simulation.behind_hysteresis :]
+    assert simulation.loop is not None  # noqa: S101  (for the type checker)
+    ways = make(simulation, simulation.loop, None)
+    return [_sent(simulation, behind, way) for way in ways]
 
 
 def orthonormal(columns: FloatArray) -> FloatArray:
@@ -129,7 +145,7 @@ def _mixed(
     amplitude = max(float(np.abs(z).max()) for z in signals) or 1.0
     thresholds = np.arange(MIXED) / (MIXED + 1)  # the first is the input itself
     plays = [
-        play(z / amplitude, thresholds)[0].T[:, _rows(k, sample)]
+        np.ascontiguousarray(play(z / amplitude, thresholds)[0].T[:, _rows(k, sample)])
         for k, z in enumerate(signals)
     ]
     each = range(MIXED)
@@ -156,7 +172,7 @@ def _powers(signals: Signals, sample: ScoredSamples | None) -> list[Signals]:
     thresholds = amplitude * np.arange(1, OPERATORS + 1) / (OPERATORS + 1)
     scaled = _at(tuple(z / amplitude for z in signals), sample)
     plays = [
-        play(z, thresholds)[0].T[:, _rows(k, sample)] / amplitude
+        np.ascontiguousarray(play(z, thresholds)[0].T[:, _rows(k, sample)]) / amplitude
         for k, z in enumerate(signals)
     ]
     ways = []
@@ -174,11 +190,12 @@ def _own(
     """Give a few groups of the block's operators, and tangents of its envelopes."""
     count = len(block.thresholds)
     groups = np.array_split(np.arange(count), min(count, OPERATORS))
+    starts = [group[0] for group in groups]
     sums = [
-        np.add.reduceat(block.operators(z), [group[0] for group in groups], axis=1)
+        np.ascontiguousarray(np.add.reduceat(block.operators(z), starts, axis=1).T)
         for z in v
     ]
-    ways: list[Signals] = [tuple(z[:, k] for z in sums) for k in range(len(groups))]
+    ways: list[Signals] = [tuple(z[k] for z in sums) for k in range(len(groups))]
     now = simulation.run((block,), v)
     slope = 1.0 / (max(float(np.abs(z).max()) for z in v) or 1.0)
     height = max(abs(block.envelope[k]) for k in HEIGHTS) or 1.0
@@ -193,17 +210,19 @@ def _own(
 
 def _sent(
     simulation: Simulation, behind: tuple[Block, ...], signals: Signals
-) -> Signals:
-    """Send a small change of the hysteresis's output through the blocks behind it."""
-    if not behind:
-        return signals
+) -> tuple[Signals, float]:
+    """Send a small change of the hysteresis's output through the blocks behind it.
+
+    Returns
+    -------
+    output : tuple of ndarray
+        With the change.
+    change : float
+        How small it is.
+    """
     now = simulation.before[simulation.behind_hysteresis]
     size = SMALL * simulation.largest(simulation.behind_hysteresis)
-    change = size / max(float(max(np.abs(s).max() for s in signals)), 1e-300)
+    largest = float(max(max(s.max(), -s.min()) for s in signals))
+    change = size / max(largest, 1e-300)
     moved = tuple(z + change * s for z, s in zip(now, signals, strict=True))
-    return tuple(
-        (after - before) / change
-        for after, before in zip(
-            simulation.run(behind, moved), simulation.output, strict=True
-        )
-    )
+    return simulation.run(behind, moved), change
