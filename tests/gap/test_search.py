@@ -28,15 +28,15 @@ from tests.gap.small import block, hysteresis, measured
 
 def test_what_stays_says_of_what_it_is_a_share():
     """5 % of what no shape explains stays, and 40 % of the whole residual."""
-    said = Left(before=100.0, after=5.0, all_before=1000.0, all_after=400.0).stays
+    said = Left(before=100.0, after=5.0, all_before=1000.0, all_after=400.0).sentence
     assert "on the fit records 40 % of the gap's power above the noise floor" in said
     assert "part that no wrong shape of the hysteresis could leave, 5 %" in said
 
 
 def test_one_figure_is_told_where_both_are_alike():
-    assert Left(100.0, 5.0, 1000.0, 60.0).stays.count("%") == 1
+    assert Left(100.0, 5.0, 1000.0, 60.0).sentence.count("%") == 1
     # The whole may be the lesser share: then it is the one that decides.
-    said = Left(100.0, 50.0, 1000.0, 60.0).stays
+    said = Left(100.0, 50.0, 1000.0, 60.0).sentence
     assert "6 %" in said
     assert "50 %" not in said
 

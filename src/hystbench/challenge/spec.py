@@ -39,8 +39,9 @@ class CaseSpec:
     effects : tuple of str
         Names, in no order.
     family : str
-        Hysteresis of the plant: ``gpi``, ``preisach`` or ``jiles-atherton``; or a
-        machine: ``mass-spring``, ``free-mass``, ``pendulum``, ``impedance``, ``tank``.
+        Hysteresis of the plant: ``gpi``, ``preisach``, ``jiles-atherton`` or ``duhem``;
+        or a machine: ``mass-spring``, ``free-mass``, ``pendulum``, ``impedance``,
+        ``tank``.
     ratio_db : float
         20 log10 of rms(output with the effect minus without) over the noise's rms on
         the fit records; of several effects, for the one that shows least. With

@@ -32,7 +32,7 @@ from hystbench.gap.judging.effect_rows import (
 )
 from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.judging.unnamed import Unnamed, what_is_unnamed
-from hystbench.gap.judging.verdict import Left, Word, judge, what_is_left, what_mends
+from hystbench.gap.judging.verdict import Left, Verdict, judge, what_is_left, what_mends
 from hystbench.gap.locate import curves, locate
 from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.ladder import contributions, rungs
@@ -127,7 +127,7 @@ def judge_and_tell(
         "effects": _effects(named, model, left, floor, found.trust),
         "fit": _fit(start, state, floor)
         | {
-            "left": left.loose,
+            "left": left.share,
             "lone_share": left.lone,
             "unrepeated": left.unrepeated,
         },
@@ -164,7 +164,7 @@ def judge_and_tell(
 class _Judged(NamedTuple):
     """A verdict, and what it is made of."""
 
-    verdict: Word
+    verdict: Verdict
     reason: str
     trust: float
     unnamed: Unnamed

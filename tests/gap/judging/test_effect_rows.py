@@ -186,7 +186,7 @@ def histories(draw):
 def test_how_sure_a_name_is_follows_from_the_rows_of_the_ranking(history, loose):
     named, taken = history
     left = Left(100.0, 100.0 * loose, 100.0, 100.0)
-    fit = {"left": left.loose}
+    fit = {"left": left.share}
     content = through_a_file({"ranking": ranking_rows(named), "fit": fit})
     for effect in taken:
         item = Added(effect, "drive", "", (), {}, 1.0)

@@ -45,7 +45,7 @@ def test_every_finding_has_a_word_and_a_reason(before, after, one, other, named,
     assert (word == "no-gap") <= (not named)
     assert reason
     assert "\n" not in reason
-    assert 0 <= found.loose <= 1
+    assert 0 <= found.share <= 1
 
 
 @given(st.floats(-1, ABOVE_NOISE), st.none() | SHARES)
@@ -253,7 +253,7 @@ def test_what_is_left_of_a_gap_is_counted_in_floors():
     assert abs(found.all_after) < 0.2
     assert abs(found.after) < 0.2
     assert found.before <= found.all_before
-    assert found.loose < 0.05
+    assert found.share < 0.05
 
 
 def test_periods_that_are_found_are_what_mends_an_upper_bound():

@@ -21,8 +21,8 @@ from hystbench.gap.bases.orders import (
     Judged,
     Orders,
     as_good,
+    simplest_as_good,
     with_plainest_start,
-    without_needless_zeros,
 )
 from hystbench.gap.bases.spectral import fit_ratio
 from hystbench.gap.bases.split_linear import best_split, chain_of, is_bent
@@ -116,7 +116,7 @@ def linear_of(evidence: Evidence) -> Linear:
     A ratio of polynomials in s and a constant, in output error. Orders from 0 (a gain)
     to 6 are fitted to the spectra first, then by least squares on simulation with the
     dataset's hold, without the first tenth of each record, and with an offset of each
-    record where its zero is not physical. Where the folds ask for 5 or more, modes are
+    record where its zero is not physical. Where order 5 or more is needed, modes are
     added one by one, up to order 12. The order is the lowest whose error is within 2 %
     of the best on folds of the fit records, or on all of them; then the numerator is
     shortened by the same rule, and the input may come up to a sample early or late.
@@ -153,7 +153,7 @@ def linear_of(evidence: Evidence) -> Linear:
     else:
         chosen = next(item for item in found if as_good(item, tried))
         steps = {item.dt for item in evidence.fit}
-        chosen = without_needless_zeros(
+        chosen = simplest_as_good(
             chosen, tried, min(steps) if len(steps) == 1 else None
         )
         if chosen.orders.late:

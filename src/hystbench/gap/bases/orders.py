@@ -26,7 +26,7 @@ from hystbench.record import Mask, Record
 
 #: Highest order that is tried, of all poles at once, and with modes added one by one.
 HIGHEST = 6
-MOST_ORDERS = 12
+HIGHEST_WITH_MODES = 12
 #: Static stiffness of a free mass over what brakes it: none, in windows of any length.
 UNHELD = 1e-9
 #: Order from which on a further mode is looked for: two modes and a lag do not do.
@@ -39,8 +39,8 @@ PEAKS = 3
 #: share: a gain on folds alone is their luck.
 NUMBER_PAYS = 0.02
 #: A further one of many modes has a band of its own, of which it may take all while it
-#: takes little of the whole: it is needed from this share on.
-MODE_PAYS = 0.005
+#: takes little of the whole: modes are added for as long as one takes this share.
+ANOTHER_MODE = 0.005
 #: Another timing of the input is one of a few and no number of its own: it is needed if
 #: it lowers the error by this share.
 TIMING_PAYS = 0.01
@@ -184,7 +184,7 @@ class Orders:
         Of many poles at once a fit to the spectra finds no good start.
         """
         found: list[Found] = []
-        while len(last.ratio.a) + 2 <= MOST_ORDERS:
+        while len(last.ratio.a) + 2 <= HIGHEST_WITH_MODES:
             left = last.task.left(last.ratio)
             begun = [
                 last.task.refined(ratio, self.whole, FOLD_ROUNDS)
@@ -194,7 +194,7 @@ class Orders:
             ]
             best = min(begun, key=lambda ratio: ratio.cost)
             further = self.judged(last.task, best)
-            if not lowers(further, last, MODE_PAYS):
+            if not lowers(further, last, ANOTHER_MODE):
                 break
             found.append(further)
             last = further
@@ -210,7 +210,7 @@ class Orders:
         return Orders(replace(self.evidence, fit=fit), late)
 
 
-def without_needless_zeros(
+def simplest_as_good(
     found: Found, others: Sequence[Judged], step: float | None
 ) -> Found:
     """Leave out zeros that a ratio does not need, and take its input in time.

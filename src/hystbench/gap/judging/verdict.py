@@ -27,7 +27,7 @@ from hystbench.gap.thresholds import (
 from hystbench.periods import find_period
 from hystbench.record import Record
 
-Word = Literal["named", "parameters", "no-gap", "unnamed"]
+Verdict = Literal["named", "parameters", "no-gap", "unnamed"]
 
 OFF = 1 / 9
 """Share of the gap that stays and may be the base's own error: a third of its rms."""
@@ -95,10 +95,10 @@ class Left:
     @property
     def little_named(self) -> bool:
         """Whether effects leave most of what may be a slightly wrong shape alone."""
-        return self.slight_before and self.loose > LOOSE
+        return self.slight_before and self.share > LOOSE
 
     @property
-    def loose(self) -> float:
+    def share(self) -> float:
         """Share of the gap that no effect takes away.
 
         The lesser of two: of the whole residual, which a wrong base fills too, and of
@@ -114,7 +114,7 @@ class Left:
         return max(self.all_after, 0.0) / max(self.all_before, self.all_after, 1e-9)
 
     @property
-    def stays(self) -> str:
+    def sentence(self) -> str:
         """Say how much of the gap stays on the fit records, and of what it is a share.
 
         The part beyond a wrong shape, by which the verdict is given, is told where it
@@ -124,11 +124,11 @@ class Left:
             f"on the fit records {100 * self.whole:.0f} % of the gap's power above the "
             "noise floor stays"
         )
-        if self.whole - self.loose < SAID:
+        if self.whole - self.share < SAID:
             return told
         return (
             f"{told}; of the part that no wrong shape of the hysteresis could leave, "
-            f"{100 * self.loose:.0f} %"
+            f"{100 * self.share:.0f} %"
         )
 
     @property
@@ -195,7 +195,7 @@ def judge(
     unnamed: Unnamed = NOTHING,
     unnamed_share: float = UNNAMED_SHARE,
     mends: str = GIVE,
-) -> tuple[Word, str]:
+) -> tuple[Verdict, str]:
     """Choose the word and say why.
 
     Parameters
@@ -221,10 +221,10 @@ def judge(
     if not named:
         if left.slight and left.foreign:
             return "unnamed", left.foreign
-        if retuned and left.all_before > ABOVE_NOISE and left.loose < LOOSE:
+        if retuned and left.all_before > ABOVE_NOISE and left.share < LOOSE:
             return "parameters", (
                 "re-tuning the base within what is free is enough, and no effect pays "
-                f"beside it: {left.stays}"
+                f"beside it: {left.sentence}"
             )
         if left.slight and floor_is_upper_bound:
             return "unnamed", (
@@ -255,15 +255,15 @@ def judge(
         return "unnamed", why
     if unnamed.stays > LOOSE:
         return "unnamed", (
-            f"too much stays for a name: {left.stays}, and most of it follows no known "
-            "signal"
+            f"too much stays for a name: {left.sentence}, and most of it follows no "
+            "known signal"
         )
     if much:
         return "named", (
-            f"{left.stays}; this is less sure, as {unnamed.reason(unnamed_share)}, "
+            f"{left.sentence}; this is less sure, as {unnamed.reason(unnamed_share)}, "
             "though all that is left would be no gap if nothing were named"
         )
-    return "named", left.stays
+    return "named", left.sentence
 
 
 def confidence(
@@ -289,7 +289,7 @@ def confidence(
         for item in ranking
         if item.effect != first.effect and item.state is not None
     )
-    explained = 1.0 - left.loose
+    explained = 1.0 - left.share
     return min((1.0 - DOUBT) * explained / (1.0 + odds), is_anything(errors))
 
 

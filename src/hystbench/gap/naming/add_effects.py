@@ -15,7 +15,11 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.forecast_calls import foretell, foretell_rest
 from hystbench.gap.naming.rank import rank
-from hystbench.gap.naming.removal import TakenOut, is_most_of_it, without_what_goes
+from hystbench.gap.naming.removal import (
+    TakenOut,
+    is_shape_that_matters,
+    without_what_goes,
+)
 from hystbench.gap.naming.rounds import MOST, Candidate, Round, reasons
 from hystbench.gap.naming.second_looks import reconsidered
 from hystbench.gap.progress import Say, silent
@@ -311,6 +315,6 @@ def _pays(item: Candidate, state: ModelState, floor: float, progress: SoFar) -> 
     if not state.added:
         return True
     share = item.state.share(state, floor, progress.gap)
-    if is_most_of_it(item.effect, item.gain, share):
+    if is_shape_that_matters(item.effect, item.gain, share):
         return True
     return item.gain > FURTHER and share > progress.share

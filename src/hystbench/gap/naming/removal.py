@@ -75,13 +75,13 @@ def needless(state: ModelState, floor_rms: float, gap: float) -> Without | None:
         full, least = finished(state, score)
         gain = value - least
         share = full.share(short, floor_rms**2, gap)
-        if gain < FURTHER and not is_most_of_it(item.effect, gain, share):
+        if gain < FURTHER and not is_shape_that_matters(item.effect, gain, share):
             reason = f"needless beside the others, its gain is {gain:.1f}"
             return TakenOut(item.effect, reason), short
     return None
 
 
-def is_most_of_it(effect: str, gain: float, share: float) -> bool:
+def is_shape_that_matters(effect: str, gain: float, share: float) -> bool:
     """Tell whether a wrong shape pays and takes much of the gap, dear as it is."""
     return effect == SHAPE and gain >= PAYS and share > LOOSE
 
