@@ -264,8 +264,8 @@ static double hb_outflow(double rate, double exponent, double h)
     return h > 0 ? rate * pow(h, exponent) : 0;
 }
 
-/* Runge-Kutta method of second order, exact with an exponent of one, over straight lines
- * as for the mechanism. */
+/* Runge-Kutta method of second order, over straight lines as for the mechanism; with an
+ * exponent of one a single part is exact. */
 static double hb_store(double gain, double bias, int segments, int points,
                        int ahead, const double *corners, double ramp, int parts, double t,
                        double rate, double exponent, double height, double start,
@@ -287,7 +287,7 @@ static double hb_store(double gain, double bias, int segments, int points,
         const double slope = ramp * (then - now) / parts;
         for (int s = 0; s < parts; s++) {
             const double from = now + s * slope;
-            if (exponent == 1) {
+            if (exponent == 1 && parts == 1) {
                 h = hb_most(0, kept * h + steady * from + rising * slope);
             } else {
                 const double rise = t / 2 * (from - hb_outflow(rate, exponent, h));
@@ -296,7 +296,7 @@ static double hb_store(double gain, double bias, int segments, int points,
                 h = hb_most(0, h + t * (from + slope / 2 - left));
             }
             if (h > height) {
-                over += (h - height) * (exponent == 1 ? t / steady : 1);
+                over += h - height;
                 h = height;
             }
         }

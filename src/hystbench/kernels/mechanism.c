@@ -117,8 +117,8 @@ EXPORT void hb_settle(double stiffness, double p, index_t count, const double *f
 
 /* Level h of a store, h' = inflow - rate h^exponent, held below the height: what would
  * rise above it is spilt, as a mean over the interval before each sample.  Runge-Kutta
- * of second order (midpoint) in equal parts of each interval, exact with an exponent of
- * one; the inflow moves as in hb_mechanism. */
+ * of second order (midpoint) in equal parts of each interval; with an exponent of
+ * one a single part is exact. The inflow moves as in hb_mechanism. */
 EXPORT void hb_store(index_t n, index_t parts, double dt, double ramp, double rate,
                      double exponent, double height, const double *z, double *level,
                      double *outflow, double *spilt)
@@ -135,15 +135,13 @@ EXPORT void hb_store(index_t n, index_t parts, double dt, double ramp, double ra
         double h = level[k], over = 0;
         for (index_t s = 0; s < parts; s++) {
             const double from = z[k] + s * slope;
-            if (exponent == 1) {
+            if (exponent == 1 && parts == 1) {
                 h = fmax(0, kept * h + steady * from + rising * slope);
             } else {
                 const double half = fmin(height, fmax(0, h + t / 2 * (from - FLOW(h))));
                 h = fmax(0, h + t * (from + slope / 2 - FLOW(half)));
             }
-            /* At the rim as much leaves all the while as would, had it not risen. */
-            if (h > height)
-                over += (h - height) * (exponent == 1 ? t / steady : 1), h = height;
+            if (h > height) over += h - height, h = height;
         }
         level[k + 1] = h;
         outflow[k + 1] = FLOW(h);
