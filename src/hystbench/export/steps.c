@@ -265,7 +265,7 @@ static double hb_outflow(double rate, double exponent, double h)
 }
 
 /* Runge-Kutta method of second order, over straight lines as for the mechanism; with an
- * exponent of one a single part is exact. */
+ * exponent of one and no rim (a height of 1e30) it is exact. */
 static double hb_store(double gain, double bias, int segments, int points,
                        int ahead, const double *corners, double ramp, int parts, double t,
                        double rate, double exponent, double height, double start,
@@ -287,7 +287,7 @@ static double hb_store(double gain, double bias, int segments, int points,
         const double slope = ramp * (then - now) / parts;
         for (int s = 0; s < parts; s++) {
             const double from = now + s * slope;
-            if (exponent == 1 && parts == 1) {
+            if (exponent == 1 && height >= 1e30) {
                 h = hb_most(0, kept * h + steady * from + rising * slope);
             } else {
                 const double rise = t / 2 * (from - hb_outflow(rate, exponent, h));

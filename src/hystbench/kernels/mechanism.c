@@ -118,7 +118,7 @@ EXPORT void hb_settle(double stiffness, double p, index_t count, const double *f
 /* Level h of a store, h' = inflow - rate h^exponent, held below the height: what would
  * rise above it is spilt, as a mean over the interval before each sample.  Runge-Kutta
  * of second order (midpoint) in equal parts of each interval; with an exponent of
- * one a single part is exact. The inflow moves as in hb_mechanism. */
+ * one and no rim (a height of 1e30) it is exact. The inflow moves as in hb_mechanism. */
 EXPORT void hb_store(index_t n, index_t parts, double dt, double ramp, double rate,
                      double exponent, double height, const double *z, double *level,
                      double *outflow, double *spilt)
@@ -135,7 +135,7 @@ EXPORT void hb_store(index_t n, index_t parts, double dt, double ramp, double ra
         double h = level[k], over = 0;
         for (index_t s = 0; s < parts; s++) {
             const double from = z[k] + s * slope;
-            if (exponent == 1 && parts == 1) {
+            if (exponent == 1 && height >= 1e30) {
                 h = fmax(0, kept * h + steady * from + rising * slope);
             } else {
                 const double half = fmin(height, fmax(0, h + t / 2 * (from - FLOW(h))));
