@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from hystbench.blocks.base import Block
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.simulated_column import NEEDS_RERUN
+from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError
 from hystbench.gap.effects.effect import Declined, Effect
 from hystbench.gap.effects.variant import Variant
@@ -247,9 +248,11 @@ def records_at_a_glance(count: int) -> int:
 def _half(state: ModelState, score: Score) -> tuple[ModelState, Score]:
     """Give a model and its score on the half of the records with most of the gap.
 
-    Of whole periods the first ones stand for all.
+    Of whole periods the first ones stand for all. But a part of a record is a further
+    call of a simulator of a user's own.
     """
     slices = state.sample.slices
+    whole = any(isinstance(block, Simulator) for block in state.chain)
     count = len(slices)
     squares = [float(np.mean(state.residual[part] ** 2)) for part in slices]
     order = np.argsort(squares, kind="stable")[count - records_at_a_glance(count) :]
@@ -257,7 +260,8 @@ def _half(state: ModelState, score: Score) -> tuple[ModelState, Score]:
     records, positions, rows = [], [], []
     for k in kept:
         places = state.sample.positions[k]
-        records.append(first_periods(state.records[k], len(places)))
+        record = state.records[k]
+        records.append(record if whole else first_periods(record, len(places)))
         positions.append(places[places < len(records[-1])])
         rows.append(slices[k].start + np.arange(len(positions[-1])))
     every = np.concatenate(rows)
