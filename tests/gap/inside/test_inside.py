@@ -114,7 +114,7 @@ def test_a_law_promises_what_its_numbers_do_that_start_at_zero():
     host = best_host(begun, score)
     laws = laws_for(host)["stiffness-hardening"]
     whole = Beginnings.all_of(host.state, score)
-    put_in = starts(host, "stiffness-hardening", laws, whole)
+    put_in = starts(host, host.state, "stiffness-hardening", laws, whole)
     promised = {item.forms: item.score for item in put_in}
     assert promised["square and cube",] < promised["cube",] - 200
 

@@ -1,12 +1,9 @@
 """What a solver says of an effect that it may not name: blind by kind."""
 
-from collections import Counter
-
 import pandas as pd
 
 from hystbench.challenge.contest.frames import sure
-from hystbench.challenge.contest.score import SHAPE
-from hystbench.challenge.contest.tables import wilson
+from hystbench.challenge.contest.tables import how_often, names_that_count, wilson
 
 COLUMNS = ("left_out", "cases", "no_name", "low", "high", "confident", "called")
 EVERY = "all"
@@ -30,12 +27,8 @@ def left_out(cases: pd.DataFrame) -> pd.DataFrame:
         more than .8, and what was named how often. A free shape of the
         hysteresis beside a plant of another family than the base's is no name.
     """
-    both = zip(cases["given"], cases["family"], strict=True)
-    kept = [
-        {name: x for name, x in names.items() if family == "gpi" or name != SHAPE}
-        for names, family in both
-    ]
-    said = cases.assign(said=pd.Series(kept, index=cases.index, dtype=object))
+    kept = pd.Series(names_that_count(cases), index=cases.index, dtype=object)
+    said = cases.assign(said=kept)
     groups = [*said.groupby("truth"), (EVERY, said)]
     found = [_row(str(name), list(group["said"])) for name, group in groups]
     return pd.DataFrame(found, columns=list(COLUMNS)).round(4)
@@ -43,7 +36,5 @@ def left_out(cases: pd.DataFrame) -> pd.DataFrame:
 
 def _row(name: str, said: list[dict[str, float]]) -> tuple[object, ...]:
     silent = wilson(sum(not names for names in said), len(said))
-    counts = Counter(called for names in said for called in names)
-    called = ", ".join(f"{word} {count}" for word, count in counts.most_common())
     share = (silent.share, silent.low, silent.high)
-    return (name, len(said), *share, sum(map(sure, said)) / len(said), called)
+    return (name, len(said), *share, sum(map(sure, said)) / len(said), how_often(said))

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
 import pandas as pd
 
-from hystbench.challenge.contest.frames import CONFIDENT
-from hystbench.challenge.contest.score import SHAPE
-from hystbench.challenge.contest.tables import wilson
+from hystbench.challenge.contest.frames import sure
+from hystbench.challenge.contest.tables import how_often, names_that_count, wilson
 from hystbench.challenge.plant.effects import IN_ACTUATOR, UNLISTED
 from hystbench.challenge.plant.hysteresis import KEPT
 
@@ -57,31 +55,14 @@ def _rows(
 ) -> Iterator[tuple[Any, ...]]:
     groups = [*cases.groupby(names), (EVERY, cases)] if len(cases) else []
     for name, group in groups:
-        wrong = [_wrong(case) for _, case in group.iterrows()]
-        right = [_right(case) for _, case in group.iterrows()]
-        share = wilson(sum(right), len(right))
-        sure = sum(any(x > CONFIDENT for x in names.values()) for names in wrong)
-        counts = Counter(called for names in wrong for called in names)
-        called = ", ".join(f"{word} {count}" for word, count in counts.most_common())
-        interval = (share.share, share.low, share.high)
-        yield (sort, str(name), len(group), *interval, sure / len(group), called)
-
-
-def _named(case: pd.Series[Any]) -> dict[str, float]:
-    """Names that count, with the confidence of each."""
-    free = case["family"] != "gpi"
-    return {x: sure for x, sure in case["given"].items() if not free or x != SHAPE}
-
-
-def _hidden(case: pd.Series[Any]) -> set[str]:
-    """Listed effects that are hidden."""
-    return set(case["truth"].split()) - set(UNLISTED)
-
-
-def _wrong(case: pd.Series[Any]) -> dict[str, float]:
-    hidden = _hidden(case)
-    return {name: sure for name, sure in _named(case).items() if name not in hidden}
-
-
-def _right(case: pd.Series[Any]) -> bool:
-    return set(_named(case)) == _hidden(case)
+        said = names_that_count(group)
+        hidden = [set(truth.split()) - set(UNLISTED) for truth in group["truth"]]
+        both = list(zip(said, hidden, strict=True))
+        right = wilson(sum(set(given) == there for given, there in both), len(both))
+        wrong = [
+            {x: confidence for x, confidence in given.items() if x not in there}
+            for given, there in both
+        ]
+        interval = (right.share, right.low, right.high)
+        surely = sum(map(sure, wrong)) / len(wrong)
+        yield (sort, str(name), len(both), *interval, surely, how_often(wrong))

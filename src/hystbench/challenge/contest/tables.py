@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -55,6 +55,25 @@ def wilson(hits: int, cases: int) -> Share:
         return Share(None, None, None, 0)
     interval = binomtest(hits, cases).proportion_ci(CONFIDENCE, method="wilson")
     return Share(hits / cases, float(interval.low), float(interval.high), cases)
+
+
+def names_that_count(cases: pd.DataFrame) -> list[dict[str, float]]:
+    """Give the names of each case with their confidence, without what is no name.
+
+    That is a free shape of the hysteresis beside a plant of another family than the
+    base's.
+    """
+    both = zip(cases["given"], cases["family"], strict=True)
+    return [
+        {name: x for name, x in names.items() if family == "gpi" or name != SHAPE}
+        for names, family in both
+    ]
+
+
+def how_often(names: Iterable[Iterable[str]]) -> str:
+    """Say which names were given how often, the most frequent first."""
+    counts = Counter(name for given in names for name in given)
+    return ", ".join(f"{name} {count}" for name, count in counts.most_common())
 
 
 def confusion(cases: pd.DataFrame) -> list[tuple[Any, ...]]:

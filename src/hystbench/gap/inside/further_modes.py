@@ -121,11 +121,13 @@ def _in_one_more(
     linear = fitted(chosen, score)
     laws = offer(linear)
     beginnings = Beginnings.of(linear.state, score)
+    short = beginnings.cut(linear.state)
     begun = [
         start
         for item in acting
         for start in starts(
             linear,
+            short,
             item.effect,
             [law for law in laws.get(item.effect, ()) if law.form == item.form],
             beginnings,

@@ -138,13 +138,12 @@ def _one_more(
     stores = any(of_stores(item) for item in carried)
     first = carried[0].state
     beginnings = (Beginnings.all_of if stores else Beginnings.of)(first, score)
-    begun = [
-        further
-        for before in carried
-        for name, own in offer(before).items()
-        if name not in before.effects
-        for further in starts(before, name, own, beginnings)
-    ]
+    begun: list[Fitted] = []
+    for before in carried:
+        short = beginnings.cut(before.state)  # its tangents serve all effects
+        for name, own in offer(before).items():
+            if name not in before.effects:
+                begun += starts(before, short, name, own, beginnings)
     if not begun:
         return []
     if stores:
@@ -163,17 +162,20 @@ def may_gain(item: Fitted, score: Score) -> bool:
 
 
 def starts(
-    before: Fitted, effect: str, laws: Sequence[Law | Changed], beginnings: Beginnings
+    before: Fitted,
+    short: ModelState,
+    effect: str,
+    laws: Sequence[Law | Changed],
+    beginnings: Beginnings,
 ) -> Iterator[Fitted]:
     """Put a further force inside, by each law and start, with the score to be expected.
 
-    That is the score of the beginnings of the records. The residual there is explained
-    by what the force does as it starts, as one column, by what each of its numbers does
-    that starts at zero, which that column does not hold, and by what changes of all
-    other numbers do, by least squares.
+    That is the score of the beginnings of the records, on which ``short`` is the model
+    before. The residual there is explained by what the force does as it starts, as one
+    column, by what each of its numbers does that starts at zero, which that column does
+    not hold, and by what changes of all other numbers do, by least squares.
     """
     state = before.state
-    short = beginnings.cut(state)
     tangents, weights = short.tangents, record_weights(short)
     for law in laws:
         begun = (
