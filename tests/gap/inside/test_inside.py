@@ -248,7 +248,7 @@ def test_a_window_knows_which_of_its_samples_were_measured():
 
 
 def test_where_the_place_does_not_matter_no_force_depends_on_it():
-    moved = Moved(reach=1.0, speed=1.0, force=1.0, step=DT, anywhere=True)
+    moved = Moved(reach=1.0, speed=1.0, force=1.0, anywhere=True)
     offered = {
         name for name, item in effects().items() if any(item.in_mechanism(moved))
     }
@@ -258,7 +258,7 @@ def test_where_the_place_does_not_matter_no_force_depends_on_it():
 
 def test_what_is_offered_does_not_need_a_spring_that_pulls_back():
     """The stiffness of an impedance that was fitted may be a little below zero."""
-    moved = Moved(reach=1.0, speed=1.0, force=1.0, step=DT, stiffness=-0.3)
+    moved = Moved(reach=1.0, speed=1.0, force=1.0, stiffness=-0.3)
     offered = {
         name for name, item in effects().items() if any(item.in_mechanism(moved))
     }

@@ -19,7 +19,7 @@ NOISE = 0.02
 CHANNELS = Channel("pump", "V"), Channel("level", "V")
 
 
-def tanks(root, height, seed=3, powers=None, rates=None):
+def tanks(root, height, seed=3, powers=None, rates=None, pump=False):
     """One tank above another; what the upper one spills is lost."""
     rng = np.random.default_rng(seed)
     u = np.clip(3 + np.repeat(rng.normal(0, 1.5, COUNT // 20), 20), 0, 7)
@@ -27,8 +27,11 @@ def tanks(root, height, seed=3, powers=None, rates=None):
     powers = powers or ((0.5, 0.5) if root else (1.0, 1.0))
     rates = rates or ((0.35, 0.3) if root else (0.04, 0.03))
     step = DT / FINE
-    for flow in u:
+    for volts in u:
         out.append(lower)
+        flow = (
+            1.6 * max(volts - 1.5, 0.0) if pump else volts
+        )  # it lifts nothing at first
         for _ in range(FINE):
             leaves = rates[0] * max(upper, 0.0) ** powers[0]
             lower += step * (leaves - rates[1] * max(lower, 0.0) ** powers[1])
@@ -136,3 +139,18 @@ def tank(u, level):
         for _ in range(FINE):
             level += step * (flow - 0.8 * np.sqrt(max(level, 0.0)))
     return np.array(out)
+
+
+@pytest.mark.parametrize(
+    ("effect", "read"),
+    [
+        ("sensor-nonlinearity", lambda y: 0.3 * y + 0.07 * y**2),
+        ("dead-zone", lambda y: y),
+    ],
+)
+def test_a_curve_before_or_behind_stores_is_named_with_the_outflow(effect, read):
+    record = tanks(root=True, height=np.inf, pump=effect == "dead-zone")
+    record = Record("run", DT, record.u, read(record.y), *CHANNELS, "measured")
+    best, _ = found(record)
+    assert set(best.effects) == {"outflow", effect}
+    assert np.sqrt(np.mean(best.state.residual**2)) < 1.5 * NOISE

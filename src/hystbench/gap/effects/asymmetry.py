@@ -9,7 +9,7 @@ from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.blocks.exponential_curve import ExponentialCurve
 from hystbench.gap.effects.effect import Effect
-from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.effects.law import Law, Passed
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.effects.variant import Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
@@ -44,15 +44,15 @@ class Asymmetry(Effect):
         if simulation.loop is None:
             yield from self._exponential(simulation)
 
-    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Offer two curves before the mechanism.
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer two curves before the host.
 
         The square, as of a force by the square of a current, and an exponential curve.
         """
         for size in (0.1, -0.1, 10.0, -10.0):  # a little of a square, hardly else
-            yield self.curve("before", "square", coefficient=size / moved.given)
+            yield self.curve("before", "square", coefficient=size / passed.given)
         for size in (1.0, -1.0):
-            block = ExponentialCurve(curvature=size / moved.given)
+            block = ExponentialCurve(curvature=size / passed.given)
             yield Law("exponential", block, ("curvature",), "before")
 
     def _square(self, simulation: Simulation, place: int, form: str) -> Variant:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hystbench.gap.effects.effect import Effect
-from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.effects.law import Law, Passed
 from hystbench.gap.effects.variant import Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
@@ -27,7 +27,7 @@ class Backlash(Effect):
             grids={"half_width": logarithmic(3e-4 * largest, largest / 3, 4)},
         )
 
-    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Offer narrow and wide play behind the mechanism."""
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer narrow and wide play behind the host."""
         for share in (0.01, 0.1):
-            yield self.curve("behind", half_width=share * moved.shown)
+            yield self.curve("behind", half_width=share * passed.shown)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hystbench.gap.effects.effect import Effect
-from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.effects.law import Law, Passed
 from hystbench.gap.effects.places import places_between_halves, places_in_drive
 from hystbench.gap.effects.variant import Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
@@ -25,7 +25,7 @@ class DeadZone(Effect):
             widths = logarithmic(1e-3 * largest, 0.5 * largest, 4)
             yield self.inserted(simulation, place, grids={"half_width": widths})
 
-    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Offer narrow and wide ones before the mechanism."""
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer narrow and wide ones before the host."""
         for share in (0.02, 0.15):
-            yield self.curve("before", half_width=share * moved.given)
+            yield self.curve("before", half_width=share * passed.given)

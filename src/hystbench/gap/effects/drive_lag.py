@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hystbench.gap.effects.effect import Effect
-from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.effects.law import Law, Passed
 from hystbench.gap.effects.places import places_in_drive
 from hystbench.gap.effects.variant import Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
@@ -24,6 +24,6 @@ class DriveLag(Effect):
         for place in places_in_drive(simulation, linear=True):
             yield self.inserted(simulation, place, grids={"time_constant_s": times})
 
-    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Offer it before the mechanism."""
-        yield self.around_mechanism(moved, "time_constant_s", "before")
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer it before the host."""
+        yield self.filter_around(passed, "time_constant_s", "before")

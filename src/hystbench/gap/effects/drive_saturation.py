@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hystbench.gap.effects.effect import Effect
-from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.effects.law import Law, Passed
 from hystbench.gap.effects.places import places_in_drive
 from hystbench.gap.effects.variant import Variant
 from hystbench.gap.simulation.simulation import Simulation
@@ -27,7 +27,7 @@ class DriveSaturation(Effect):
             limits = simulation.largest(place) * share
             yield self.inserted(simulation, place, grids={"limit": limits})
 
-    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Offer limits before the mechanism, met seldom and often."""
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer limits before the host, met seldom and often."""
         for share in (0.9, 0.6):
-            yield self.curve("before", limit=share * moved.given)
+            yield self.curve("before", limit=share * passed.given)

@@ -13,7 +13,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.wrapping import WrappingBlock
-from hystbench.gap.effects.law import Changed, Filled, Law, Moved
+from hystbench.gap.effects.law import Changed, Filled, Law, Moved, Passed
 from hystbench.gap.effects.places import INSIDE, places_between_halves
 from hystbench.gap.effects.variant import Beside, Refused, Values, Variant, in_operation
 from hystbench.gap.simulation.simulation import Simulation
@@ -153,7 +153,7 @@ class Effect(ABC):
         )
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Give the laws by which it acts in, before or behind a mechanism, with starts.
+        """Give the laws by which it acts inside a mechanism, with starts.
 
         Parameters
         ----------
@@ -171,25 +171,39 @@ class Effect(ABC):
         """
         yield from ()
 
-    def around_mechanism(
-        self, moved: Moved, name: str, place: Literal["before", "behind"], **given: str
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Give the laws by which it acts before or behind what has effects inside.
+
+        Parameters
+        ----------
+        passed : Passed
+            What passes through that model, a mechanism or stores.
+        """
+        yield from ()
+
+    def filter_around(
+        self,
+        passed: Passed,
+        name: str,
+        place: Literal["before", "behind"],
+        **given: str,
     ) -> Law:
-        """Give the effect's filter before or behind a mechanism.
+        """Give the effect's filter before or behind what has effects inside.
 
         It starts short against the records' rates: at two sampling intervals. Less than
         one is no effect but how input and output were sampled.
 
         Parameters
         ----------
-        moved : Moved
+        passed : Passed
         name : str
             The time that is fitted.
         place : {"before", "behind"}
         **given
             Other parameters.
         """
-        block = registry()[self.name].from_mapping({name: 2 * moved.step, **given})
-        return Law("", block, (name,), place, ranges={name: (moved.step, np.inf)})
+        block = registry()[self.name].from_mapping({name: 2 * passed.step, **given})
+        return Law("", block, (name,), place, ranges={name: (passed.step, np.inf)})
 
     def curve(
         self,
@@ -198,7 +212,7 @@ class Effect(ABC):
         also: Mapping[str, float] | None = None,
         **start: float,
     ) -> Law:
-        """Give the effect's curve or play before or behind a mechanism.
+        """Give the effect's curve or play before or behind what has effects inside.
 
         Parameters
         ----------

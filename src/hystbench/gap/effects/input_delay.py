@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hystbench.gap.effects.effect import Effect
-from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.effects.law import Law, Passed
 from hystbench.gap.effects.variant import Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
@@ -34,6 +34,6 @@ class InputDelay(Effect):
                 grids=grids,
             )
 
-    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Offer it before the mechanism."""
-        yield self.around_mechanism(moved, "delay_s", "before")
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer it before the host."""
+        yield self.filter_around(passed, "delay_s", "before")

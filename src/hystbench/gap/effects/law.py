@@ -26,8 +26,6 @@ class Moved:
         Of its velocity.
     force : float
         Of the force that drives it, or that its motion takes.
-    step : float
-        Shortest sampling interval, in seconds.
     turns : bool
         Whether it turns: its position is an angle in rad.
     anywhere : bool
@@ -35,24 +33,34 @@ class Moved:
         that depends on the place has no meaning then.
     stiffness : float
         Of its linear spring; zero without one.
-    given, shown : float
-        The model's input, and its output.
     """
 
     reach: float
     speed: float
     force: float
-    step: float
     turns: bool = False
     anywhere: bool = False
     stiffness: float = 0.0
-    given: float = 1.0
-    shown: float = 1.0
+
+
+class Passed(NamedTuple):
+    """What passes through a model: the largest of its input and of its output.
+
+    Parameters
+    ----------
+    given, shown : float
+    step : float
+        Shortest sampling interval, in seconds.
+    """
+
+    given: float
+    shown: float
+    step: float
 
 
 @dataclass(frozen=True)
 class Law:
-    """A force inside a mechanism, or a filter beside it, where its fit starts.
+    """A force inside a mechanism, or what is before or behind a host, as a fit starts.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.gap.effects.effect import Effect
-from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.effects.law import Law, Passed
 from hystbench.gap.effects.places import places_in_sensor
 from hystbench.gap.effects.variant import Variant
 from hystbench.gap.simulation.simulation import Simulation
@@ -54,10 +54,10 @@ class SensorNonlinearity(Effect):
                 form="magnitude",
             )
 
-    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Offer it behind the mechanism with both terms, the cube of either sign."""
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer it behind the host with both terms, the cube of either sign."""
         for sign in (1.0, -1.0):
-            quadratic, cubic = 0.03 / moved.shown, sign * 0.03 / moved.shown**2
+            quadratic, cubic = 0.03 / passed.shown, sign * 0.03 / passed.shown**2
             yield self.curve("behind", "both", quadratic=quadratic, cubic=cubic)
 
 

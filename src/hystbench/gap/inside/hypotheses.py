@@ -147,7 +147,11 @@ def _one_more(
     if not begun:
         return []
     if stores:
-        best_first = fitted_each(begun, score)
+        own = [item for item in begun if item.state.added[-1].place == "inside"]
+        around = [item for item in begun if item.state.added[-1].place != "inside"]
+        best_first = fitted_each(own, score)
+        best_first += fitted_likely(around, beginnings, score, 1)
+        best_first.sort(key=lambda item: item.score)
     else:
         best_first = fitted_likely(begun, beginnings, score, keep)
     for item in best_first[:3]:
@@ -183,7 +187,7 @@ def starts(
             if isinstance(law, Changed)
             else with_law(state, effect, law)
         )
-        if isinstance(law, Law) and not law.stands_for:
+        if isinstance(law, Law) and not (law.stands_for or of_stores(before)):
             begun = evened(begun)
         own = beginnings.cut(begun)
         if not np.all(np.isfinite(own.residual)):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,12 +10,13 @@ import numpy as np
 
 from hystbench.blocks.force import Force, against
 from hystbench.blocks.impedance import Impedance
+from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.gap.effects import among
-from hystbench.gap.effects.law import Changed, Law, Moved
+from hystbench.gap.effects.law import Changed, Law, Moved, Passed
 from hystbench.gap.fitting.least_squares import (
     Fitted,
 )
@@ -45,16 +46,30 @@ def laws_for(
     offered : iterable of str, optional
         Effects that may be named; all by default.
     """
-    every: dict[str, tuple[Law | Changed, ...]]
+    passed, known = what_passes(host.state), among(offered)
+    around = {name: tuple(effect.around(passed)) for name, effect in known.items()}
+    own: dict[str, Iterator[Law | Changed]]
     if of_stores(host):
         filled = how_it_fills(host.state)
-        every = {name: tuple(x.stored(filled)) for name, x in among(offered).items()}
+        own = {name: effect.stored(filled) for name, effect in known.items()}
+        # A lag beside stores is one more store.
+        around = {name: _curves(laws) for name, laws in around.items()}
     else:
         moved = how_it_moves(host.state, turns)
-        every = {
-            name: tuple(x.in_mechanism(moved)) for name, x in among(offered).items()
-        }
-    return {name: own for name, own in every.items() if own}
+        own = {name: effect.in_mechanism(moved) for name, effect in known.items()}
+    every = {name: (*own[name], *around[name]) for name in known}
+    return {name: laws for name, laws in every.items() if laws}
+
+
+def _curves(laws: Iterable[Law]) -> tuple[Law, ...]:
+    return tuple(law for law in laws if not isinstance(law.block, LinearBlock))
+
+
+def what_passes(state: ModelState) -> Passed:
+    """Look how large the input and the output of a model are on its records."""
+    signals = [record.u for record in state.records], state.simulation.output
+    given, shown = (max(float(np.max(np.abs(x))) for x in every) for every in signals)
+    return Passed(given, shown, min(record.dt for record in state.records))
 
 
 def of_stores(item: Fitted) -> bool:
@@ -79,19 +94,14 @@ def how_it_moves(state: ModelState, turns: bool) -> Moved:
         driving = record.y if host.name == "impedance" else z
         force = max(force, float(np.max(np.abs(driving - np.mean(driving)))))
     tiny = 1.0 / HUGE
-    step = min(record.dt for record in state.records)
-    given = [record.u for record in state.records]
-    shown = state.simulation.output
     anywhere = isinstance(host, Mechanism) and host.stiffness == 0.0
     return Moved(
         max(reach, tiny),
         max(speed, tiny),
         max(force, tiny),
-        step,
         turns,
         anywhere,
         host.stiffness,
-        *(max(float(np.max(np.abs(x))) for x in signals) for signals in (given, shown)),
     )
 
 
@@ -101,12 +111,14 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
     A force goes behind the host, a filter before all or behind all. What a force stands
     for goes out of the host's spring. Of several hosts it is the last one.
     """
-    host = host_of(state)
-    place = {"before": 0, "inside": host + 1, "behind": len(state.chain)}[law.place]
     base: list[Any] = list(state.chain)
-    if law.stands_for:
-        spring = (1.0 - law.stands_for) * base[host].stiffness
-        base[host] = replace(base[host], stiffness=spring)
+    place = 0 if law.place == "before" else len(base)
+    if law.place == "inside":
+        host = host_of(state)
+        place = host + 1
+        if law.stands_for:
+            spring = (1.0 - law.stands_for) * base[host].stiffness
+            base[host] = replace(base[host], stiffness=spring)
     chain = (*base[:place], law.block, *base[place:])
 
     state = state.rearranged(chain, {k: k + (k >= place) for k in range(len(base))})
