@@ -115,6 +115,17 @@ EXPORT void hb_settle(double stiffness, double p, index_t count, const double *f
     *q = hb_balance(stiffness, p, (int)count, forces, memory);
 }
 
+/* What flows out of a store; a general power takes ten times as long as a root. */
+static inline double hb_outflow(double rate, double exponent, double h)
+{
+    if (!(h > 0)) return 0;
+    if (exponent == 1) return rate * h;
+    return rate * (exponent == 0.5 ? sqrt(h) : pow(h, exponent));
+}
+
+/* fmax is a call of a library's. */
+static inline double hb_above_zero(double h) { return h > 0 ? h : 0; }
+
 /* Level h of a store, h' = inflow - rate h^exponent, held below the height: what would
  * rise above it is spilt, as a mean over the interval before each sample.  Runge-Kutta
  * of second order (midpoint) in equal parts of each interval; with an exponent of
@@ -123,29 +134,29 @@ EXPORT void hb_store(index_t n, index_t parts, double dt, double ramp, double ra
                      double exponent, double height, const double *z, double *level,
                      double *outflow, double *spilt)
 {
-#define FLOW(h) ((h) > 0 ? rate * pow(h, exponent) : 0)
     const double t = dt / parts, lost = rate * t;
     /* Of a level, and what a steady inflow and a rising one bring, in one part. */
     const double kept = exp(-lost), steady = lost > 1e-5 ? (1 - kept) / rate : t;
     const double rising = lost > 1e-5 ? (t - steady) / lost : t / 2;
     spilt[0] = 0;
-    outflow[0] = FLOW(level[0]);
+    outflow[0] = hb_outflow(rate, exponent, level[0]);
     for (index_t k = 0; k + 1 < n; k++) {
         const double slope = ramp * (z[k + 1] - z[k]) / parts;
         double h = level[k], over = 0;
         for (index_t s = 0; s < parts; s++) {
             const double from = z[k] + s * slope;
             if (exponent == 1 && height >= 1e30) {
-                h = fmax(0, kept * h + steady * from + rising * slope);
+                h = hb_above_zero(kept * h + steady * from + rising * slope);
             } else {
-                const double half = fmin(height, fmax(0, h + t / 2 * (from - FLOW(h))));
-                h = fmax(0, h + t * (from + slope / 2 - FLOW(half)));
+                const double rise = from - hb_outflow(rate, exponent, h);
+                const double half = hb_above_zero(h + t / 2 * rise);
+                const double left = hb_outflow(rate, exponent, half < height ? half : height);
+                h = hb_above_zero(h + t * (from + slope / 2 - left));
             }
             if (h > height) over += h - height, h = height;
         }
         level[k + 1] = h;
-        outflow[k + 1] = FLOW(h);
+        outflow[k + 1] = hb_outflow(rate, exponent, h);
         spilt[k + 1] = over / dt;
     }
-#undef FLOW
 }
