@@ -40,6 +40,8 @@ class Hysteresis(Effect):
             raise Declined("the chain has a hysteresis already")
         if simulation.loop is not None and simulation.chain[simulation.loop].reruns:
             raise Declined("the simulator has a hysteresis already")
+        if simulation.middle_and_half(0)[1] == 0.0:
+            raise Declined("the input does not move")
         yield self._generalized(simulation)
         yield self._plays(simulation)
 
@@ -48,8 +50,8 @@ class Hysteresis(Effect):
 
         The law's cubes stay zero: with them a search takes five times as long.
         """
-        amplitude = simulation.largest(0)
-        thresholds = [float(x) for x in amplitude * np.arange(OPERATORS) / OPERATORS]
+        _, half = simulation.middle_and_half(0)
+        thresholds = [float(x) for x in half * np.arange(OPERATORS) / OPERATORS]
         names = [f"weight {k}" for k in range(OPERATORS)]
 
         def values(given: Values) -> dict[str, Any]:
@@ -67,11 +69,11 @@ class Hysteresis(Effect):
         )
 
     def _generalized(self, simulation: Simulation) -> Variant:
-        amplitude = simulation.largest(0)
-        thresholds = [float(x) for x in amplitude * np.arange(OPERATORS) / OPERATORS]
-        slope = BEND / amplitude
-        envelope = dict.fromkeys((one.name for one in fields(Envelope)), 0.0)
-        envelope |= {"a0": 1 / slope, "a1": slope, "a4": 1 / slope, "a5": slope}
+        middle, half = simulation.middle_and_half(0)
+        thresholds = [float(x) for x in half * np.arange(OPERATORS) / OPERATORS]
+        slope = BEND / half
+        curve = 1 / slope, slope, -slope * middle, middle  # of slope one in the middle
+        envelope = dict(zip((x.name for x in fields(Envelope)), 2 * curve, strict=True))
         names = [f"weight {k}" for k in range(1, OPERATORS)]
 
         def values(given: Values) -> dict[str, Any]:

@@ -238,6 +238,12 @@ class Simulation:
         """Largest size of the signal before a block."""
         return float(max(np.abs(z).max() for z in self.at(place)))
 
+    def middle_and_half(self, place: int) -> tuple[float, float]:
+        """Middle of the range of the signal before a block, and half of its width."""
+        low = min(float(z.min()) for z in self.at(place))
+        high = max(float(z.max()) for z in self.at(place))
+        return (low + high) / 2, (high - low) / 2
+
     def fastest(self, place: int = 0) -> float:
         """Largest rate of the signal before a block, in its unit a second."""
         pairs = zip(self.at(place), self.records, strict=True)
