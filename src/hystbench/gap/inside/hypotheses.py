@@ -87,7 +87,7 @@ def _in_vain(every: Sequence[Fitted], pairs: Sequence[Fitted]) -> bool:
     """Tell whether an effect pays alone, and none pays beside it."""
     one = least([item for item in every if len(item.effects) < 2])
     tried = [item for item in pairs if len(item.effects) == 2]
-    if not (tried and one.effects) or of_stores(one):
+    if not (tried and one.effects):
         return False
     return (
         every[0].score - one.score > PAYS and least(tried).score > one.score - FURTHER
