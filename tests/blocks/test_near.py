@@ -15,6 +15,7 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
+from hystbench.blocks.store import Store
 
 DT = 0.017
 MACHINE = Mechanism(mass=2.0, damping=1.5, stiffness=200.0, hold="linear", bias=3.0)
@@ -123,3 +124,17 @@ def test_what_is_equal_is_simulated_once():
     assert (one.runs, same.runs, other.runs) == (1, 0, 1)
     y, further = near(one, u, u, DT, [(same, 2 * u)])
     assert np.array_equal(further, 2 * y)
+
+
+@pytest.mark.parametrize("hold", ["zero-order", "linear", "band-limited"])
+@pytest.mark.parametrize(("exponent", "rim"), [(0.5, 0.4), (0.7, 0.45), (1.0, 0.55)])
+def test_so_are_those_of_stores_that_overflow_and_run_empty(exponent, rim, hold):
+    numbers = {"rate": 30.0, "exponent": exponent, "bias": 3.0, "hold": hold}
+    upper = Store(gain=1.0, height=0.6, caught=0.4, output="outflow", **numbers)
+    chain = (upper, Store(gain=0.6, height=rim, start_level=0.2, **numbers))
+    names = [
+        (place, name)
+        for place in (0, 1)
+        for name in ("gain", "rate", "exponent", "height", "bias")
+    ]
+    check(chain, np.repeat(drive()[:200:5], 5) / 5, [*names, (0, "caught")])

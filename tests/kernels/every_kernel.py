@@ -10,6 +10,7 @@ import hashlib
 import json
 import os
 import sys
+from dataclasses import replace
 
 allowed = sorted(os.sched_getaffinity(0))
 os.sched_setaffinity(0, allowed[: int(sys.argv[1])])
@@ -174,6 +175,7 @@ def blocks(x):
     yield "creep along a curve", (creep.simulate(x, x, DT),)
     tank = Store(gain=4.0, rate=2.0, bias=1.0, height=1.0)
     yield tank.name, (tank.simulate(x, x, DT),)
+    yield "stores near", tuple(tank.near(x, x, DT, [(replace(tank, rate=2.01), x)]))
 
 
 def main():

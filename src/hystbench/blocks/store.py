@@ -3,6 +3,7 @@
 import numpy as np
 
 from hystbench import kernels
+from hystbench.blocks.attached import Others
 from hystbench.blocks.curve import held_lines
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
@@ -45,32 +46,65 @@ class Store(HeldBlock, name="store", place="base"):
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Fill and empty the store."""
-        lines, fine = held_lines(z, self.holding)
-        v = self.gain * lines + self.bias
-        n = len(v)
+        inflow, fine = self._inflow(z)
+        n = len(inflow)
         level, outflow, spilt = np.zeros(n), np.zeros(n), np.zeros(n)
         if n == 0:
             return level
-        level[0] = min(self._first(v[0]), self.height)
-        kernels.call(
-            "hb_store",
-            n,
-            self._parts(dt / fine),
-            dt / fine,
-            float(self.holding != "zero-order"),
-            self.rate,
-            self.exponent,
-            self.height,
-            v,
-            level,
-            outflow,
-            spilt,
+        level[0] = min(self._first(inflow[0]), self.height)
+        numbers = self._numbers(dt / fine)
+        kernels.call("hb_store", n, *numbers, inflow, level, outflow, spilt)
+        return self._given(level, outflow, spilt, fine)
+
+    def near(
+        self, z: FloatArray, u: FloatArray, dt: float, others: Others
+    ) -> list[FloatArray]:
+        """Compute the output, and those of others with numbers near, to first order."""
+        inflow, fine = self._inflow(z)
+        n, count = len(inflow), len(others)
+        if self._is_exact or n == 0:
+            return [x.simulate(own, u, dt) for x, own in ((self, z), *others)]
+        level, outflow, spilt = np.zeros(n), np.zeros(n), np.zeros(n)
+        level[0] = min(self._first(inflow[0]), self.height)
+        levels, outflows, spills = (np.zeros((n, count)) for _ in range(3))
+        inflows = np.empty((n, count))
+        for k, (other, own) in enumerate(others):
+            its, _ = other._inflow(own)
+            first = min(other._first(its[0]), other.height)
+            inflows[:, k], levels[0, k] = its - inflow, first - level[0]
+        differ = (
+            np.array([getattr(x, name) - getattr(self, name) for x, _ in others])
+            for name in ("rate", "exponent", "height")
         )
+        made = (inflow, level, outflow, spilt, count, *differ)
+        numbers = self._numbers(dt / fine)
+        beside = (inflows, levels, outflows, spills)
+        kernels.call("hb_store_near", n, *numbers, *made, *beside)
+        found = [self._given(level, outflow, spilt, fine)]
+        for k, (other, _) in enumerate(others):
+            moved = level + levels[:, k], outflow + outflows[:, k], spilt + spills[:, k]
+            found.append(other._given(*moved, fine))
+        return found
+
+    def _inflow(self, z: FloatArray) -> tuple[FloatArray, int]:
+        """Give corners of the inflow's lines, and how many lie in an interval."""
+        lines, fine = held_lines(z, self.holding)
+        return self.gain * lines + self.bias, fine
+
+    def _numbers(self, dt: float) -> tuple[float, ...]:
+        """Give what a kernel is told of the store and of an interval."""
+        ramp = float(self.holding != "zero-order")
+        return (self._parts(dt), dt, ramp, self.rate, self.exponent, self.height)
+
+    def _given(
+        self, level: FloatArray, outflow: FloatArray, spilt: FloatArray, fine: int
+    ) -> FloatArray:
+        """Give the output at the samples."""
         if self.output == "level":
             return level[::fine]
         # What was spilt is a mean over the interval before, in parts or whole.
-        spilt[fine::fine] = spilt[1:].reshape(-1, fine).mean(axis=1)
-        return outflow[::fine] + self.caught * spilt[::fine]
+        of_intervals = spilt[1:].reshape(-1, fine).mean(axis=1)
+        return outflow[::fine] + self.caught * np.append(0.0, of_intervals)
 
     def step(self, sampling: Sampling) -> Step:
         """Fill and empty it over the interval that has passed."""
@@ -104,6 +138,10 @@ class Store(HeldBlock, name="store", place="base"):
 
         One is exact of a store that is linear and does not overflow.
         """
-        if self.exponent == 1.0 and self.height >= HUGE:
+        if self._is_exact:
             return 1
         return int(np.clip(np.ceil(self.rate * dt / PART), 1, MOST))
+
+    @property
+    def _is_exact(self) -> bool:
+        return self.exponent == 1.0 and self.height >= HUGE

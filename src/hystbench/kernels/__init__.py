@@ -47,6 +47,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_forces": (None, "ifiaaaaa"),
     "hb_settle": (None, "ffiaaa"),
     "hb_store": (None, "iifffffaaaa"),
+    "hb_store_near": (None, "iifffffaaaaiaaaaaaa"),
     "hb_preisach": (None, "iifaaaaa"),
     "hb_jiles_atherton": (None, "iffffffaaa"),
     "hb_invert_plays": (SIZE, "iiifaaaffaaa"),
