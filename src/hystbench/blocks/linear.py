@@ -24,6 +24,9 @@ from hystbench.blocks.state_space import (
 from hystbench.blocks.step import Sampling, Step, smooth_curve
 from hystbench.record import FloatArray
 
+FEW = 4
+"""States of which a loop takes several samples at a time."""
+
 
 class LinearBlock(HeldBlock):
     """A linear, time-invariant block.
@@ -141,11 +144,16 @@ def states_of(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> Float
         phi, b, _, _, following = _steps(*_bytes(system), dt, hold)
         out[0, :size] = -following * v[0]
         out[1:, :size] = np.outer(v[:-1], b)
-        phi = _padded_columns(phi if phi.ndim == 2 else np.diag(phi))
+        phi = _padded_columns(_square(phi))
         behind = np.outer(v, following)
-    columns = phi if phi.ndim == 2 else np.diag(phi)
+    columns = _square(phi)
     kernels.call("hb_states", len(v), len(columns) // kernels.WIDTH, columns, out)
     return out[:, :size] + behind
+
+
+def _square(phi: FloatArray) -> FloatArray:
+    """Give a matrix of which the diagonal may stand alone."""
+    return phi if phi.ndim == 2 else np.diag(phi)
 
 
 def _padded_columns(phi: FloatArray) -> FloatArray:
@@ -280,11 +288,11 @@ def _loop(a: bytes, b: bytes, c: bytes, d: float, dt: float, hold: Hold) -> Loop
     steps = _steps(a, b, c, d, dt, hold)
     size = len(steps.b)
     sizes: tuple[int, ...] = (kernels.padded(size) // kernels.WIDTH,)
-    if steps.phi.ndim == 1:
+    if steps.phi.ndim == 1 and size > FEW:
         kernel, phi = "hb_modes", kernels.pad(steps.phi)
     else:
         kernel, sizes = "hb_state_space", (*sizes, size)
-        phi = _padded_columns(steps.phi)
+        phi = _padded_columns(_square(steps.phi))
     fixed = (phi, kernels.pad(steps.b), kernels.pad(steps.c))
     places = tuple(map(kernels.Fixed, fixed))
     return Loop(kernel, sizes, places, steps.d, kernels.pad(steps.following))
