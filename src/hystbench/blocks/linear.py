@@ -106,16 +106,15 @@ def respond(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> FloatAr
     """
     if hold != "band-limited" or len(v) < 3:
         return _step_by_step(system, v, dt, hold)
-    phi, drive = _curve_steps(*_bytes(system), dt)
+    loop = _curve_loop(*_bytes(system), dt)
     n = len(v)
     y, path = np.empty(n), continued(v)
-    c = kernels.pad(system.c)
-    if phi.ndim == 1:
-        name, states = "hb_curve_modes", len(system.c)
-    else:
-        name, states = "hb_curve_space", len(drive[0]) // kernels.WIDTH
-    sizes = (n, POINTS, AHEAD + 1, states)
-    kernels.call(name, *sizes, phi, drive, c, float(system.d), path, y)
+    sizes = (n, POINTS, AHEAD + 1, loop.states)
+    kernels.call(loop.kernel, *sizes, *loop.fixed, float(system.d), path, y)
+    if loop.passing is not None:
+        passed = np.empty(n)
+        kernels.call("hb_weighed", n, POINTS, 1, loop.passing, path, passed)
+        y[1:] += passed[1:]
     return y
 
 
@@ -271,6 +270,36 @@ def _curve_steps(
     if system.is_diagonal:
         return kernels.pad(np.diagonal(phi)), drive
     return _padded_columns(phi), drive
+
+
+class CurveLoop(NamedTuple):
+    """A system as a kernel for the curve takes it."""
+
+    kernel: str
+    states: int
+    fixed: tuple[kernels.Fixed, ...]
+    passing: FloatArray | None = None
+    """What a window of samples gives by states of which nothing outlasts an interval:
+    of them no kernel needs to know."""
+
+
+@lru_cache(maxsize=256)
+def _curve_loop(a: bytes, b: bytes, c: bytes, d: float, dt: float) -> CurveLoop:
+    phi, drive = _curve_steps(a, b, c, d, dt)
+    output = np.frombuffer(c)
+    size = len(output)
+    if phi.ndim == 2:
+        fixed = tuple(map(kernels.Fixed, (phi, drive, kernels.pad(output))))
+        return CurveLoop("hb_curve_space", kernels.padded(size) // kernels.WIDTH, fixed)
+    phi, drive = phi[:size], drive[:, :size]
+    lasts = np.abs(phi) > np.finfo(float).eps
+    lasts[0] |= not lasts.any()  # a kernel has one state at least
+    count = int(lasts.sum())
+    own = np.zeros((POINTS, kernels.padded(count)))
+    own[:, :count] = drive[:, lasts]
+    given = (kernels.pad(phi[lasts]), own, kernels.pad(output[lasts]))
+    passing = None if lasts.all() else drive[:, ~lasts] @ output[~lasts]
+    return CurveLoop("hb_curve_modes", count, tuple(map(kernels.Fixed, given)), passing)
 
 
 class Loop(NamedTuple):
