@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dpotrf, dpotrs
 
 from hystbench.errors import InputError
 from hystbench.gap.records.scored_samples import ScoredSamples
@@ -337,7 +338,7 @@ def _solve(
         beta: FloatArray = np.zeros(len(vector))
         if active.all():
             beta[:] = _solution(matrix, vector)
-        else:
+        elif active.any():
             keep = np.flatnonzero(active)
             beta[keep] = _solution(matrix[np.ix_(keep, keep)], vector[keep])
         negative = [k for k in positive if active[k] and beta[k] < 0]
@@ -353,11 +354,9 @@ def _solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
         return np.asarray(vector / matrix[0])
     size = np.sqrt(np.maximum(matrix.diagonal(), 0.0))
     size[size == 0] = 1.0
-    matrix, vector = matrix / np.outer(size, size), vector / size
-    try:
-        pivots = np.linalg.cholesky(matrix).diagonal()
-    except np.linalg.LinAlgError:
-        pivots = np.zeros(len(vector))
-    if (pivots > KNOWN).all():  # elimination is quicker
-        return np.asarray(np.linalg.solve(matrix, vector) / size, dtype=np.float64)
+    matrix, vector = matrix / (size[:, None] * size), vector / size
+    lower, failed = dpotrf(matrix, lower=1)
+    if not failed and (lower.diagonal() > KNOWN).all():  # elimination is quicker
+        found, _ = dpotrs(lower, vector, lower=1)
+        return np.asarray(found / size)
     return np.asarray(np.linalg.lstsq(matrix, vector, rcond=1e-13)[0] / size)

@@ -107,16 +107,18 @@ def orthonormal(columns: FloatArray) -> FloatArray:
     """Give an orthonormal basis of columns, each scaled to one first."""
     if not columns.shape[1]:
         return columns
-    size = np.linalg.norm(columns, axis=0)
-    usable = np.isfinite(size) & (size > 0)
-    columns = columns[:, usable] / size[usable]
-    # By the small Gram matrix: a full decomposition of the columns is ten times dearer.
-    values, vectors = np.linalg.eigh(columns.T @ columns)
+    # By the small Gram matrix: a full decomposition of the columns is ten times dearer,
+    # and the weakest direction that is left is at right angles to 1e-10 of its size.
+    gram = columns.T @ columns
+    size = np.sqrt(gram.diagonal())
+    usable = np.flatnonzero(np.isfinite(size) & (size > 0))
+    size = size[usable]
+    values, vectors = np.linalg.eigh(
+        gram[np.ix_(usable, usable)] / np.outer(size, size)
+    )
     keep = values > (SMALLEST**2) * values[-1]
-    basis = columns @ (vectors[:, keep] / np.sqrt(values[keep]))
-    # A second pass makes what rounding has left orthonormal too.
-    triangle = np.linalg.cholesky(basis.T @ basis)
-    return np.asarray(basis @ np.linalg.inv(triangle).T)
+    turned = vectors[:, keep] / (size[:, None] * np.sqrt(values[keep]))
+    return np.asarray(columns[:, usable] @ turned)
 
 
 def _ways(
