@@ -28,6 +28,28 @@ FEW = 4
 """States of which a loop takes several samples at a time."""
 
 
+class Loop(NamedTuple):
+    """A system as a kernel takes it: what does not change from record to record."""
+
+    kernel: str
+    sizes: tuple[int, ...]
+    fixed: tuple[kernels.Fixed, ...]
+    d: float
+    following: FloatArray  # padded
+
+
+class CurveLoop(NamedTuple):
+    """A system as a kernel for the curve takes it."""
+
+    kernel: str
+    states: int
+    fixed: tuple[kernels.Fixed, ...]
+    d: float
+    passing: FloatArray | None = None
+    """What a window of samples gives by states of which nothing outlasts an interval:
+    of them no kernel needs to know."""
+
+
 class LinearBlock(HeldBlock):
     """A linear, time-invariant block.
 
@@ -52,7 +74,7 @@ class LinearBlock(HeldBlock):
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the response to ``z``."""
         if self.start == "rest":
-            return respond(self.continuous(), z, dt, self.holding)
+            return _moved(_loop_of(self, dt, _is_smooth(self.holding, z)), z)
         path, before = path_from(z, self.start)
         moves = respond(self.continuous(), path - before, dt, self.holding)
         return (moves + self.static_gain * before)[len(path) - len(z) :]
@@ -104,13 +126,35 @@ def respond(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> FloatAr
     -------
     ndarray, shape (n,)
     """
-    if hold != "band-limited" or len(v) < 3:
-        return _step_by_step(system, v, dt, hold)
-    loop = _curve_loop(*_bytes(system), dt)
+    if _is_smooth(hold, v):
+        return _moved(_curve_loop(*_bytes(system), dt), v)
+    return _moved(_loop(*_bytes(system), dt, hold), v)
+
+
+def _is_smooth(hold: Hold, v: FloatArray) -> bool:
+    """Tell whether a signal is long enough to move along a curve, if it is to."""
+    return hold == "band-limited" and len(v) > 2
+
+
+@lru_cache(maxsize=256)
+def _loop_of(block: LinearBlock, dt: float, smooth: bool) -> Loop | CurveLoop:
+    """Give what a block is simulated by, for records of the same rate."""
+    system = _bytes(block.continuous())
+    return _curve_loop(*system, dt) if smooth else _loop(*system, dt, block.holding)
+
+
+def _moved(loop: Loop | CurveLoop, v: FloatArray) -> FloatArray:
+    """Send a signal through a loop, from rest."""
     n = len(v)
-    y, path = np.empty(n), continued(v)
+    y = np.empty(n)
+    if isinstance(loop, Loop):
+        v = np.asarray(v, dtype=np.float64, order="C")
+        state = loop.following * -v[0]
+        kernels.call(loop.kernel, n, *loop.sizes, *loop.fixed, loop.d, v, state, y)
+        return y
+    path = continued(v)
     sizes = (n, POINTS, AHEAD + 1, loop.states)
-    kernels.call(loop.kernel, *sizes, *loop.fixed, float(system.d), path, y)
+    kernels.call(loop.kernel, *sizes, *loop.fixed, loop.d, path, y)
     if loop.passing is not None:
         passed = np.empty(n)
         kernels.call("hb_weighed", n, POINTS, 1, loop.passing, path, passed)
@@ -272,17 +316,6 @@ def _curve_steps(
     return _padded_columns(phi), drive
 
 
-class CurveLoop(NamedTuple):
-    """A system as a kernel for the curve takes it."""
-
-    kernel: str
-    states: int
-    fixed: tuple[kernels.Fixed, ...]
-    passing: FloatArray | None = None
-    """What a window of samples gives by states of which nothing outlasts an interval:
-    of them no kernel needs to know."""
-
-
 @lru_cache(maxsize=256)
 def _curve_loop(a: bytes, b: bytes, c: bytes, d: float, dt: float) -> CurveLoop:
     phi, drive = _curve_steps(a, b, c, d, dt)
@@ -290,7 +323,8 @@ def _curve_loop(a: bytes, b: bytes, c: bytes, d: float, dt: float) -> CurveLoop:
     size = len(output)
     if phi.ndim == 2:
         fixed = tuple(map(kernels.Fixed, (phi, drive, kernels.pad(output))))
-        return CurveLoop("hb_curve_space", kernels.padded(size) // kernels.WIDTH, fixed)
+        wide = kernels.padded(size) // kernels.WIDTH
+        return CurveLoop("hb_curve_space", wide, fixed, float(d))
     phi, drive = phi[:size], drive[:, :size]
     lasts = np.abs(phi) > np.finfo(float).eps
     lasts[0] |= not lasts.any()  # a kernel has one state at least
@@ -299,17 +333,8 @@ def _curve_loop(a: bytes, b: bytes, c: bytes, d: float, dt: float) -> CurveLoop:
     own[:, :count] = drive[:, lasts]
     given = (kernels.pad(phi[lasts]), own, kernels.pad(output[lasts]))
     passing = None if lasts.all() else drive[:, ~lasts] @ output[~lasts]
-    return CurveLoop("hb_curve_modes", count, tuple(map(kernels.Fixed, given)), passing)
-
-
-class Loop(NamedTuple):
-    """A system as a kernel takes it: what does not change from record to record."""
-
-    kernel: str
-    sizes: tuple[int, ...]
-    fixed: tuple[kernels.Fixed, ...]
-    d: float
-    following: FloatArray  # padded
+    fixed = tuple(map(kernels.Fixed, given))
+    return CurveLoop("hb_curve_modes", count, fixed, float(d), passing)
 
 
 @lru_cache(maxsize=256)
@@ -325,13 +350,3 @@ def _loop(a: bytes, b: bytes, c: bytes, d: float, dt: float, hold: Hold) -> Loop
     fixed = (phi, kernels.pad(steps.b), kernels.pad(steps.c))
     places = tuple(map(kernels.Fixed, fixed))
     return Loop(kernel, sizes, places, steps.d, kernels.pad(steps.following))
-
-
-def _step_by_step(
-    system: StateSpace, v: FloatArray, dt: float, hold: Hold
-) -> FloatArray:
-    v = np.asarray(v, dtype=np.float64, order="C")
-    loop = _loop(*_bytes(system), dt, hold)
-    y, state = np.empty(len(v)), loop.following * -v[0]
-    kernels.call(loop.kernel, len(v), *loop.sizes, *loop.fixed, loop.d, v, state, y)
-    return y
