@@ -323,8 +323,7 @@ def _curve_loop(a: bytes, b: bytes, c: bytes, d: float, dt: float) -> CurveLoop:
     size = len(output)
     if phi.ndim == 2:
         fixed = tuple(map(kernels.Fixed, (phi, drive, kernels.pad(output))))
-        wide = kernels.padded(size) // kernels.WIDTH
-        return CurveLoop("hb_curve_space", wide, fixed, float(d))
+        return CurveLoop("hb_curve_space", size, fixed, float(d))
     phi, drive = phi[:size], drive[:, :size]
     lasts = np.abs(phi) > np.finfo(float).eps
     lasts[0] |= not lasts.any()  # a kernel has one state at least
