@@ -9,7 +9,11 @@ from hystbench.blocks.parameter import HUGE, a_threshold, choice, numbers
 from hystbench.blocks.step import PASSED, Sampling, Step
 from hystbench.blocks.wrapping import Growth, PlayBlock
 from hystbench.envelope import Envelope
-from hystbench.operators import generalized_play, generalized_prandtl_ishlinskii
+from hystbench.operators import (
+    enveloped_plays,
+    generalized_play,
+    generalized_prandtl_ishlinskii,
+)
 from hystbench.rdgpi.model import STARTS
 from hystbench.record import FloatArray
 
@@ -48,6 +52,8 @@ class GeneralizedPrandtlIshlinskii(PlayBlock, name="gpi", place="base"):
         self, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute Eq. 9 with all thresholds times ``growth``."""
+        if growth is None and self.start == "rest":
+            return enveloped_plays(v, self.envelope, self.thresholds, self.weights)
         left, right, rounds = self._envelopes(v)
         if growth is not None:
             growth = np.tile(growth, rounds)
