@@ -75,7 +75,7 @@ setup(
         Extension(
             "hystbench.kernels._kernels",
             sources=[f"{HERE}/{name}" for name in SOURCES],
-            depends=[f"{HERE}/lanes.h", f"{HERE}/forces.c"],
+            depends=[f"{HERE}/{name}" for name in ("lanes.h", "tangent.h", "forces.c")],
         ),
         # The hiding plant's own: it shares no code with the library above.
         Extension(

@@ -8,6 +8,7 @@ from hystbench import kernels, operators
 from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope, equal_intervals, thresholds
 from hystbench.errors import InputError
 from hystbench.operators import (
+    enveloped_plays,
     generalized_play,
     generalized_prandtl_ishlinskii,
     play,
@@ -150,6 +151,19 @@ def test_prandtl_ishlinskii_is_the_weighted_sum(v, envelope, r, data):
     outputs, _ = generalized_play(left, right, r)
     y = generalized_prandtl_ishlinskii(left, right, r, weights)
     np.testing.assert_allclose(y, outputs @ weights, rtol=1e-12, atol=1e-13)
+
+
+def test_plays_of_an_input_are_those_on_its_envelopes():
+    """Over several pieces, of which the last is short, and of one sample."""
+    rng = np.random.default_rng(3)
+    numbers = tuple(vars(PUBLISHED_ENVELOPE).values())
+    r, weights = tuple(np.linspace(0, 0.9, 21)), tuple(rng.standard_normal(21))
+    for count in (1, 255, 256, 900):
+        v = np.cumsum(rng.standard_normal(count)) * 0.1
+        sides = PUBLISHED_ENVELOPE.left(v), PUBLISHED_ENVELOPE.right(v)
+        wanted = generalized_play(*sides, r)[0] @ np.array(weights)
+        found = enveloped_plays(v[::-1][::-1], numbers, r, weights)
+        assert found == pytest.approx(wanted, abs=1e-12)
 
 
 @given(INPUTS, ENVELOPES, st.integers(1, 60), st.data())

@@ -129,6 +129,37 @@ def generalized_prandtl_ishlinskii(
     return y
 
 
+def enveloped_plays(
+    v: FloatArray,
+    envelope: tuple[float, ...],
+    thresholds: tuple[float, ...],
+    weights: tuple[float, ...],
+) -> FloatArray:
+    """Do the same on the envelope functions of an input, which are not stored.
+
+    Parameters
+    ----------
+    v : ndarray, shape (n,)
+    envelope : tuple of float
+        The numbers a0 to a7 of Eqs. 5 and 6.
+    thresholds, weights : tuple of float
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    spaced, weighted, size = _known_plays(thresholds, weights, True)
+    v, y = np.ascontiguousarray(v, dtype=np.float64), np.empty(len(v))
+    arrays = (_numbers(envelope), v, spaced, weighted, y)
+    kernels.call("hb_enveloped_plays", len(v), size // kernels.WIDTH, *arrays)
+    return y
+
+
+@lru_cache(maxsize=64)
+def _numbers(values: tuple[float, ...]) -> kernels.Fixed:
+    return kernels.Fixed(_array(values))
+
+
 def _plays(
     thresholds: ArrayLike, weights: ArrayLike, stand_still: bool
 ) -> tuple[kernels.Fixed, kernels.Fixed, int]:

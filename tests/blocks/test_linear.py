@@ -14,7 +14,13 @@ from hystbench.blocks.creep import Creep
 from hystbench.blocks.curve import finer
 from hystbench.blocks.drive_lag import DriveLag
 from hystbench.blocks.eddy_diffusion import EddyDiffusion
-from hystbench.blocks.linear import LinearBlock, respond, states_of
+from hystbench.blocks.linear import (
+    LinearBlock,
+    _bytes,
+    _curve_loop,
+    respond,
+    states_of,
+)
 from hystbench.blocks.logarithmic_creep import LogarithmicCreep
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.resonance import Resonance
@@ -349,3 +355,23 @@ def test_what_repeats_is_the_second_of_two_passages(block):
     twice = replace(block, start="settled").simulate(both, both, DT)
     once = replace(block, start="repeating").simulate(z, z, DT)
     np.testing.assert_allclose(once, twice[400:], rtol=1e-9, atol=1e-9)
+
+
+def test_states_that_do_not_last_an_interval_are_weighed_with_the_window():
+    """Beside slow ones they give what they give alone; a kernel moves the slow ones."""
+
+    def system(rates):
+        size = len(rates)
+        return StateSpace(np.diag(-rates), rates, np.ones(size) / size, 0.0)
+
+    slow, fast = np.array([3.0, 80.0]), np.array([5e5, 2e6, 9e6])
+    whole = system(np.array([fast[0], slow[0], *fast[1:], slow[1]]))
+    v = np.random.default_rng(4).standard_normal(60)
+    parts = [respond(system(rates), v, DT, "band-limited") for rates in (slow, fast)]
+    together = (2 * parts[0] + 3 * parts[1]) / 5
+    assert respond(whole, v, DT, "band-limited") == pytest.approx(together, abs=1e-12)
+    loop = _curve_loop(*_bytes(whole), DT)
+    assert loop.states == len(slow)
+    # What is as quick as that follows its input.
+    assert parts[1][1:] == pytest.approx(v[1:], abs=0.2)
+    assert parts[1][0] == 0.0

@@ -12,6 +12,7 @@ from hystbench.blocks import registry
 from hystbench.blocks.attached import attached, near, through_near
 from hystbench.blocks.drive_lag import DriveLag
 from hystbench.blocks.gain import Gain
+from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
@@ -100,6 +101,33 @@ def test_so_are_those_of_two_forces_and_of_other_modes_beside():
     before = attached((chain[0], chain[3]))[0].simulate(drive(), drive(), DT)
     assert mode - first == pytest.approx(alone - before, abs=1e-12)
     assert np.abs(mass - first).max() > 0
+
+
+@pytest.mark.parametrize("start", ["rest", "settled"])
+def test_plays_near_are_as_each_alone_and_run_once_for_all_weights(start, monkeypatch):
+    plays = GeneralizedPrandtlIshlinskii(
+        envelope=(1.2, 0.4, 0.6, -0.6, 0.4, 1.1, 0.1, -0.1),
+        thresholds=(0.0, 0.05, 0.1),
+        weights=(2.0, -0.3, 0.7),
+        start=start,
+    )
+    u = drive()
+    heavier = replace(plays, weights=(2.0, -0.3, 0.9))
+    wider = replace(plays, thresholds=(0.0, 0.06, 0.1))
+    bent = replace(plays, envelope=(1.3, *plays.envelope[1:]))
+    every = [(heavier, u), (bent, u), (wider, u), (heavier, 2 * u)]
+    expected = [x.simulate(z, z, DT) for x, z in [(plays, u), *every]]
+    runs = []
+    alone = GeneralizedPrandtlIshlinskii.grow
+    monkeypatch.setattr(
+        GeneralizedPrandtlIshlinskii,
+        "grow",
+        lambda self, *given: runs.append(self) or alone(self, *given),
+    )
+    found = near(plays, u, u, DT, every)
+    assert runs == [bent, wider, heavier]
+    for y, right in zip(found, expected, strict=True):
+        assert y == pytest.approx(right, abs=1e-12)
 
 
 def test_what_is_equal_is_simulated_once():

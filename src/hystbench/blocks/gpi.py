@@ -4,11 +4,16 @@ from functools import lru_cache
 
 import numpy as np
 
+from hystbench.blocks.attached import Others
 from hystbench.blocks.parameter import HUGE, a_threshold, choice, numbers
 from hystbench.blocks.step import PASSED, Sampling, Step
 from hystbench.blocks.wrapping import Growth, PlayBlock
 from hystbench.envelope import Envelope
-from hystbench.operators import generalized_play, generalized_prandtl_ishlinskii
+from hystbench.operators import (
+    enveloped_plays,
+    generalized_play,
+    generalized_prandtl_ishlinskii,
+)
 from hystbench.rdgpi.model import STARTS
 from hystbench.record import FloatArray
 
@@ -47,6 +52,8 @@ class GeneralizedPrandtlIshlinskii(PlayBlock, name="gpi", place="base"):
         self, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute Eq. 9 with all thresholds times ``growth``."""
+        if growth is None and self.start == "rest":
+            return enveloped_plays(v, self.envelope, self.thresholds, self.weights)
         left, right, rounds = self._envelopes(v)
         if growth is not None:
             growth = np.tile(growth, rounds)
@@ -54,6 +61,30 @@ class GeneralizedPrandtlIshlinskii(PlayBlock, name="gpi", place="base"):
             left, right, self.thresholds, self.weights, growth
         )
         return y[-len(v) :] if rounds > 1 else y
+
+    def near(
+        self, z: FloatArray, u: FloatArray, dt: float, others: Others
+    ) -> list[FloatArray]:
+        """Compute the output, and those of others with numbers near.
+
+        Of those that differ in their weights alone the operators run once.
+        """
+        alike = [
+            own is z
+            and other.envelope == self.envelope
+            and other.thresholds == self.thresholds
+            and other.start == self.start
+            for other, own in others
+        ]
+        every = [self, *(x for (x, _), one in zip(others, alike, strict=True) if one)]
+        summed = iter(np.array([x.weights for x in every]) @ self.operators(z).T)
+        return [
+            next(summed),
+            *(
+                next(summed) if one else other.simulate(own, u, dt)
+                for (other, own), one in zip(others, alike, strict=True)
+            ),
+        ]
 
     def operators(self, v: FloatArray) -> FloatArray:
         """Compute the outputs of the operators without their weights.

@@ -24,6 +24,31 @@ from hystbench.blocks.state_space import (
 from hystbench.blocks.step import Sampling, Step, smooth_curve
 from hystbench.record import FloatArray
 
+FEW = 4
+"""States of which a loop takes several samples at a time."""
+
+
+class Loop(NamedTuple):
+    """A system as a kernel takes it: what does not change from record to record."""
+
+    kernel: str
+    sizes: tuple[int, ...]
+    fixed: tuple[kernels.Fixed, ...]
+    d: float
+    following: FloatArray  # padded
+
+
+class CurveLoop(NamedTuple):
+    """A system as a kernel for the curve takes it."""
+
+    kernel: str
+    states: int
+    fixed: tuple[kernels.Fixed, ...]
+    d: float
+    passing: FloatArray | None = None
+    """What a window of samples gives by states of which nothing outlasts an interval:
+    of them no kernel needs to know."""
+
 
 class LinearBlock(HeldBlock):
     """A linear, time-invariant block.
@@ -49,7 +74,7 @@ class LinearBlock(HeldBlock):
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the response to ``z``."""
         if self.start == "rest":
-            return respond(self.continuous(), z, dt, self.holding)
+            return _moved(_loop_of(self, dt, _is_smooth(self.holding, z)), z)
         path, before = path_from(z, self.start)
         moves = respond(self.continuous(), path - before, dt, self.holding)
         return (moves + self.static_gain * before)[len(path) - len(z) :]
@@ -101,18 +126,39 @@ def respond(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> FloatAr
     -------
     ndarray, shape (n,)
     """
-    if hold != "band-limited" or len(v) < 3:
-        return _step_by_step(system, v, dt, hold)
-    phi, drive = _curve_steps(*_bytes(system), dt)
+    if _is_smooth(hold, v):
+        return _moved(_curve_loop(*_bytes(system), dt), v)
+    return _moved(_loop(*_bytes(system), dt, hold), v)
+
+
+def _is_smooth(hold: Hold, v: FloatArray) -> bool:
+    """Tell whether a signal is long enough to move along a curve, if it is to."""
+    return hold == "band-limited" and len(v) > 2
+
+
+@lru_cache(maxsize=256)
+def _loop_of(block: LinearBlock, dt: float, smooth: bool) -> Loop | CurveLoop:
+    """Give what a block is simulated by, for records of the same rate."""
+    system = _bytes(block.continuous())
+    return _curve_loop(*system, dt) if smooth else _loop(*system, dt, block.holding)
+
+
+def _moved(loop: Loop | CurveLoop, v: FloatArray) -> FloatArray:
+    """Send a signal through a loop, from rest."""
     n = len(v)
-    y, path = np.empty(n), continued(v)
-    c = kernels.pad(system.c)
-    if phi.ndim == 1:
-        name, states = "hb_curve_modes", len(system.c)
-    else:
-        name, states = "hb_curve_space", len(drive[0]) // kernels.WIDTH
-    sizes = (n, POINTS, AHEAD + 1, states)
-    kernels.call(name, *sizes, phi, drive, c, float(system.d), path, y)
+    y = np.empty(n)
+    if isinstance(loop, Loop):
+        v = np.asarray(v, dtype=np.float64, order="C")
+        state = loop.following * -v[0]
+        kernels.call(loop.kernel, n, *loop.sizes, *loop.fixed, loop.d, v, state, y)
+        return y
+    path = continued(v)
+    sizes = (n, POINTS, AHEAD + 1, loop.states)
+    kernels.call(loop.kernel, *sizes, *loop.fixed, loop.d, path, y)
+    if loop.passing is not None:
+        passed = np.empty(n)
+        kernels.call("hb_weighed", n, POINTS, 1, loop.passing, path, passed)
+        y[1:] += passed[1:]
     return y
 
 
@@ -141,11 +187,16 @@ def states_of(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> Float
         phi, b, _, _, following = _steps(*_bytes(system), dt, hold)
         out[0, :size] = -following * v[0]
         out[1:, :size] = np.outer(v[:-1], b)
-        phi = _padded_columns(phi if phi.ndim == 2 else np.diag(phi))
+        phi = _padded_columns(_square(phi))
         behind = np.outer(v, following)
-    columns = phi if phi.ndim == 2 else np.diag(phi)
+    columns = _square(phi)
     kernels.call("hb_states", len(v), len(columns) // kernels.WIDTH, columns, out)
     return out[:, :size] + behind
+
+
+def _square(phi: FloatArray) -> FloatArray:
+    """Give a matrix of which the diagonal may stand alone."""
+    return phi if phi.ndim == 2 else np.diag(phi)
 
 
 def _padded_columns(phi: FloatArray) -> FloatArray:
@@ -265,14 +316,24 @@ def _curve_steps(
     return _padded_columns(phi), drive
 
 
-class Loop(NamedTuple):
-    """A system as a kernel takes it: what does not change from record to record."""
-
-    kernel: str
-    sizes: tuple[int, ...]
-    fixed: tuple[kernels.Fixed, ...]
-    d: float
-    following: FloatArray  # padded
+@lru_cache(maxsize=256)
+def _curve_loop(a: bytes, b: bytes, c: bytes, d: float, dt: float) -> CurveLoop:
+    phi, drive = _curve_steps(a, b, c, d, dt)
+    output = np.frombuffer(c)
+    size = len(output)
+    if phi.ndim == 2:
+        fixed = tuple(map(kernels.Fixed, (phi, drive, kernels.pad(output))))
+        return CurveLoop("hb_curve_space", size, fixed, float(d))
+    phi, drive = phi[:size], drive[:, :size]
+    lasts = np.abs(phi) > np.finfo(float).eps
+    lasts[0] |= not lasts.any()  # a kernel has one state at least
+    count = int(lasts.sum())
+    own = np.zeros((POINTS, kernels.padded(count)))
+    own[:, :count] = drive[:, lasts]
+    given = (kernels.pad(phi[lasts]), own, kernels.pad(output[lasts]))
+    passing = None if lasts.all() else drive[:, ~lasts] @ output[~lasts]
+    fixed = tuple(map(kernels.Fixed, given))
+    return CurveLoop("hb_curve_modes", count, fixed, float(d), passing)
 
 
 @lru_cache(maxsize=256)
@@ -280,21 +341,11 @@ def _loop(a: bytes, b: bytes, c: bytes, d: float, dt: float, hold: Hold) -> Loop
     steps = _steps(a, b, c, d, dt, hold)
     size = len(steps.b)
     sizes: tuple[int, ...] = (kernels.padded(size) // kernels.WIDTH,)
-    if steps.phi.ndim == 1:
+    if steps.phi.ndim == 1 and size > FEW:
         kernel, phi = "hb_modes", kernels.pad(steps.phi)
     else:
         kernel, sizes = "hb_state_space", (*sizes, size)
-        phi = _padded_columns(steps.phi)
+        phi = _padded_columns(_square(steps.phi))
     fixed = (phi, kernels.pad(steps.b), kernels.pad(steps.c))
     places = tuple(map(kernels.Fixed, fixed))
     return Loop(kernel, sizes, places, steps.d, kernels.pad(steps.following))
-
-
-def _step_by_step(
-    system: StateSpace, v: FloatArray, dt: float, hold: Hold
-) -> FloatArray:
-    v = np.asarray(v, dtype=np.float64, order="C")
-    loop = _loop(*_bytes(system), dt, hold)
-    y, state = np.empty(len(v)), loop.following * -v[0]
-    kernels.call(loop.kernel, len(v), *loop.sizes, *loop.fixed, loop.d, v, state, y)
-    return y

@@ -26,6 +26,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_follow_direction": (None, "iaaa"),
     "hb_play": (None, "iiaaaaa"),
     "hb_prandtl_ishlinskii": (SIZE, "iiaaaaaa"),
+    "hb_enveloped_plays": (SIZE, "iiaaaaa"),
     "hb_rate_dependent": (SIZE, "iiaaaaaaaa"),
     "hb_growing_play": (None, "iiaaaaa"),
     "hb_growing_prandtl_ishlinskii": (SIZE, "iiaaaaaa"),

@@ -138,42 +138,48 @@ INLINE index_t curve_modes(index_t n, index_t points, index_t now, const double 
 /* So few states would leave most lanes idle: there these take samples instead. */
 #define FEW 3
 #define WINDOW 64
-INLINE index_t curve_few(index_t n, index_t points, index_t now, const double *factors,
+INLINE index_t curve_few(index_t n, index_t points, index_t now, const double *a,
                          const double *drive, const double *c, double d,
-                         const double *v, double *y, index_t modes)
+                         const double *v, double *y, index_t states, int apart)
 {
     double taps[FEW][WINDOW], driven_by[FEW][PIECE], x[FEW] = {0};
-    for (index_t i = 0; i < modes; i++)
+    for (index_t i = 0; i < states; i++)
         for (index_t j = 0; j < points; j++) taps[i][j] = drive[j * WIDTH + i];
     for (index_t start = 0; start < n; start += PIECE) {
         const index_t count = n - start < PIECE ? n - start : PIECE;
-        for (index_t i = 0; i < modes; i++)
+        for (index_t i = 0; i < states; i++)
             weighed_all(count, points, taps[i], v + start, driven_by[i]);
         if (start == 0) /* at rest */
-            for (index_t i = 0; i < modes; i++) driven_by[i][0] = 0;
+            for (index_t i = 0; i < states; i++) driven_by[i][0] = 0;
         for (index_t k = 0; k < count; k++) {
-            double output = 0;
+            double output = 0, next[FEW];
             UNROLL
-            for (index_t i = 0; i < modes; i++) {
-                x[i] = factors[i] * x[i] + driven_by[i][k];
-                output += c[i] * x[i];
+            for (index_t i = 0; i < states; i++) {
+                next[i] = driven_by[i][k];
+                for (index_t j = 0; j < states; j++)
+                    if (!apart || i == j) next[i] += a[apart ? i : j * WIDTH + i] * x[j];
+                output += c[i] * next[i];
             }
+            copy(states, next, x);
             y[start + k] = output + d * v[start + k + now];
         }
     }
     return n;
 }
 
+#define FOR_FEW(states, a, apart)                                                       \
+    if (points <= WINDOW) switch (states) {                                             \
+        case 1: return curve_few(n, points, now, a, drive, c, d, v, y, 1, apart);       \
+        case 2: return curve_few(n, points, now, a, drive, c, d, v, y, 2, apart);       \
+        case FEW: return curve_few(n, points, now, a, drive, c, d, v, y, FEW, apart);   \
+        }
+
 /* A is diagonal, factors holds its diagonal of so many modes; points is even. */
 EXPORT index_t hb_curve_modes(index_t n, index_t points, index_t now, index_t modes,
                               const double *factors, const double *drive,
                               const double *c, double d, const double *v, double *y)
 {
-    if (points <= WINDOW) switch (modes) {
-        case 1: return curve_few(n, points, now, factors, drive, c, d, v, y, 1);
-        case 2: return curve_few(n, points, now, factors, drive, c, d, v, y, 2);
-        case FEW: return curve_few(n, points, now, factors, drive, c, d, v, y, FEW);
-        }
+    FOR_FEW(modes, factors, 1)
     const index_t wide = (modes + WIDTH - 1) / WIDTH;
 #define CALL(size) curve_modes(n, points, now, factors, drive, c, d, v, y, size)
     FOR_SIZES(wide, CALL)
@@ -213,10 +219,12 @@ INLINE index_t curve_space(index_t n, index_t points, index_t now, const double 
 }
 
 /* a holds the columns of A; points is even. */
-EXPORT index_t hb_curve_space(index_t n, index_t points, index_t now, index_t wide,
+EXPORT index_t hb_curve_space(index_t n, index_t points, index_t now, index_t states,
                               const double *a, const double *drive, const double *c,
                               double d, const double *v, double *y)
 {
+    FOR_FEW(states, a, 0)
+    const index_t wide = (states + WIDTH - 1) / WIDTH;
 #define CALL(size) curve_space(n, points, now, a, drive, c, d, v, y, size)
     FOR_SIZES(wide, CALL)
 #undef CALL

@@ -29,7 +29,7 @@ EXPORT void hb_slew_limit(index_t n, double rate, const double *z, double *out)
 
 /* s > 0 with s + scale (s / unit)^power = all, power at least 1: the steps of Halley
  * from a guess.  The error after a step is of the order of the cube of the step, so that
- * one of a twenty-thousandth is the last. */
+ * one of a thousandth is the last. */
 static double split(double all, double scale, double unit, double power, double s)
 {
     for (int step = 0; step < 60 && s > 0; step++) {
@@ -38,7 +38,7 @@ static double split(double all, double scale, double unit, double power, double 
         const double bend = power * (power - 1) * rest / (s * s);
         const double change = over / (slope - 0.5 * over * bend / slope);
         s -= change;
-        if (fabs(change) <= 5e-5 * s) break;
+        if (fabs(change) <= 1e-3 * s) break;
     }
     return s;
 }

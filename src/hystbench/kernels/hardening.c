@@ -11,6 +11,7 @@ EXPORT index_t hb_hardening(index_t n, double phase, double damping, double alph
 {
 #define FORCE(at) (now + (at) * slope)
 #define BEND(x, v, f) ((f) - (x) * (1 + alpha * (x) * (x)) - 2 * damping * (v))
+    const double most = step / phase; /* times the linear mode's rate, in one step */
     double x = 0, v = 0;
     index_t k = 0;
     for (; k < n; k++) {
@@ -18,10 +19,12 @@ EXPORT index_t hb_hardening(index_t n, double phase, double damping, double alph
         if (k + 1 == n) continue;
         const double now = z[k], slope = ramp * (z[k + 1] - now);
         const double reach = fmax(fabs(x), fabs(z[k + 1]));
-        const double stiffness = sqrt(1 + 3 * fabs(alpha) * reach * reach);
-        const double steps = ceil(phase * fmax(stiffness, damping) / step);
+        const double square = 1 + 3 * fabs(alpha) * reach * reach;
+        double steps = 1; /* as most often: nothing then waits for a root or a ratio */
+        if (!(fmax(square, damping * damping) <= most * most))
+            steps = ceil(fmax(sqrt(square), damping) / most);
         if (!(steps < 1e5)) break;
-        const double h = phase / steps, part = 1 / steps;
+        const double part = steps == 1 ? 1 : 1 / steps, h = phase * part;
         for (double s = 0; s < steps; s++) {
             const double f1 = FORCE(s * part), f2 = FORCE((s + .5) * part);
             const double f4 = FORCE((s + 1) * part);

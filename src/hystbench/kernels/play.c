@@ -1,5 +1,6 @@
 /* Play operators and the Prandtl-Ishlinskii models made of them. */
 #include "lanes.h"
+#include "tangent.h"
 
 /* Eq. 12 as Eq. 4: where the input rises the left envelope is taken out of the
  * way, where it falls the right one, where it rests both. */
@@ -53,6 +54,24 @@ EXPORT index_t hb_prandtl_ishlinskii(index_t n, index_t wide, const double *left
 #define CALL(size) prandtl_ishlinskii(n, left, right, r, weights, state, y, size)
     FOR_SIZES(wide, CALL)
 #undef CALL
+}
+
+/* The same from rest on the envelopes of an input, a0 to a3 and a4 to a7, which are
+ * computed a piece at a time and never stored. */
+#define PIECE 256
+EXPORT index_t hb_enveloped_plays(index_t n, index_t wide, const double *a,
+                                  const double *v, const double *r,
+                                  const double *weights, double *y)
+{
+    double left[PIECE], right[PIECE], state[wide * WIDTH];
+    for (index_t i = 0; i < wide * WIDTH; i++) state[i] = 0;
+    for (index_t start = 0; start < n; start += PIECE) {
+        const index_t count = n - start < PIECE ? n - start : PIECE;
+        envelope(count, a[0], a[1], a[2], a[3], v + start, left);
+        envelope(count, a[4], a[5], a[6], a[7], v + start, right);
+        hb_prandtl_ishlinskii(count, wide, left, right, r, weights, state, y + start);
+    }
+    return n;
 }
 
 INLINE index_t rate_dependent(index_t n, const double *number, const double *used,

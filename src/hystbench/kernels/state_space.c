@@ -2,6 +2,7 @@
 #include "lanes.h"
 
 #define FEW 4 /* states */
+#define BLOCK WIDTH
 
 INLINE void simulate(index_t n, const double *a, const double *b, const double *c,
                      double d, const double *u, double *state, double *y,
@@ -32,29 +33,80 @@ INLINE void simulate(index_t n, const double *a, const double *b, const double *
     copy(size, x, state);
 }
 
-/* The same of few states, each in a register of its own: less to wait for. */
+/* The same of few states, BLOCK samples at a time: what a block gives, and the state
+ * behind it, are sums over the state before it and its inputs. So a sample need not
+ * wait for the one before. */
 INLINE void simulate_few(index_t n, const double *a, const double *b, const double *c,
                          double d, const double *u, double *state, double *y,
                          index_t states)
 {
-    double x[FEW], next[FEW], own_a[FEW * FEW], own_b[FEW], own_c[FEW];
-    for (index_t i = 0; i < states; i++) {
-        x[i] = state[i], own_b[i] = b[i], own_c[i] = c[i];
-        for (index_t j = 0; j < states; j++) own_a[j * states + i] = a[j * WIDTH + i];
-    }
-    for (index_t k = 0; k < n; k++) {
-        double output = d * u[k];
-        UNROLL
-        for (index_t i = 0; i < states; i++) {
-            output += own_c[i] * x[i];
-            next[i] = own_b[i] * u[k];
-            UNROLL
-            for (index_t j = 0; j < states; j++)
-                next[i] += own_a[j * states + i] * x[j];
+    double free[FEW][BLOCK] ALIGNED, answers[BLOCK][BLOCK] ALIGNED = {{0}};
+    double left[FEW][FEW] ALIGNED = {{0}}, brought[BLOCK][FEW] ALIGNED = {{0}};
+    /* From a one in each state, and from a one in the first input. */
+    for (index_t from = 0; from <= states; from++) {
+        double x[FEW] = {0}, next[FEW];
+        if (from < states) x[from] = 1;
+        for (index_t k = 0; k < BLOCK; k++) {
+            double output = from == states && k == 0 ? d : 0;
+            for (index_t i = 0; i < states; i++) {
+                output += c[i] * x[i];
+                next[i] = from == states && k == 0 ? b[i] : 0;
+                for (index_t j = 0; j < states; j++) next[i] += a[j * WIDTH + i] * x[j];
+            }
+            copy(states, next, x);
+            if (from < states)
+                free[from][k] = output;
+            else {
+                for (index_t j = 0; j + k < BLOCK; j++) answers[j][j + k] = output;
+                copy(states, x, brought[BLOCK - 1 - k]);
+            }
         }
-        y[k] = output;
+        if (from < states) copy(states, x, left[from]);
+    }
+    double x[FEW] ALIGNED = {0};
+    copy(states, state, x);
+    index_t k = 0;
+    for (; k + BLOCK <= n; k += BLOCK) {
+        lanes even[BLOCK / LANES] = {{0}}, odd[BLOCK / LANES] = {{0}};
+        part from_state[FEW / PART] = {{0}}, from_input[FEW / PART] = {{0}};
         UNROLL
-        for (index_t i = 0; i < states; i++) x[i] = next[i];
+        for (index_t j = 0; j < BLOCK; j += 2) {
+            UNROLL
+            for (index_t i = 0; i < BLOCK / LANES; i++) {
+                even[i] += load(answers[j] + i * LANES) * u[k + j];
+                odd[i] += load(answers[j + 1] + i * LANES) * u[k + j + 1];
+            }
+            UNROLL
+            for (index_t i = 0; i < FEW / PART; i++) {
+                from_input[i] += load_part(brought[j] + i * PART) * u[k + j];
+                from_input[i] += load_part(brought[j + 1] + i * PART) * u[k + j + 1];
+            }
+        }
+        UNROLL
+        for (index_t j = 0; j < states; j++) {
+            UNROLL
+            for (index_t i = 0; i < BLOCK / LANES; i++)
+                even[i] += load(free[j] + i * LANES) * x[j];
+            UNROLL
+            for (index_t i = 0; i < FEW / PART; i++)
+                from_state[i] += load_part(left[j] + i * PART) * x[j];
+        }
+        UNROLL
+        for (index_t i = 0; i < BLOCK / LANES; i++)
+            store(y + k + i * LANES, even[i] + odd[i]);
+        UNROLL
+        for (index_t i = 0; i < FEW / PART; i++)
+            store_part(x + i * PART, from_state[i] + from_input[i]);
+    }
+    for (; k < n; k++) {
+        double next[FEW] = {0};
+        y[k] = d * u[k];
+        for (index_t i = 0; i < states; i++) {
+            y[k] += c[i] * x[i];
+            next[i] = b[i] * u[k];
+            for (index_t j = 0; j < states; j++) next[i] += a[j * WIDTH + i] * x[j];
+        }
+        copy(states, next, x);
     }
     copy(states, x, state);
 }

@@ -24,6 +24,7 @@ from hystbench.gap.inside.hosts import (
     hosts,
     is_seen_moving,
     one_coordinate,
+    same_as,
 )
 from hystbench.gap.inside.hypotheses import (
     starts,
@@ -191,6 +192,30 @@ def test_where_the_base_is_a_gain_no_mass_is_seen(units, kinds, count):
     start = ModelState((Gain(value=3.0, offset=0.0),), given, ScoredSamples.of(given))
     score = Score(start.sample, np.zeros((len(start.sample), 0)), NOISE**2)
     assert len(list(hosts(start, kinds, True, score))) == count
+
+
+def test_what_a_given_base_is_the_same_as_is_sought_once(monkeypatch):
+    """It does not depend on what was measured: an offset taken off changes nothing."""
+    w = 6.0
+    base = TransferFunction(numerator=(0.3 * w**2,), denominator=(1.0, 0.9, w**2))
+    measured = mass(30.0)
+    offset = replace(measured, y=measured.y - 0.05)
+    sought = []
+    monkeypatch.setattr(
+        "hystbench.gap.inside.hosts.one_coordinate",
+        lambda *given: sought.append(given) or one_coordinate(*given),
+    )
+    found = [
+        same_as(
+            ModelState((base,), (own,), ScoredSamples.of((own,)), hold="linear"), MOVES
+        )
+        for own in (measured, offset)
+    ]
+    assert len(sought) == 1
+    (first, second) = (state.chain[0] for state in found)
+    assert first == second
+    assert first.stiffness / first.mass == pytest.approx(w**2, rel=1e-3)
+    assert [state.records[0] for state in found] == [measured, offset]
 
 
 def test_drag_of_a_loose_mass_whose_acceleration_is_measured():

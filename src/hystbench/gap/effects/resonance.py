@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy import fft
 
 from hystbench.gap.effects.effect import Effect
@@ -16,6 +17,8 @@ PEAKS = 3
 """Frequencies at which the residual looks most like a lightly damped mode."""
 LIGHT = 0.02
 """Damping ratio of that mode: its peak is as wide as a step of the search."""
+BINS = 8
+"""Of the spectrum in a step from mode to mode, that is in a half-width of a peak."""
 NEAR = 0.25
 """Share of a frequency around it in which a mode is told by its peak."""
 
@@ -71,21 +74,30 @@ def peaks(simulation: Simulation, low: float, high: float) -> FloatArray:
     """
     count = int(np.log(high / low) / LIGHT) + 2
     modes = np.geomspace(low, high, count)
-    along, square = np.zeros(count), np.zeros(count)
+    # In bins of the logarithm of frequency all modes look alike, each further along.
+    width = np.log(modes[1] / low) / BINS
+    first, last = (int(np.log(1 + end) / width) for end in (-NEAR, NEAR))
+    x = np.exp(width * np.arange(first, last + 1))
+    mode = 1 / (1 - x**2 + 2j * LIGHT * x) - 1
+    bins = np.zeros((3, (count - 1) * BINS + len(x)))
     inputs = simulation.before[simulation.behind_material]
     for record, v, simulated in zip(
         simulation.records, inputs, simulation.output, strict=True
     ):
         length = fft.next_fast_len(2 * len(record), real=True)
-        left = fft.rfft(record.y - simulated, length)
-        driven = fft.rfft(v, length)
-        frequencies = fft.rfftfreq(length, record.dt)
-        ends = np.searchsorted(frequencies, [modes * (1 - NEAR), modes * (1 + NEAR)])
-        for k, (first, last) in enumerate(ends.T):
-            x = frequencies[first:last] / modes[k]
-            mode = (1 / (1 - x**2 + 2j * LIGHT * x) - 1) * driven[first:last]
-            along[k] += np.vdot(mode, left[first:last]).real
-            square[k] += np.vdot(mode, mode).real
+        left = fft.rfft(record.y - simulated, length)[1:]
+        driven = fft.rfft(v, length)[1:]
+        place = np.log(fft.rfftfreq(length, record.dt)[1:] / low) / width - first
+        place = np.rint(place).astype(int)
+        inside = slice(*np.searchsorted(place, [0, bins.shape[1]]))
+        both = (driven.conj() * left)[inside]
+        for row, lines in zip(
+            bins, (both.real, both.imag, np.abs(driven[inside]) ** 2), strict=True
+        ):
+            row += np.bincount(place[inside], lines, len(row))
+    real, imaginary, square = sliding_window_view(bins, len(x), axis=1)[:, ::BINS]
+    along = real @ mode.real + imaginary @ mode.imag
+    square = square @ np.abs(mode) ** 2
     gain = along**2 / np.maximum(square, np.finfo(float).tiny)
     inner = gain[1:-1]
     tops = 1 + np.flatnonzero((inner > gain[:-2]) & (inner >= gain[2:]))

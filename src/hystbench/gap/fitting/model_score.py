@@ -6,6 +6,7 @@ It ends at a floor: noise, and what the simulator's steps miss.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from hystbench.gap.fitting.score import Products, Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.scored_samples import rms
 from hystbench.gap.simulation.reshape import orthonormal
+from hystbench.gap.simulation.shared import Same
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray
 
@@ -50,7 +52,14 @@ def beside_of(state: ModelState, score: Score) -> Products | None:
     """Give the products of what lies beside a model; None without."""
     if not state.beside:
         return None
-    columns = state.beside_columns
+    return _products(Same(state.beside, state.records, state.sample), score)
+
+
+@lru_cache(maxsize=2)
+def _products(given: Same, score: Score) -> Products:
+    """Give them for all chains that the same lies beside."""
+    beside, records, sample = given.objects
+    columns = ModelState((), records, sample, beside=beside).beside_columns
     return score.shared(columns, np.zeros(columns.shape[1]))
 
 

@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dpotrf, dpotrs
 
 from hystbench.errors import InputError
 from hystbench.gap.records.scored_samples import ScoredSamples
@@ -192,26 +193,30 @@ class Score:
         found = self._products(whole, np.diag(np.concatenate([[0.0], charge])))
         if beside is not None and len(beside.charge):
             found = self._joined(found, beside)
-        flat, inner = found.grams.reshape(len(self.parts), -1), found.within.ravel()
+        # Of each record, of the directions and of the charge: one quadratic form each.
+        forms = np.concatenate([found.grams, [found.within, found.charge]])
+        forms = forms.reshape(len(forms), -1)
         d = max(self.directions.shape[1], 1)
         full, last = np.eye(1, k + 1)[0], np.inf
         best = (np.inf, full)
         for _ in range(ROUNDS + 1):
-            both = np.outer(full, full).ravel()
-            squares = np.maximum(flat @ both, 0.0) / self._counts
-            power = max(float(inner @ both), 0.0)
-            value = self._value(squares, power, freedom)
-            value += float(full @ found.charge @ full)
+            squares = forms @ (full[:, None] * full).ravel()
+            charged = float(squares[-1])
+            squares = np.maximum(squares[:-1], 0.0)
+            power = float(squares[-1])
+            squares = squares[:-1] / self._counts
+            value = self._value(squares, power, freedom) + charged
             if value < best[0]:
                 best = (value, full)
             if abs(last - value) < STILL:
                 break
             last = value
             weights = self.weight / (self._counts * np.maximum(squares, self.floor))
-            normal = weights @ flat + d / max(power, d * self.floor) * inner
+            of_inside = d / max(power, d * self.floor)
+            normal = np.concatenate([weights, [of_inside, 1.0]]) @ forms
             normal = normal.reshape(k + 1, k + 1)
-            matrix = normal[1:, 1:] + found.charge[1:, 1:]
-            np.fill_diagonal(matrix, matrix.diagonal() * (1 + 1e-12))
+            matrix = normal[1:, 1:]
+            matrix.flat[:: k + 1] *= 1 + 1e-12
             beta = _solve(matrix, normal[1:, 0], positive)
             full = np.concatenate([[1.0], -beta])
         return Amplitudes(-best[1][1 : own + 1] / scale, best[0])
@@ -295,9 +300,9 @@ class Score:
 
     def _value(self, squares: FloatArray, power: float, freedom: float) -> float:
         d = self.directions.shape[1]
-        outside = self.weight * float(np.sum(np.log(np.maximum(squares, self.floor))))
-        inside = d * np.log(max(power / d, self.floor)) if d else 0.0
-        return outside + float(inside) + PARAMETER * freedom
+        outside = self.weight * float(np.log(np.maximum(squares, self.floor)).sum())
+        inside = d * float(np.log(max(power / d, self.floor))) if d else 0.0
+        return outside + inside + PARAMETER * freedom
 
 
 def _sizes(columns: FloatArray) -> FloatArray:
@@ -332,12 +337,14 @@ def _solve(
     matrix: FloatArray, vector: FloatArray, positive: Sequence[int]
 ) -> FloatArray:
     """Solve normal equations; amplitudes that must not be negative are set to zero."""
+    if not positive:
+        return _solution(matrix, vector)
     active = np.ones(len(vector), dtype=bool)
     for _ in range(len(vector) + 1):
         beta: FloatArray = np.zeros(len(vector))
         if active.all():
             beta[:] = _solution(matrix, vector)
-        else:
+        elif active.any():
             keep = np.flatnonzero(active)
             beta[keep] = _solution(matrix[np.ix_(keep, keep)], vector[keep])
         negative = [k for k in positive if active[k] and beta[k] < 0]
@@ -353,11 +360,9 @@ def _solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
         return np.asarray(vector / matrix[0])
     size = np.sqrt(np.maximum(matrix.diagonal(), 0.0))
     size[size == 0] = 1.0
-    matrix, vector = matrix / np.outer(size, size), vector / size
-    try:
-        pivots = np.linalg.cholesky(matrix).diagonal()
-    except np.linalg.LinAlgError:
-        pivots = np.zeros(len(vector))
-    if (pivots > KNOWN).all():  # elimination is quicker
-        return np.asarray(np.linalg.solve(matrix, vector) / size, dtype=np.float64)
+    matrix, vector = matrix / (size[:, None] * size), vector / size
+    lower, failed = dpotrf(matrix, lower=1)
+    if not failed and (lower.diagonal() > KNOWN).all():  # elimination is quicker
+        found, _ = dpotrs(lower, vector, lower=1)
+        return np.asarray(found / size)
     return np.asarray(np.linalg.lstsq(matrix, vector, rcond=1e-13)[0] / size)

@@ -218,8 +218,13 @@ class ModelState:
     @cached_property
     def beside_amplitudes(self) -> FloatArray:
         """Amplitudes of the shapes beside that fit the residual best."""
-        found = np.linalg.lstsq(self.beside_columns, self.residual, rcond=1e-10)[0]
-        return np.asarray(found, dtype=np.float64)
+        found = np.zeros(self.beside_columns.shape[1])
+        for part in self.sample.slices:  # no column is shared by two records
+            columns = self.beside_columns[part]
+            own = columns.any(axis=0)
+            rest = self.residual[part]
+            found[own] = np.linalg.lstsq(columns[:, own], rest, rcond=1e-10)[0]
+        return found
 
     def share(self, other: ModelState, floor: float, gap: float) -> float:
         """Tell which share of a gap is gone here and is there in another state.

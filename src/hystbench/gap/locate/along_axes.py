@@ -43,6 +43,8 @@ MEMORIES = 4
 """Time constants, from a fifth of the slowest period to twice the longest record."""
 STARTS = 61
 """Delays that are tried, of both signs, before the best is refined."""
+ROUGHLY = 4
+"""Of the samples of a view, one of so many chooses a start."""
 PERIODS = 1.5
 """Of the fastest input: further a shift is not told from those by whole periods."""
 QUIET = 1.5
@@ -191,19 +193,22 @@ def fit_delay(samples: ViewSamples) -> tuple[float, FloatArray]:
 
     paths = [CubicSpline(item.record.time, item.simulated) for item in samples.compared]
 
-    def change(shift: float) -> FloatArray:
+    def change(shift: float, every: int = 1) -> FloatArray:
         moved = [
-            path(np.clip(samples.time[part] - shift, *path.x[[0, -1]]))
+            path(np.clip(samples.time[part][::every] - shift, *path.x[[0, -1]]))
+            - samples.simulated[part][::every]
             for path, part in zip(paths, samples.slices, strict=True)
         ]
-        return np.concatenate(moved) - samples.simulated
+        return np.concatenate(moved)
 
-    def missed(shift: float) -> float:
-        return float(np.mean((samples.residual - change(shift)) ** 2))
+    def missed(shift: float, every: int = 1) -> float:
+        there = [samples.residual[part][::every] for part in samples.slices]
+        return float(np.mean((np.concatenate(there) - change(shift, every)) ** 2))
 
     longest = 4 * max(item.record.dt for item in samples.compared)
     most = max(PERIODS / float(np.max(samples.main_frequencies)), longest)
-    start = min(np.linspace(-most, most, STARTS).tolist(), key=missed)
+    starts = np.linspace(-most, most, STARTS).tolist()
+    start = min(starts, key=lambda shift: missed(shift, ROUGHLY))
     step = 2 * most / (STARTS - 1)
     ends = (start - step, start + step)
     search = minimize_scalar(missed, bounds=ends, options={"xatol": 1e-4 * step})

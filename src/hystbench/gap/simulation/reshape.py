@@ -12,7 +12,7 @@ else may lie in it, behind its hysteresis, is in there.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 
@@ -21,7 +21,9 @@ from numpy.typing import NDArray
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
+from hystbench.blocks.linear import LinearBlock
 from hystbench.gap.records.scored_samples import ScoredSamples
+from hystbench.gap.simulation.shared import Same
 from hystbench.gap.simulation.simulation import Signals, Simulation
 from hystbench.operators import play
 from hystbench.record import FloatArray
@@ -40,6 +42,9 @@ SMALL = 1e-3
 """Size of a change beside the signal that it changes."""
 SMALLEST = 1e-3
 """Directions weaker than this share of the strongest are left out."""
+
+Maker = Callable[[Block, Signals, Signals, ScoredSamples | None], list[Signals]]
+"""Makes ways of a hysteresis, of what enters it and, unseen, what it gives."""
 
 
 def reshapings(simulation: Simulation, sample: ScoredSamples) -> FloatArray:
@@ -73,80 +78,100 @@ def products(simulation: Simulation, sample: ScoredSamples) -> FloatArray:
 def _behind(
     simulation: Simulation,
     sample: ScoredSamples,
-    make: Callable[[Simulation, int, ScoredSamples | None], list[Signals]],
+    make: Maker,
 ) -> FloatArray:
     """Make signals of the hysteresis and send them through what follows it."""
     if simulation.loop is None:
         return np.zeros((len(sample), 0))
-    if simulation.behind_hysteresis < len(simulation.chain):
-        now = sample.take(simulation.output)
-        return np.column_stack(
-            [
-                (sample.take(after) - now) / change
-                for after, change in _all_sent(simulation, make)
-            ]
-        )
+    behind = simulation.chain[simulation.behind_hysteresis :]
     # What nothing follows is wanted at the scored samples alone.
-    ways = make(simulation, simulation.loop, sample)
-    return np.column_stack([np.concatenate(way) for way in ways])
+    wanted = None if behind else sample
+    place = simulation.loop
+    block, v = simulation.chain[place], simulation.before[place]
+    given = () if block.seen else simulation.before[place + 1]
+    ways = _made(make, block, Same(*v), Same(*given), Same(wanted))
+    if not behind:
+        return np.column_stack([np.concatenate(way) for way in ways])
+    sent = _all_sent(simulation, Same(ways))
+    if _are_linear(behind):
+        return np.column_stack([sample.take(after) for after, _ in sent])
+    now = sample.take(simulation.output)
+    return np.column_stack(
+        [(sample.take(after) - now) / change for after, change in sent]
+    )
+
+
+@lru_cache(maxsize=4)
+def _made(
+    make: Maker, block: Block, v: Same, given: Same, sample: Same
+) -> list[Signals]:
+    """Make the ways; kept, as chains often differ only in what follows."""
+    return make(block, v.objects, given.objects, *sample.objects)
 
 
 @lru_cache(maxsize=2)
-def _all_sent(
-    simulation: Simulation,
-    make: Callable[[Simulation, int, ScoredSamples | None], list[Signals]],
-) -> list[tuple[Signals, float]]:
+def _all_sent(simulation: Simulation, given: Same) -> list[tuple[Signals, float]]:
     """Send each way on; kept, as more than one choice of samples is asked for."""
     behind = simulation.chain[simulation.behind_hysteresis :]
-    assert simulation.loop is not None  # noqa: S101  (for the type checker)
-    ways = make(simulation, simulation.loop, None)
+    (ways,) = given.objects
     return [_sent(simulation, behind, way) for way in ways]
+
+
+def _are_linear(blocks: Sequence[Block]) -> bool:
+    return all(isinstance(block, LinearBlock) for block in blocks)
 
 
 def orthonormal(columns: FloatArray) -> FloatArray:
     """Give an orthonormal basis of columns, each scaled to one first."""
     if not columns.shape[1]:
         return columns
-    size = np.linalg.norm(columns, axis=0)
-    usable = np.isfinite(size) & (size > 0)
-    columns = columns[:, usable] / size[usable]
-    # By the small Gram matrix: a full decomposition of the columns is ten times dearer.
-    values, vectors = np.linalg.eigh(columns.T @ columns)
+    # By the small Gram matrix: a full decomposition of the columns is ten times dearer,
+    # and the weakest direction that is left is at right angles to 1e-10 of its size.
+    gram = columns.T @ columns
+    size = np.sqrt(gram.diagonal())
+    usable = np.flatnonzero(np.isfinite(size) & (size > 0))
+    size = size[usable]
+    values, vectors = np.linalg.eigh(
+        gram[np.ix_(usable, usable)] / np.outer(size, size)
+    )
     keep = values > (SMALLEST**2) * values[-1]
-    basis = columns @ (vectors[:, keep] / np.sqrt(values[keep]))
-    # A second pass makes what rounding has left orthonormal too.
-    triangle = np.linalg.cholesky(basis.T @ basis)
-    return np.asarray(basis @ np.linalg.inv(triangle).T)
+    turned = vectors[:, keep] / (size[:, None] * np.sqrt(values[keep]))
+    return np.asarray(columns[:, usable] @ turned)
 
 
 def _ways(
-    simulation: Simulation, place: int, sample: ScoredSamples | None
+    block: Block, v: Signals, given: Signals, sample: ScoredSamples | None
 ) -> list[Signals]:
-    """Give ways in which the output of the hysteresis at a place could differ.
+    """Give ways in which the output of a hysteresis could differ.
 
-    Of whole records, or of scored samples.
+    Parameters
+    ----------
+    block : Block
+    v : tuple of ndarray
+        What enters it.
+    given : tuple of ndarray
+        Its output, where its inside is not seen.
+    sample : ScoredSamples, optional
+        What is wanted of the records; by default all.
     """
-    block, v = simulation.chain[place], simulation.before[place]
     ways: list[Signals] = [tuple(np.ones(len(z)) for z in _at(v, sample))]
-    sources = [v] if block.seen else [v, simulation.before[place + 1]]
-    for signals in sources:
+    for signals in filter(None, (v, given)):
         ways += _powers(signals, sample)
     own: list[Signals] = []
     if isinstance(block, GeneralizedPrandtlIshlinskii):
-        own = [_at(x, sample) for x in _own(simulation, block, v)]
+        own = [_at(x, sample) for x in _own(block, v)]
     return ways + own
 
 
 def _mixed(
-    simulation: Simulation, place: int, sample: ScoredSamples | None
+    block: Block, v: Signals, given: Signals, sample: ScoredSamples | None
 ) -> list[Signals]:
-    """Give products of what enters the hysteresis and of play operators of it."""
-    signals = simulation.before[place]
-    amplitude = max(float(np.abs(z).max()) for z in signals) or 1.0
+    """Give products of what enters a hysteresis and of play operators of it."""
+    amplitude = max(float(np.abs(z).max()) for z in v) or 1.0
     thresholds = np.arange(MIXED) / (MIXED + 1)  # the first is the input itself
     plays = [
         np.ascontiguousarray(play(z / amplitude, thresholds)[0].T[:, _rows(k, sample)])
-        for k, z in enumerate(signals)
+        for k, z in enumerate(v)
     ]
     each = range(MIXED)
     ways: list[Signals] = []
@@ -184,9 +209,7 @@ def _powers(signals: Signals, sample: ScoredSamples | None) -> list[Signals]:
     return ways
 
 
-def _own(
-    simulation: Simulation, block: GeneralizedPrandtlIshlinskii, v: Signals
-) -> list[Signals]:
+def _own(block: GeneralizedPrandtlIshlinskii, v: Signals) -> list[Signals]:
     """Give a few groups of the block's operators, and tangents of its envelopes."""
     count = len(block.thresholds)
     groups = np.array_split(np.arange(count), min(count, OPERATORS))
@@ -196,15 +219,17 @@ def _own(
         for z in v
     ]
     ways: list[Signals] = [tuple(z[k] for z in sums) for k in range(len(groups))]
-    now = simulation.run((block,), v)
+    now = [block.grow(z, z, 1.0, None) for z in v]
     slope = 1.0 / (max(float(np.abs(z).max()) for z in v) or 1.0)
     height = max(abs(block.envelope[k]) for k in HEIGHTS) or 1.0
     units = [slope if k in SLOPES else height if k in LEVELS else 1.0 for k in range(8)]
     for k, value in enumerate(block.envelope):
         moved = list(block.envelope)
         moved[k] = value + SMALL * max(abs(value), LEAST * units[k])
-        other = simulation.run((replace(block, envelope=tuple(moved)),), v)
-        ways.append(tuple(a - b for a, b in zip(other, now, strict=True)))
+        other = replace(block, envelope=tuple(moved))
+        ways.append(
+            tuple(other.grow(z, z, 1.0, None) - y for z, y in zip(v, now, strict=True))
+        )
     return ways
 
 
@@ -220,6 +245,8 @@ def _sent(
     change : float
         How small it is.
     """
+    if _are_linear(behind):  # they answer to the change alone, of any size
+        return simulation.run(behind, signals), 1.0
     now = simulation.before[simulation.behind_hysteresis]
     size = SMALL * simulation.largest(simulation.behind_hysteresis)
     largest = float(max(max(s.max(), -s.min()) for s in signals))

@@ -7,6 +7,7 @@ beside each other.
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
@@ -18,31 +19,34 @@ def quick(
     chain: tuple[Block, ...], records: tuple[Record, ...], hold: Hold
 ) -> Simulation:
     """Give the simulation by which models are compared."""
-    return _shared(chain, _Same(records), hold, True)
+    return _shared(chain, Same(records), hold, True)
 
 
 def in_short_steps(
     chain: tuple[Block, ...], records: tuple[Record, ...], hold: Hold
 ) -> Simulation:
     """Give the simulation that misses least by its own steps."""
-    return _shared(chain, _Same(records), hold, False)
+    return _shared(chain, Same(records), hold, False)
 
 
-class _Same:
-    """Records as a key: these, and not others of the same samples."""
+class Same:
+    """Objects as a key: these, and not others that are equal."""
 
-    def __init__(self, records: tuple[Record, ...]) -> None:
-        self.records = records
+    def __init__(self, *objects: Any) -> None:
+        self.objects = objects
 
     def __hash__(self) -> int:
-        return id(self.records)
+        return hash(tuple(map(id, self.objects)))
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and self.records is other.records
+        return isinstance(other, Same) and list(map(id, self.objects)) == list(
+            map(id, other.objects)
+        )
 
 
 @lru_cache(maxsize=8)
 def _shared(
-    chain: tuple[Block, ...], given: _Same, hold: Hold, quick: bool
+    chain: tuple[Block, ...], given: Same, hold: Hold, quick: bool
 ) -> Simulation:
-    return Simulation(chain, given.records, hold, quick=quick, fine=not quick)
+    (records,) = given.objects
+    return Simulation(chain, records, hold, quick=quick, fine=not quick)
