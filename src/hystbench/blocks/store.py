@@ -76,10 +76,9 @@ class Store(HeldBlock, name="store", place="base"):
             np.array([getattr(x, name) - getattr(self, name) for x, _ in others])
             for name in ("rate", "exponent", "height")
         )
-        made = (inflow, level, outflow, spilt, count, *differ)
-        numbers = self._numbers(dt / fine)
-        beside = (inflows, levels, outflows, spills)
-        kernels.call("hb_store_near", n, *numbers, *made, *beside)
+        numbers, made = self._numbers(dt / fine), (inflow, level, outflow, spilt)
+        beside = (*differ, inflows, levels, outflows, spills)
+        kernels.call("hb_store_near", n, *numbers, *made, count, *beside)
         found = [self._given(level, outflow, spilt, fine)]
         for k, (other, _) in enumerate(others):
             moved = level + levels[:, k], outflow + outflows[:, k], spilt + spills[:, k]

@@ -147,9 +147,9 @@ def _one_more(
     if not begun:
         return []
     if stores:
-        own = [item for item in begun if item.state.added[-1].place == "inside"]
+        inside = [item for item in begun if item.state.added[-1].place == "inside"]
         around = [item for item in begun if item.state.added[-1].place != "inside"]
-        best_first = fitted_each(own, score)
+        best_first = fitted_each(inside, score)
         best_first += fitted_likely(around, beginnings, score, 1)
         best_first.sort(key=lambda item: item.score)
     else:
