@@ -24,6 +24,7 @@ from hystbench.gap.naming.rounds import Candidate, TriedVariant, best_forms, in_
 from hystbench.gap.thresholds import (
     CERTAIN,
     LOOSE,
+    PARAMETER,
     PAYS,
     SCALE,
     SHAPE,
@@ -380,7 +381,8 @@ def on_folds(item: Candidate, before: ModelState, score: Score) -> Candidate:
     """Judge a finalist that pays on records that did not fit it.
 
     What it gained on all records, charged for its freedom, it can only lose: a fold
-    that fits better than all of them together shows no merit.
+    that fits better than all of them together shows no merit. What it gains there is
+    charged as well: of two that both leave noise alone, the one of fewer numbers leads.
     """
     if item.state is None or item.gain < PAYS:
         return item
@@ -388,5 +390,6 @@ def on_folds(item: Candidate, before: ModelState, score: Score) -> Candidate:
         held = gain_held_back(before, item.state, score)
     except CallsUsedUp as error:
         return Candidate(item.effect, item.place, declined=str(error))
-    lost = max(item.gain - held, 0.0)
+    charge = PARAMETER * (item.state.freedom - before.freedom)
+    lost = max(item.gain - (held - charge), 0.0)
     return replace(item, score=item.score + lost, gain=item.gain - lost, held_back=held)
