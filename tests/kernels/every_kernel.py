@@ -22,6 +22,7 @@ from hystbench import (  # noqa: E402
     operators,
     published,
 )
+from hystbench.blocks.attached_mass import AttachedMass  # noqa: E402
 from hystbench.blocks.creep import Creep  # noqa: E402
 from hystbench.blocks.friction_force import FrictionForce  # noqa: E402
 from hystbench.blocks.gravity import Gravity  # noqa: E402
@@ -156,6 +157,7 @@ def blocks(x):
     ).wrap(each[-1], x, x, DT, None)
     yield "acting field", (wrapped,)
     forces = (
+        AttachedMass(mass=1e-4, damping=2e-3, stiffness=8.0),
         FrictionForce(coulomb=0.2, presliding_distance=1e-3),
         Gravity(amplitude=3.0),
         HystereticForce(largest=0.3, yield_distance=1e-2),

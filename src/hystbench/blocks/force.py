@@ -18,6 +18,7 @@ from hystbench.record import FloatArray
 LAWS = (
     *("stiffness", "sinh", "stop", "friction"),
     *("drag", "hysteretic", "gravity", "slider", "smooth", "relaxation"),
+    "attached",
 )
 """Laws of the kernel, by the number that they have in kernels/forces.c."""
 ROW = 6
@@ -114,6 +115,11 @@ class Force(AttachedBlock, place="inside"):
     @property
     def stiffest(self) -> float:
         """Stiffness of a contact, which asks for shorter steps; zero without one."""
+        return 0.0
+
+    @property
+    def swings(self) -> float:
+        """How fast it swings by itself, in rad/s, which steps must resolve."""
         return 0.0
 
     def rows(self) -> FloatArray:

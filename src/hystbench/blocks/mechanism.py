@@ -188,10 +188,11 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
             return 1
         contact = max(item.stiffest for item in forces)
         linear, stiff = (
-            dt * self._rate(k) / PHASE
-            for k in (self.stiffness, self.stiffness + contact)
+            self._rate(k) for k in (self.stiffness, self.stiffness + contact)
         )
-        return max(1, min(ceil(linear), MOST), min(ceil(stiff), CONTACT))
+        swings = max(linear, *(item.swings for item in forces))
+        smooth, met = (ceil(dt * rate / PHASE) for rate in (swings, stiff))
+        return max(1, min(smooth, MOST), min(met, CONTACT))
 
     def _rate(self, stiffness: float) -> float:
         """Give the magnitude of the slower pole, in rad/s, for a stiffness."""

@@ -1,6 +1,7 @@
 /* Forces against one coordinate: their laws, and the way of a step against them.
  *
- * A force is a row of six numbers: its law's number, and those of the law. mechanism.c
+ * A force is a row of six numbers: its law's number, and those of the law. It remembers
+ * one number; an attached mass two, the second that of a row of zeros behind. mechanism.c
  * includes this file, and `hystbench export` copies what a model needs of it into C99
  * that stands alone: so no type of its own, and nothing but mathematics.
  */
@@ -103,6 +104,16 @@ static double hb_friction_reach(const double *f, double v)
     return most > 0 ? f[4] * (hb_sliding(f, v) / most) : 0;
 }
 
+/* The mean force of an attached mass over an even way in a time h, by the midpoint rule:
+ * it gives back no more than it was given. memory: how far it lags behind, and how fast
+ * it is. */
+static double hb_attached(const double *f, double way, double h, const double *memory)
+{
+    const double turns = h * (f[2] + f[3] * h / 2) / (2 * f[1]);
+    const double lag = memory[0] + way / 2 - h / 2 * memory[1];
+    return (f[3] * lag + f[2] * (way / h - memory[1])) / (1 + turns);
+}
+
 /* What a force remembers after a way in a time h, of its memory before it; v is that at
  * its end. */
 static double hb_remembered(const double *f, double way, double v, double h,
@@ -123,8 +134,9 @@ static double hb_remembered(const double *f, double way, double v, double h,
 }
 
 /* A force: its law's number, then the numbers of the law. */
-static double hb_force(const double *f, double q, double v, double memory)
+static double hb_force(const double *f, double q, double v, const double *memories)
 {
+    const double memory = memories[0];
     switch ((int)f[0]) {
     case 0: /* stiffness */
         return q * q * (f[1] + f[2] * q);
@@ -148,15 +160,17 @@ static double hb_force(const double *f, double q, double v, double memory)
         return f[1] * hb_dead_zone(f[3], memory);
     case 9: /* relaxation */
         return f[1] * memory;
+    case 10: /* attached */
+        return f[3] * memory + f[2] * (v - memories[1]);
     }
     return NAN;
 }
 
 /* A force's mean over a way from q in a time h, which is its work over the way. */
 static double hb_mean_force(const double *f, double q, double way, double h,
-                            double memory)
+                            const double *memories)
 {
-    const double v = way / h;
+    const double v = way / h, memory = memories[0];
     const double to = q + way, middle = q + way / 2, half = way / 2;
     switch ((int)f[0]) {
     case 0: /* stiffness */
@@ -199,6 +213,8 @@ static double hb_mean_force(const double *f, double q, double way, double h,
         const double once = hb_phi(-h / f[2], &twice);
         return f[1] * (memory * once + way * twice);
     }
+    case 10: /* attached */
+        return hb_attached(f, way, h, memories);
     }
     return NAN;
 }
@@ -210,8 +226,13 @@ static double hb_all_forces(int count, const double *forces, double q, double v,
     double sum = 0;
     for (int i = 0; i < count; i++) {
         const double *f = forces + 6 * i;
+        if ((int)f[0] == 10 && h > 0) {
+            const double gained = h / f[1] * hb_attached(f, way, h, memory + i);
+            memory[i] += way - h * (memory[i + 1] + gained / 2);
+            memory[i + 1] += gained;
+        }
         memory[i] = hb_remembered(f, way, v, h, memory[i]);
-        sum += hb_force(f, q, v, memory[i]);
+        sum += hb_force(f, q, v, memory + i);
     }
     return sum;
 }
@@ -225,8 +246,8 @@ static double hb_miss(int count, const double *forces, const double *memory, dou
     double sum = 0;
     for (int i = 0; i < count; i++) {
         const double *f = forces + 6 * i;
-        sum += h > 0 ? hb_mean_force(f, q, way, h, memory[i])
-                     : hb_force(f, q + way, 0, memory[i]);
+        sum += h > 0 ? hb_mean_force(f, q, way, h, memory + i)
+                     : hb_force(f, q + way, 0, memory + i);
     }
     return way - alone + gives * sum;
 }

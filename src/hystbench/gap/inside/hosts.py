@@ -30,8 +30,9 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.modes import frequency_of, modes, shows_a_pole
 from hystbench.gap.inside.stores import in_other_order, stores
+from hystbench.gap.inside.two_masses import further_modes_of, two_masses
 from hystbench.gap.records.scored_samples import ScoredSamples, rms
-from hystbench.gap.thresholds import UNNAMED_SHARE
+from hystbench.gap.thresholds import PAYS, UNNAMED_SHARE
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
 
@@ -114,6 +115,7 @@ def hosts(
             words = "a model of one coordinate stands in place of the linear base"
             yield Host(best.state, best, words)
             yield from _loose(best.state, score, words)
+            yield from _of_two(best, further_modes_of(start), score)
     if not identified:
         same = same_as(start, quantities)
         if same is not None:
@@ -163,6 +165,19 @@ def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
     for begun in free_masses(state.records, block.output, state.hold):
         alone = fitted(begun, score)
         yield Host(alone.state, alone, words)
+
+
+def _of_two(one: Fitted, frequencies: Sequence[float], score: Score) -> Iterator[Host]:
+    """Give a mass with another one attached, where that pays as an effect does."""
+    state = one.state
+    block = state.chain[0]
+    if not isinstance(block, Mechanism):
+        return
+    loose = free_masses(state.records, block.output, state.hold)
+    best = best_host(list(two_masses([state, *loose], frequencies)), score)
+    if best is not None and best.score < one.score - PAYS:
+        words = "a mass with another one attached stands in place of the linear base"
+        yield Host(best.state, best, words)
 
 
 def _behind(start: ModelState) -> ModelState:

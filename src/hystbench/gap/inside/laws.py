@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.blocks.attached_mass import AttachedMass
 from hystbench.blocks.force import Force, against
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.linear import LinearBlock
@@ -85,9 +86,10 @@ def how_it_moves(state: ModelState, turns: bool) -> Moved:
     """Look how far, how fast and by what force a host moves on its records."""
     place = host_of(state)
     host: Any = state.chain[place]
+    linear = tuple(x for x in state.chain[place:] if isinstance(x, AttachedMass))
     reach = speed = force = 0.0
     for record, z in zip(state.records, state.simulation.driving(place), strict=True):
-        motion = host.motion(z, record.dt, ())
+        motion = host.motion(z, record.dt, linear)
         q = motion.position
         reach = max(reach, float(np.ptp(q)) / 2)
         speed = max(speed, float(np.max(np.abs(motion.velocity))))
