@@ -34,6 +34,9 @@ from scipy.signal import lfilter
 
 calls = []
 
+def charging(u, dt):
+    return 1.0 + 0.4 * u + 0.7 * dt * np.cumsum(u)
+
 def lagging(u, dt):
     calls.append(len(u))
     return 3.0 + lfilter([0.2], [1.0, -0.8], u)
@@ -147,8 +150,8 @@ def test_beside_a_name_stands_what_a_stored_output_did_not_let_be_tried(tmp_path
     assert told.endswith("no effects that were tried need to be told apart")
 
 
-@pytest.mark.parametrize("kind", ["lagging", "bent", "slow", "ringing"])
-def test_a_simulator_that_forgets_has_no_hysteresis(kind, module):
+@pytest.mark.parametrize("kind", ["lagging", "bent", "slow", "ringing", "charging"])
+def test_a_simulator_that_forgets_or_is_linear_has_no_hysteresis(kind, module):
     chain = (External(function=f"{module(FUNCTIONS)}:{kind}"),)
     simulation = Simulation(chain, records())
     assert simulation.loop is None

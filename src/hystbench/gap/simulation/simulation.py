@@ -350,11 +350,16 @@ REST = 6
 
 
 REMAINS = 0.01
-"""Of the output's range, by which outputs must differ to remember the way."""
+"""Of the output's range, by which outputs must differ to remember the way; and of that
+difference, by which a linear function may miss superposition, as solvers do."""
 
 
 STAYS = 0.5
 """Of that difference, in the first half of the rest, that must be left in the other."""
+
+
+WEIGHT = 0.75
+"""Of one way in the mean of two; of both halves an odd hysteresis would answer zero."""
 
 
 def may_have_hysteresis(block: Block, records: Sequence[Record]) -> bool:
@@ -363,7 +368,9 @@ def may_have_hysteresis(block: Block, records: Sequence[Record]) -> bool:
     Of a stored output it is not known, nor of a function that refuses to be asked. Any
     other is asked: its input goes to one end of its range and back to the middle, or to
     the other end and back, as slowly as the longest record lasts, and rests there. What
-    forgets comes to the same output; a hysteresis does not.
+    forgets comes to the same output; a hysteresis does not. Nor does an integrator or a
+    slow creep; but what they answer to a weighted mean of both inputs is that mean of
+    their answers (superposition), which a hysteresis does not fulfil.
 
     Parameters
     ----------
@@ -391,4 +398,11 @@ def may_have_hysteresis(block: Block, records: Sequence[Record]) -> bool:
         return True
     early, late = (abs(float(x.mean())) for x in np.split((up - down)[2 * n :], 2))
     reach = max(float(np.ptp(up)), float(np.ptp(down)))
-    return late > max(REMAINS * reach, STAYS * early)
+    if late <= max(REMAINS * reach, STAYS * early):
+        return False
+    mean, wanted = (WEIGHT * a + (1 - WEIGHT) * b for a, b in (ways, (up, down)))
+    try:
+        missed = block.simulate(mean, mean, longest.dt) - wanted
+    except InputError:
+        return True
+    return float(np.max(np.abs(missed))) > REMAINS * late
