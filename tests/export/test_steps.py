@@ -170,6 +170,13 @@ def mixed():
             ("stiffness", EXAMPLES["stiffness"]),
             ("other-modes", EXAMPLES["other-modes"]),
         ),
+        "friction at a flexible shaft": chain_of(
+            ("mechanism", EXAMPLES["mechanism"] | {"output": "velocity"}),
+            ("friction-force", EXAMPLES["friction-force"]),
+            ("attached-mass", EXAMPLES["attached-mass"]),
+            ("stiffness", EXAMPLES["stiffness"]),
+            ("attached-mass", EXAMPLES["attached-mass"] | {"mass": 0.3}),
+        ),
         "a settled coordinate": chain_of(
             ("gain", {"value": 1.0, "offset": 3.0}),
             ("mechanism", {**EXAMPLES["mechanism"], "start": "settled"}),
