@@ -18,20 +18,14 @@ from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.beginnings import Beginnings
-from hystbench.gap.inside.hosts import (
-    best_host,
-    free_masses,
-    hosts,
-    is_seen_moving,
-    one_coordinate,
-    same_as,
-)
+from hystbench.gap.inside.hosts import best_host, hosts, is_seen_moving, same_as
 from hystbench.gap.inside.hypotheses import (
     starts,
     with_one_fewer,
 )
 from hystbench.gap.inside.laws import evened, how_it_moves, laws_for, with_law
 from hystbench.gap.inside.named_inside import chosen, named_inside
+from hystbench.gap.inside.one_coordinate import free_masses, one_coordinate
 from hystbench.gap.records.free_mass import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
 from hystbench.gap.records.scored_samples import ScoredSamples

@@ -11,17 +11,13 @@ import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
-from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.input_delay import InputDelay
-from hystbench.blocks.mechanism import Mechanism, free_starts
-from hystbench.blocks.starts import possible_starts
+from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.cache import records_digest
@@ -29,20 +25,19 @@ from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.modes import frequency_of, modes, shows_a_pole
+from hystbench.gap.inside.one_coordinate import (
+    MOTIONS,
+    free_masses,
+    one_coordinate,
+    solved,
+)
 from hystbench.gap.inside.stores import in_other_order, stores
 from hystbench.gap.inside.two_masses import further_modes_of, two_masses
 from hystbench.gap.records.scored_samples import ScoredSamples, rms
 from hystbench.gap.thresholds import PAYS, UNNAMED_SHARE
 from hystbench.quantities import Quantities
-from hystbench.record import FloatArray, Record
+from hystbench.record import Record
 
-FREQUENCIES = 24
-"""Natural frequencies at which a mass on a spring is begun."""
-RATIOS = (0.01, 0.05, 0.2, 0.7, 2.0)
-"""Damping ratios of each."""
-BEGUN = 3
-"""Starts that are fitted, the best ones of the grid."""
-MOTIONS = ("position", "velocity", "acceleration")
 STORES = {1: "a store stands", 2: "two stores in series stand"}
 """How many are tried, and how that is told."""
 TRIED = 2
@@ -242,7 +237,7 @@ def same_as(start: ModelState, quantities: Quantities) -> ModelState | None:
     most = UNNAMED_SHARE * float(np.mean(start.residual**2))
     u, wanted = (start.sample.take(x) for x in ([r.u for r in simulated], start.exact))
     static = np.column_stack([u, np.ones(len(u))])
-    if np.mean((wanted - static @ _solved(static, wanted)) ** 2) < most:
+    if np.mean((wanted - static @ solved(static, wanted)) ** 2) < most:
         return None
     best = _coordinate_like(_ByContent(simulated), quantities, start.hold)
     if best is None or rms(best.state.residual) ** 2 > most:
@@ -275,169 +270,3 @@ def _coordinate_like(
     records = simulated.records
     score = Score.plain(ScoredSamples.of(records), np.finfo(float).tiny)
     return best_host(list(one_coordinate(records, quantities, hold)), score)
-
-
-def one_coordinate(
-    records: tuple[Record, ...], quantities: Quantities, hold: Hold
-) -> Iterator[ModelState]:
-    """Give linear models of one coordinate, with all their numbers free, begun.
-
-    Parameters
-    ----------
-    records : tuple of Record
-    quantities : Quantities
-        What the device takes and gives: a force that makes a motion is a mass with a
-        spring and one without; a motion that makes a force is an impedance. Where the
-        causality is not known, a mass with each of the motions as its output.
-    hold : {"zero-order", "linear", "band-limited"}
-    """
-    if quantities.causality == "motion to force":
-        if quantities.input in ("position", "velocity"):
-            yield impedance(records, quantities.input, hold)
-        return
-    if quantities.causality == "storage":
-        return
-    known = quantities.output in MOTIONS
-    for output in (quantities.output,) if known else MOTIONS:
-        yield from masses(records, output, hold)
-
-
-def impedance(records: tuple[Record, ...], moved: str, hold: Hold) -> ModelState:
-    """Give the impedance that fits best: its force is linear in its numbers."""
-    sample = ScoredSamples.of(records)
-    columns = sample.take([Impedance.columns(moved, hold, r.u, r.dt) for r in records])
-    wanted = sample.take([record.y for record in records])
-    values = _solved(columns, wanted).tolist()
-    numbers: dict[str, Any] = dict(zip(NUMBERS, values, strict=True))
-    block = Impedance(**numbers, input=moved, hold=hold)
-    return _state((block,), records, hold, {0: NUMBERS})
-
-
-def masses(
-    records: tuple[Record, ...], output: str, hold: Hold
-) -> Iterator[ModelState]:
-    """Give masses on springs, begun where a grid says, and a free mass.
-
-    At each natural frequency and damping ratio the gain and an offset of the output are
-    solved for.
-    """
-    found: list[tuple[float, tuple[Block, ...]]] = []
-    sample = ScoredSamples.of(records)
-    wanted = sample.take([record.y for record in records])
-    starts = _starts(records)
-    span = max(record.dt * len(record) for record in records)
-    fastest = 0.8 * np.pi / min(record.dt for record in records)
-    grid = np.geomspace(2 * np.pi / span, fastest, FREQUENCIES)
-    for start, w, ratio in itertools.product(starts, grid, RATIOS):
-        unit = Mechanism(
-            mass=1.0,
-            damping=2 * ratio * w,
-            stiffness=w**2,
-            output=output,
-            start=start,
-            hold=hold,
-        )
-        motion = sample.take([unit.driven(r.u, r.dt, ()) for r in records])
-        columns = np.column_stack([motion, np.ones(len(motion))])
-        gain, offset = _solved(columns, wanted).tolist()
-        rest = float(np.mean((wanted - columns @ [gain, offset]) ** 2))
-        if gain == 0.0 or not np.isfinite(rest):
-            continue
-        found.append((rest, (_times(unit, gain), Gain(value=1.0, offset=offset))))
-    for _, chain in sorted(found, key=lambda item: item[0])[:BEGUN]:
-        own = {0: ("mass", "damping", "stiffness"), 1: ("offset",)}
-        yield _state(chain, records, hold, own)
-    if output != "acceleration":
-        yield from free_masses(records, output, hold)
-
-
-def free_masses(
-    records: tuple[Record, ...], output: str, hold: Hold
-) -> Iterator[ModelState]:
-    """Give a mass without a spring, begun at the rate of decay that fits best."""
-    windows = any(record.decay_s is not None for record in records)
-    allowed = ("rest",) if windows else free_starts(output)
-    starts = [own for own in _starts(records) if own in allowed]
-    sample = ScoredSamples.of(records)
-    wanted = sample.take([record.y for record in records])
-    span = max(record.dt * len(record) for record in records)
-    step = min(record.dt for record in records)
-    found = []
-    rates = np.geomspace(0.3 / span, 0.3 / step, FREQUENCIES)
-    for start, rate in itertools.product(starts, rates):
-        unit = Mechanism(
-            mass=1.0,
-            damping=rate,
-            stiffness=0.0,
-            output=output,
-            start=start,
-            hold=hold,
-        )
-        ones = [np.ones(len(record)) for record in records]
-        columns = np.column_stack(
-            [
-                sample.take([unit.driven(r.u, r.dt, ()) for r in records]),
-                sample.take(
-                    [
-                        unit.driven(one, r.dt, ())
-                        for one, r in zip(ones, records, strict=True)
-                    ]
-                ),
-            ]
-        )
-        gain, bias = _solved(columns, wanted).tolist()
-        rest = float(np.mean((wanted - columns @ [gain, bias]) ** 2))
-        if gain != 0.0 and np.isfinite(rest):
-            found.append((rest, replace(_times(unit, gain), bias=bias / abs(gain))))
-    if found:
-        _, block = min(found, key=lambda item: item[0])
-        yield _state((block,), records, hold, {0: ("mass", "damping", "bias")})
-
-
-def _times(unit: Mechanism, gain: float) -> Mechanism:
-    """Give a mechanism that moves so many times as far as one of mass one."""
-    size = 1.0 / abs(gain)
-    return replace(
-        unit,
-        mass=size,
-        damping=unit.damping * size,
-        stiffness=unit.stiffness * size,
-        gain=float(np.sign(gain)),
-    )
-
-
-def _starts(records: Sequence[Record]) -> Sequence[str]:
-    """Give the starts that hosts are begun with.
-
-    Where periods were left out the first sample is in the middle of a motion.
-    """
-    at_rest = _from_rest(records) and not all(item.repeats for item in records)
-    return ("rest",) if at_rest else possible_starts(records)
-
-
-def _from_rest(records: Sequence[Record]) -> bool:
-    """Tell whether every record begins with little of its input and output."""
-
-    def little(x: FloatArray) -> bool:
-        return bool(abs(x[0]) < 0.02 * np.max(np.abs(x)))
-
-    return all(little(record.u) and little(record.y) for record in records)
-
-
-def _state(
-    chain: tuple[Block, ...],
-    records: tuple[Record, ...],
-    hold: Hold,
-    own: dict[int, tuple[str, ...]],
-) -> ModelState:
-    free = tuple(Free(k, name) for k, names in own.items() for name in names)
-    return ModelState(chain, records, ScoredSamples.of(records), free=free, hold=hold)
-
-
-def _solved(columns: FloatArray, wanted: FloatArray) -> FloatArray:
-    """Least squares with the columns scaled alike; zeros where one is not finite."""
-    if not np.all(np.isfinite(columns)):
-        return np.zeros(columns.shape[1])
-    sizes = np.maximum(np.sqrt(np.mean(columns**2, axis=0)), 1e-300)
-    found = np.linalg.lstsq(columns / sizes, wanted, rcond=1e-10)[0] / sizes
-    return np.asarray(found)

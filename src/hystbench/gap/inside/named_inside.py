@@ -39,7 +39,7 @@ from hystbench.gap.naming.rounds import Candidate, Round
 from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.simulation.simulation import may_have_hysteresis
+from hystbench.gap.simulation.memory import may_have_hysteresis
 from hystbench.gap.thresholds import PAYS, SCALE, UNNAMED_SHARE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
