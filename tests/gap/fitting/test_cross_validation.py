@@ -17,7 +17,7 @@ from hystbench.gap.naming import rank as ranked
 from hystbench.gap.naming.rank import on_folds, rank
 from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.records.folds import make_folds
-from hystbench.gap.thresholds import CERTAIN, PAYS, SCALE
+from hystbench.gap.thresholds import CERTAIN, PARAMETER, PAYS, SCALE
 from tests.gap.made import multisine, record, steady
 from tests.gap.small import block, plain_score, state_of
 
@@ -177,7 +177,7 @@ def test_finalists_are_ranked_by_records_held_back():
         assert item.held_back == pytest.approx(told)
         on_all = score_of(before, score) - score_of(item.state, score)
         # Of several laws and places one alone may fit: then it pays for the others.
-        paid = min(on_all, told) - item.gain
+        paid = min(on_all, told - PARAMETER * item.state.freedom) - item.gain
         assert -1e-6 <= paid <= SCALE * np.log(len(item.variants)) + 1e-6
         assert item.score + item.gain == pytest.approx(score_of(before, score))
     rest = [item for item in ranking if item.state is not None and item not in judged]
