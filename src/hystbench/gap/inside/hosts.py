@@ -166,7 +166,7 @@ def _of_two(one: Fitted, frequencies: Sequence[float], score: Score) -> Iterator
     """Give a mass with another one attached, where that pays as an effect does."""
     state = one.state
     block = state.chain[0]
-    if not isinstance(block, Mechanism):
+    if not (frequencies and isinstance(block, Mechanism)):
         return
     loose = free_masses(state.records, block.output, state.hold)
     best = best_host(list(two_masses([state, *loose], frequencies)), score)
