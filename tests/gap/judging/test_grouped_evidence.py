@@ -109,3 +109,37 @@ def test_products_over_a_tiny_noise_are_inverted_where_rounding_hides_the_one():
     assert sizes.max() == pytest.approx(1.0)
     assert sizes.min() == pytest.approx(np.sqrt(noise / (v @ v)), rel=1e-6)
     assert determinant == pytest.approx(-2 * np.log(sizes).sum())
+
+
+def test_sizes_say_which_columns_of_a_group_are_expected_to_be_large():
+    rng = np.random.default_rng(3)
+    columns = rng.standard_normal((ROWS, 40))
+    sizes = 1.0 / np.arange(1, 41)
+    signal = columns @ (sizes * rng.standard_normal(40)) + rng.standard_normal(ROWS)
+    alike, falling = (
+        ColumnProducts.of(columns, signal, each).explained([range(40)])
+        for each in (1.0, sizes)
+    )
+    assert falling.evidence > alike.evidence
+    scale = np.sqrt(np.mean(columns**2, axis=0))
+    prior = np.diag(falling.variances[0] * sizes**2)
+    unit = columns / scale
+    covariance = unit @ prior @ unit.T + falling.noise * np.eye(ROWS)
+    expected = multivariate_normal(cov=covariance).logpdf(signal)
+    assert falling.evidence == pytest.approx(expected, rel=1e-6)
+
+
+def test_the_power_beyond_others_is_that_of_ridge_regression():
+    rng = np.random.default_rng(4)
+    columns = rng.standard_normal((ROWS, 8))
+    columns[:, 5] += 3 * columns[:, 0]
+    columns /= np.sqrt(np.mean(columns**2, axis=0))
+    products = ColumnProducts.of(columns, np.zeros(ROWS))
+    amplitudes, variances, noise = rng.standard_normal(3), np.full(5, 0.1), 2.0
+    total = columns[:, 5:] @ amplitudes
+    own = columns[:, :5] * np.sqrt(variances)
+    ridge = np.vstack([own, np.sqrt(noise) * np.eye(5)])
+    taken = np.linalg.lstsq(ridge, np.concatenate([total, np.zeros(5)]))[0]
+    expected = np.mean((total - own @ taken) ** 2)
+    found = products.power_beyond(range(5, 8), amplitudes, range(5), noise, variances)
+    assert found == pytest.approx(expected, rel=1e-9)

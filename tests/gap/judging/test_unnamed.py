@@ -293,3 +293,40 @@ def test_a_drift_owns_no_more_cosines_than_a_record_has_periods():
         for u in given
     ]
     assert [winding(one) for one in records] == [3, 10]
+
+
+def named_drift(change, seed=0):
+    """What is unnamed beside a drift, and whether slow inputs hide the change."""
+    rng = np.random.default_rng(300 + seed)
+    t = np.arange(1600) / 800
+    given = [
+        record(
+            u := 0.5 * np.sin(np.pi * (k + 2) * t / t[-1]) * np.minimum(1, t / 0.1),
+            12.0 * u + change(rng, u) + NOISE * rng.standard_normal(len(u)),
+            name=f"slow-{k}",
+            dt=1 / 800,
+        )
+        for k in range(4)
+    ]
+    start = state_of((GAIN,), given, count=800)
+    variants = list(effects()["drift"].variants(Simulation((GAIN,), given)))
+    path = next(x.beside for x in variants if x.form == "path")
+    added = Added("drift", "sensor", "path", (), {}, 1)
+    state = state_of((GAIN,), given, count=800, added=(added,), beside=((path, {}),))
+    return what_is_unnamed(start, state, NOISE)
+
+
+def walk(rng, u):
+    """A random walk of about one in a record."""
+    return np.cumsum(rng.standard_normal(len(u))) / np.sqrt(len(u))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_a_path_leaves_of_a_random_walk_follows_slow_signals_by_chance_alone(seed):
+    assert not named_drift(walk, seed).too_much()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_curve_stays_structure_beside_a_drift_that_is_a_random_walk(seed):
+    found = named_drift(lambda rng, u: walk(rng, u) + 3.0 * np.maximum(u, 0) ** 2, seed)
+    assert found.too_much()

@@ -35,11 +35,14 @@ class Grouped:
         Of the amplitudes of each group's columns.
     evidence : float
         Logarithm of the probability density of the signal.
+    amplitudes : ndarray, shape (columns,)
+        The likeliest, of the columns in the order of the groups.
     """
 
     noise: float
     variances: FloatArray
     evidence: float
+    amplitudes: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +52,8 @@ class ColumnProducts:
     Parameters
     ----------
     gram : ndarray, shape (k, k)
-        Of columns of unit mean square; those that are zero stay zero.
+        Of columns of unit mean square, times their sizes; those that are zero stay
+        zero.
     across : ndarray, shape (k,)
         Of the columns with the signal.
     power : float
@@ -64,11 +68,21 @@ class ColumnProducts:
     rows: int
 
     @classmethod
-    def of(cls, columns: FloatArray, signal: FloatArray) -> ColumnProducts:
-        """Multiply columns, shape (n, k), and a signal, shape (n,)."""
+    def of(
+        cls, columns: FloatArray, signal: FloatArray, sizes: FloatArray | float = 1.0
+    ) -> ColumnProducts:
+        """Multiply columns, shape (n, k), and a signal, shape (n,).
+
+        Parameters
+        ----------
+        columns, signal : ndarray
+        sizes : ndarray, shape (k,), or float
+            RMS that the columns are given; in a group the amplitude of a column is
+            expected to be in proportion to it.
+        """
         gram = columns.T @ columns
         size = np.sqrt(gram.diagonal() / len(signal))
-        size = np.where(size > 0, size, 1.0)
+        size = np.where(size > 0, size, 1.0) / sizes
         return cls(
             gram / np.outer(size, size),
             columns.T @ signal / size,
@@ -101,7 +115,8 @@ class ColumnProducts:
         groups = [group for group in groups if len(group)]
         noise = max(self.power / self.rows, np.finfo(float).tiny)
         if not groups:
-            return Grouped(noise, np.zeros(0), self._evidence(noise, 0.0, self.power))
+            evidence = self._evidence(noise, 0.0, self.power)
+            return Grouped(noise, np.zeros(0), evidence, np.zeros(0))
         used = np.concatenate([np.asarray(group, dtype=np.intp) for group in groups])
         member = np.repeat(np.arange(len(groups)), [len(group) for group in groups])
         counts = np.bincount(member)
@@ -126,7 +141,39 @@ class ColumnProducts:
             noise = left / max(self.rows - float(each.sum()), 1.0)
         power = left + noise * float(white @ white)
         evidence = self._evidence(noise, determinant, power)
-        return Grouped(noise, variances, evidence)
+        return Grouped(noise, variances, evidence, amplitudes)
+
+    def power_beyond(
+        self,
+        columns: Sequence[int],
+        amplitudes: FloatArray,
+        own: Sequence[int],
+        noise: float,
+        variances: FloatArray,
+    ) -> float:
+        """Give the mean square of a sum of columns beyond what others may take of it.
+
+        Parameters
+        ----------
+        columns : sequence of int
+        amplitudes : ndarray, shape (columns,)
+            Of the sum.
+        own : sequence of int
+            The other columns.
+        noise : float
+            Variance of the noise.
+        variances : ndarray, shape (own,)
+            Of the amplitudes of the others.
+        """
+        across = self.gram[np.ix_(own, columns)] @ amplitudes
+        root = np.sqrt(variances)
+        scaled = self.gram[np.ix_(own, own)] * (root[:, None] * root) / noise
+        scaled.flat[:: len(root) + 1] += 1.0
+        inverse, _ = _factored(scaled)
+        taken = root * (inverse.T @ (inverse @ (root * across))) / noise
+        power = amplitudes @ self.gram[np.ix_(columns, columns)] @ amplitudes
+        power -= taken @ (2 * across - self.gram[np.ix_(own, own)] @ taken)
+        return max(float(power), 0.0) / self.rows
 
     def _evidence(self, noise: float, determinant: float, power: float) -> float:
         """Give the log density: ``power`` over the noise is the exponent's double."""

@@ -23,6 +23,8 @@ SLOW_COSINES = 3
 """Over a record, by which a strength may change in it."""
 PATH_COSINES = 5
 """Over a record, that a path of its own may have."""
+WALK_COSINES = 100
+"""Over a record, of a random walk: all but 0.6 % of its power."""
 TIMES = 5
 """Of low-passes, from the shortest step on, and of slow averages."""
 DELAYS = (1, 2, 4, 8, 16)
@@ -118,15 +120,44 @@ def in_runs(state: ModelState) -> FloatArray:
     -------
     ndarray, shape (scored samples, cosines and constants of all runs)
     """
+    return np.hstack(
+        [columns for columns, _ in _cosines(state, np.arange(SLOW_COSINES + 1))]
+    )
+
+
+def random_walks(state: ModelState) -> tuple[FloatArray, FloatArray]:
+    """Give every run the cosines of a random walk of its own, zero in the others.
+
+    Its Karhunen-Loeve expansion: about its mean, a random walk of a duration ``T`` is a
+    sum of cosines with ``k`` half waves, whose amplitudes are independent and have
+    standard deviations in proportion to ``sqrt(T) / k``.
+
+    Returns
+    -------
+    columns : ndarray, shape (scored samples, cosines of all runs)
+    sizes : ndarray, shape (cosines of all runs,)
+        The standard deviations, the largest of all being one.
+    """
+    number = np.arange(1, WALK_COSINES + 1)
+    found = _cosines(state, number)
+    sizes = np.concatenate([np.sqrt(duration) / number for _, duration in found])
+    return np.hstack([columns for columns, _ in found]), sizes / sizes.max()
+
+
+def _cosines(
+    state: ModelState, numbers: NDArray[np.intp]
+) -> list[tuple[FloatArray, float]]:
+    """Give cosines of so many half waves over each run, and how long the run is."""
     found = []
     for own, rows in zip(runs(state.records), _rows_of_runs(state), strict=True):
-        ends = np.cumsum([0, *(len(state.records[k]) for k in own)])
+        records = [state.records[k] for k in own]
+        ends = np.cumsum([0, *map(len, records)])
         places = [state.sample.positions[k] + ends[n] for n, k in enumerate(own)]
         phase = np.pi * (np.concatenate(places) + 0.5) / ends[-1]
-        columns = np.zeros((len(state.sample), SLOW_COSINES + 1))
-        columns[rows] = np.cos(phase[:, None] * np.arange(SLOW_COSINES + 1))
-        found.append(columns)
-    return np.hstack(found)
+        columns = np.zeros((len(state.sample), len(numbers)))
+        columns[rows] = np.cos(phase[:, None] * numbers)
+        found.append((columns, sum(record.dt * len(record) for record in records)))
+    return found
 
 
 def _rows_of_runs(state: ModelState) -> list[NDArray[np.intp]]:

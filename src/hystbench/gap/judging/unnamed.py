@@ -7,6 +7,7 @@ follows known signals speaks against it, however small beside the gap.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -17,7 +18,13 @@ import numpy as np
 from hystbench.gap.effects.drift import FORMS, WINDING, degree
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.judging.grouped_evidence import ColumnProducts
-from hystbench.gap.judging.known_signals import PATH, generic_groups, halves, paths
+from hystbench.gap.judging.known_signals import (
+    PATH,
+    generic_groups,
+    halves,
+    paths,
+    random_walks,
+)
 from hystbench.gap.simulation.reshape import orthonormal, products
 from hystbench.gap.thresholds import LOOSE, UNNAMED_SHARE
 from hystbench.record import FloatArray, Record
@@ -176,8 +183,11 @@ def what_is_unnamed(
         table.explained([at[name] for name in (*own, *more)])
         for more in ((), generic, changing)
     )
+    structured = max(alone.noise - with_generic.noise, 0.0)
+    if drifts and structured > share * power:
+        structured = min(structured, _beside_random_walks(state, own, generic))
     found = Unnamed(
-        max(alone.noise - with_generic.noise, 0.0) / power,
+        structured / power,
         max(alone.noise - with_changing.noise, 0.0) / power if changing else None,
         max(with_generic.noise - floor, 0.0) / power,
         factors=_factors(state, increment) if changing else (),
@@ -190,6 +200,37 @@ def what_is_unnamed(
         for name in generic
     }
     return replace(found, gains=gains)
+
+
+def _beside_random_walks(
+    state: ModelState, own: Mapping[str, FloatArray], generic: Mapping[str, FloatArray]
+) -> float:
+    """Give the power that follows known signals, where random walks may explain it.
+
+    What a path leaves of a wandering drift is no white noise, and slow signals follow
+    it by chance. So a random walk in each record is offered beside the known signals;
+    of what these explain in the likeliest model that part counts which the named
+    effects cannot own.
+    """
+    walks, sizes = random_walks(state)
+    named, known = (np.hstack(list(x.values())) for x in (own, generic))
+    first, last = named.shape[1], named.shape[1] + known.shape[1]
+    table = ColumnProducts.of(
+        np.hstack([named, known, walks]),
+        state.residual,
+        np.concatenate([np.ones(last), sizes]),
+    )
+    counts = [x.shape[1] for x in (*own.values(), *generic.values(), walks)]
+    ends = np.cumsum([0, *counts])
+    found = table.explained([range(a, b) for a, b in itertools.pairwise(ends)])
+    variances = np.repeat(found.variances, [count for count in counts if count])
+    return table.power_beyond(
+        range(first, last),
+        found.amplitudes[first:last],
+        range(first),
+        found.noise,
+        variances[:first],
+    )
 
 
 def winding(record: Record) -> int:
