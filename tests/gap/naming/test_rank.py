@@ -16,10 +16,11 @@ from hystbench.gap.naming.rank import (
     beside_their_own_shapes,
     beyond_simpler_laws,
     rank,
+    simplest_of_a_tie,
 )
 from hystbench.gap.naming.rounds import Candidate, best_forms
 from hystbench.gap.simulation.simulation import Simulation
-from hystbench.gap.thresholds import CERTAIN, LOOSE, PAYS
+from hystbench.gap.thresholds import CERTAIN, LOOSE, PAYS, SCALE
 from tests.gap.made import record
 from tests.gap.small import (
     ENVELOPE,
@@ -123,6 +124,30 @@ def test_a_free_correction_is_no_rival_of_a_law_that_leaves_little(
     law = Candidate("creep", "material", "", behind, gain, Leaves(left, 2.0))
     ranking = beyond_simpler_laws([free, law], Leaves(1.0, 0.0), score)
     assert ranking[0].effect == first
+
+
+@pytest.mark.parametrize(
+    ("behind", "numbers", "first"),
+    [
+        (SCALE - 0.1, 1.0, "saturation"),
+        (SCALE - 0.1, 2.0, "sensor-nonlinearity"),  # no simpler: the score decides
+        (SCALE + 0.1, 1.0, "sensor-nonlinearity"),  # they can be told apart
+    ],
+)
+def test_of_effects_that_cannot_be_told_apart_the_fewest_numbers_go_first(
+    behind, numbers, first
+):
+    curve = Candidate(
+        "sensor-nonlinearity", "sensor", "both", 0.0, 300.0, Leaves(0.01, 2.0)
+    )
+    other = Candidate(
+        "saturation", "material", "", behind, 300.0 - behind, Leaves(0.01, numbers)
+    )
+    last = Candidate("drift", "sensor", declined="added already")
+    ranking = simplest_of_a_tie([curve, other, last])
+    assert [x.effect for x in ranking][0] == first
+    assert sorted(x.score for x in ranking[:2]) == [0.0, behind]  # as they were
+    assert ranking[-1] is last
 
 
 @pytest.mark.parametrize(

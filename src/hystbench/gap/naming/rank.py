@@ -176,8 +176,31 @@ def _near(gain: float) -> float:
 def _beyond_others(
     candidates: Sequence[Candidate], state: ModelState, score: Score
 ) -> list[Candidate]:
-    """Charge effects for their freedom to choose a law."""
-    return beyond_simpler_laws(by_all_their_laws(candidates), state, score)
+    """Charge effects for their freedom to choose a law; of a tie take the simplest."""
+    return simplest_of_a_tie(
+        beyond_simpler_laws(by_all_their_laws(candidates), state, score)
+    )
+
+
+def simplest_of_a_tie(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Put what has the fewest numbers first, of those that cannot be told apart.
+
+    Scores stay as they are: a name that leads for that alone has a confidence of less
+    than a half.
+    """
+    tied = [
+        item
+        for item in candidates
+        if item.state is not None and item.score < candidates[0].score + SCALE
+    ]
+    if len(tied) < 2:
+        return list(candidates)
+    first = min(tied, key=lambda item: (_freedom(item), item.score))
+    return [first, *(item for item in candidates if item is not first)]
+
+
+def _freedom(item: Candidate) -> float:
+    return np.inf if item.state is None else item.state.freedom
 
 
 def by_all_their_laws(candidates: Sequence[Candidate]) -> list[Candidate]:
