@@ -41,9 +41,13 @@ UNNAMED_SHARE = 0.01
 """Of structure that no name accounts for: a tenth of the rms. A user may set it.
 
 An effect that takes less does not matter, and where no more is left in all nothing
-further is looked for. Whatever a user sets, the number here says when two models do the
-same: a host and the base that it stands for, a law and one of fewer numbers, the base
-and a model that leaves more on hold-out records.
+further is looked for.
+"""
+AS_GOOD = UNNAMED_SHARE
+"""By no more two models differ that do the same, whatever a user allows.
+
+So are compared: a host and the base that it stands for, a law and one of fewer numbers,
+the base and a model that leaves more on hold-out records.
 """
 LOOSE = 0.25
 """In all: half of the gap's rms.

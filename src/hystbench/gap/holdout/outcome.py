@@ -24,7 +24,7 @@ from hystbench.gap.holdout.shrink import left_rms
 from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.thresholds import UNNAMED_SHARE
+from hystbench.gap.thresholds import AS_GOOD
 from hystbench.gap.vocabulary import Vocabulary, with_device
 
 
@@ -129,7 +129,7 @@ def withdrawal(content: Mapping[str, Any]) -> dict[str, Any] | None:
     """
     gap, unit = content["gap"], content["unit"]
     before, after = gap["before"], gap["after"]
-    if after is not None and after**2 <= (1 + UNNAMED_SHARE) * before**2:
+    if after is not None and after**2 <= (1 + AS_GOOD) * before**2:
         return None
     names = [item["name"] for item in content["effects"]]
     what = " and ".join(names) or "the re-tuning of the base"

@@ -34,7 +34,7 @@ from hystbench.gap.inside.one_coordinate import (
 from hystbench.gap.inside.stores import in_other_order, stores
 from hystbench.gap.inside.two_masses import further_modes_of, two_masses
 from hystbench.gap.records.scored_samples import ScoredSamples, rms
-from hystbench.gap.thresholds import PAYS, UNNAMED_SHARE
+from hystbench.gap.thresholds import AS_GOOD, PAYS
 from hystbench.quantities import Quantities
 from hystbench.record import Record
 
@@ -234,7 +234,7 @@ def same_as(start: ModelState, quantities: Quantities) -> ModelState | None:
         replace(record, y=y, simulated=None, interpolated=None)
         for record, y in zip(start.records, start.exact, strict=True)
     )
-    most = UNNAMED_SHARE * float(np.mean(start.residual**2))
+    most = AS_GOOD * float(np.mean(start.residual**2))
     u, wanted = (start.sample.take(x) for x in ([r.u for r in simulated], start.exact))
     static = np.column_stack([u, np.ones(len(u))])
     if np.mean((wanted - static @ solved(static, wanted)) ** 2) < most:

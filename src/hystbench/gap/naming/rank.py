@@ -22,13 +22,13 @@ from hystbench.gap.fitting.tried import Seen, on_all_records, seen
 from hystbench.gap.fitting.variant_search import Trial, fine
 from hystbench.gap.naming.rounds import Candidate, TriedVariant, best_forms, in_order
 from hystbench.gap.thresholds import (
+    AS_GOOD,
     CERTAIN,
     LOOSE,
     PARAMETER,
     PAYS,
     SCALE,
     SHAPE,
-    UNNAMED_SHARE,
 )
 
 NEAR = 80.0
@@ -259,7 +259,7 @@ def _may_leave_more(item: Candidate) -> float:
     effect = effects()[item.effect]
     if item.form in effect.free_forms:
         return LOOSE
-    return UNNAMED_SHARE if item.form in effect.offsets else 0.0
+    return AS_GOOD if item.form in effect.offsets else 0.0
 
 
 def _tested(trial: Trial) -> TriedVariant:
