@@ -22,7 +22,7 @@ from hystbench.gap.judging.unnamed import (
 from hystbench.gap.records.free_mass import runs
 from hystbench.gap.report.words import verdict_sentence
 from hystbench.gap.simulation.simulation import Simulation
-from hystbench.gap.thresholds import UNNAMED_SHARE
+from hystbench.gap.thresholds import LOOSE, UNNAMED_SHARE
 from hystbench.record import Channel, Record
 from tests.gap.made import record
 from tests.gap.small import block, measured, state_of
@@ -295,13 +295,15 @@ def test_a_drift_owns_no_more_cosines_than_a_record_has_periods():
     assert [winding(one) for one in records] == [3, 10]
 
 
-def named_drift(change, seed=0):
-    """What is unnamed beside a drift, and whether slow inputs hide the change."""
+def named_drift(change, seed=0, sizes=(0.5, 0.5, 0.5, 0.5)):
+    """What is unnamed beside a drift, of slow inputs of several sizes."""
     rng = np.random.default_rng(300 + seed)
     t = np.arange(1600) / 800
     given = [
         record(
-            u := 0.5 * np.sin(np.pi * (k + 2) * t / t[-1]) * np.minimum(1, t / 0.1),
+            u := sizes[k]
+            * np.sin(np.pi * (k + 2) * t / t[-1])
+            * np.minimum(1, t / 0.1),
             12.0 * u + change(rng, u) + NOISE * rng.standard_normal(len(u)),
             name=f"slow-{k}",
             dt=1 / 800,
@@ -330,3 +332,18 @@ def test_what_a_path_leaves_of_a_random_walk_follows_slow_signals_by_chance_alon
 def test_a_curve_stays_structure_beside_a_drift_that_is_a_random_walk(seed):
     found = named_drift(lambda rng, u: walk(rng, u) + 3.0 * np.maximum(u, 0) ** 2, seed)
     assert found.too_much()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_slow_path_that_the_inputs_power_causes_is_no_drift(seed):
+    """A coil's heat goes with the square of the current, in all records alike."""
+    sizes = (0.2, 0.5, 0.8, 0.4)
+
+    def heat(rng, u):
+        return 5.0 * low_pass(u**2, 1 / 800, 0.7) + 0.02 * walk(rng, u)
+
+    found = named_drift(heat, seed, sizes)
+    assert found.structured > LOOSE
+    assert found.sort() == "history"
+    # A random walk that is as large in records of other sizes is none of it.
+    assert not named_drift(walk, seed, sizes).too_much()

@@ -166,6 +166,9 @@ def test_what_would_be_no_gap_does_not_speak_against_a_name():
         assert judge(other, True, unnamed=structure)[0] == "unnamed"
     # Nor does a name stand where most of the gap is left.
     assert judge(found, True, unnamed=Unnamed(0.03, 0.0, 0.3))[0] == "unnamed"
+    word, reason = judge(found, True, unnamed=Unnamed(0.3))
+    assert word == "unnamed"
+    assert "follows known signals" in reason
     assert structure.trust() < structure.trust(of_base=True) < 1
     assert Unnamed(0.005).trust(of_base=True) == 1
 

@@ -145,7 +145,7 @@ def test_of_effects_that_cannot_be_told_apart_the_fewest_numbers_go_first(
     )
     last = Candidate("drift", "sensor", declined="added already")
     ranking = simplest_of_a_tie([curve, other, last])
-    assert [x.effect for x in ranking][0] == first
+    assert ranking[0].effect == first
     assert sorted(x.score for x in ranking[:2]) == [0.0, behind]  # as they were
     assert ranking[-1] is last
 

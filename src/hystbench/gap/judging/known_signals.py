@@ -39,6 +39,9 @@ THRESHOLDS = (0.1, 0.3, 0.5, 0.7)
 PATH = "drift"
 """The effect that gives every record a slow path of its own."""
 
+SLOW_POWER = "slow power"
+"""The group of slow averages of the squared input: what heat does."""
+
 Columns = list[FloatArray]
 """Of one record, shape (n,) each."""
 
@@ -74,7 +77,7 @@ def generic_groups(base: ModelState, state: ModelState) -> dict[str, FloatArray]
     fast = np.geomspace(step, min(REACH * step, span), TIMES)
     slow = np.geomspace(SLOWEST * span, span, TIMES)
     makers: dict[str, Callable[[Record, FloatArray, FloatArray], Columns]] = {
-        "slow power": lambda record, u, y: _slow_power(record.dt, u, y, slow),
+        SLOW_POWER: lambda record, u, y: _slow_power(record.dt, u, y, slow),
         "dynamics": lambda record, u, y: _dynamics(record.dt, y, fast, step),
         "rate": lambda record, u, y: _rate(record.dt, u, y),
         "statics": lambda record, u, y: _statics(u, y),

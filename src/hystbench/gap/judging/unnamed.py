@@ -7,7 +7,6 @@ follows known signals speaks against it, however small beside the gap.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -17,13 +16,14 @@ import numpy as np
 
 from hystbench.gap.effects.drift import FORMS, WINDING, degree
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.judging.drifts import beside_a_drift
 from hystbench.gap.judging.grouped_evidence import ColumnProducts
 from hystbench.gap.judging.known_signals import (
     PATH,
+    SLOW_POWER,
     generic_groups,
     halves,
     paths,
-    random_walks,
 )
 from hystbench.gap.simulation.reshape import orthonormal, products
 from hystbench.gap.thresholds import LOOSE, UNNAMED_SHARE
@@ -44,7 +44,7 @@ SORT_OF = {
     "strength": "strength",
     "gain": "strength",
     "path": "strength",
-    "slow power": "history",
+    SLOW_POWER: "history",
     "dynamics": "memory",
     "rate": "memory",
     "statics": "curve",
@@ -163,7 +163,9 @@ def what_is_unnamed(
     """
     floor = floor_rms**2
     power = max(base.power(floor), floor)
-    own, generic, changing = owned(state), generic_groups(base, state), {}
+    own, generic = owned(state), generic_groups(base, state)
+    changing: dict[str, FloatArray] = {}
+    slow_power: dict[str, FloatArray] = {}
     increment = base.residual - state.residual
     if any(item.blocks for item in state.added):
         changing = {"changing": halves(state, _numbers(state, increment))}
@@ -174,8 +176,8 @@ def what_is_unnamed(
         # of its windows of any small error of a force.
         path = generic.pop("path")
         own["path"] = paths(state, allowed=winding) if drifts else path
-        del generic["slow power"]
-    groups = own | generic | changing
+        slow_power[SLOW_POWER] = generic.pop(SLOW_POWER)
+    groups = own | generic | changing | slow_power
     ends = np.cumsum([0, *(columns.shape[1] for columns in groups.values())])
     at = {k: range(*ends[n : n + 2]) for n, k in enumerate(groups)}
     table = ColumnProducts.of(np.hstack(list(groups.values())), state.residual)
@@ -183,11 +185,13 @@ def what_is_unnamed(
         table.explained([at[name] for name in (*own, *more)])
         for more in ((), generic, changing)
     )
-    structured = max(alone.noise - with_generic.noise, 0.0)
-    if drifts and structured > share * power:
-        structured = min(structured, _beside_random_walks(state, own, generic))
+    structured = max(alone.noise - with_generic.noise, 0.0) / power
+    if drifts:
+        structured, generic = beside_a_drift(
+            state, own, generic, slow_power, structured, share, power
+        )
     found = Unnamed(
-        structured / power,
+        structured,
         max(alone.noise - with_changing.noise, 0.0) / power if changing else None,
         max(with_generic.noise - floor, 0.0) / power,
         factors=_factors(state, increment) if changing else (),
@@ -200,37 +204,6 @@ def what_is_unnamed(
         for name in generic
     }
     return replace(found, gains=gains)
-
-
-def _beside_random_walks(
-    state: ModelState, own: Mapping[str, FloatArray], generic: Mapping[str, FloatArray]
-) -> float:
-    """Give the power that follows known signals, where random walks may explain it.
-
-    What a path leaves of a wandering drift is no white noise, and slow signals follow
-    it by chance. So a random walk in each record is offered beside the known signals;
-    of what these explain in the likeliest model that part counts which the named
-    effects cannot own.
-    """
-    walks, sizes = random_walks(state)
-    named, known = (np.hstack(list(x.values())) for x in (own, generic))
-    first, last = named.shape[1], named.shape[1] + known.shape[1]
-    table = ColumnProducts.of(
-        np.hstack([named, known, walks]),
-        state.residual,
-        np.concatenate([np.ones(last), sizes]),
-    )
-    counts = [x.shape[1] for x in (*own.values(), *generic.values(), walks)]
-    ends = np.cumsum([0, *counts])
-    found = table.explained([range(a, b) for a, b in itertools.pairwise(ends)])
-    variances = np.repeat(found.variances, [count for count in counts if count])
-    return table.power_beyond(
-        range(first, last),
-        found.amplitudes[first:last],
-        range(first),
-        found.noise,
-        variances[:first],
-    )
 
 
 def winding(record: Record) -> int:

@@ -253,6 +253,8 @@ def judge(
                 "base's own error, which can look like that"
             )
         return "unnamed", why
+    if much and unnamed.structured > LOOSE:
+        return "unnamed", unnamed.reason(unnamed_share)
     if unnamed.stays > LOOSE:
         return "unnamed", (
             f"too much stays for a name: {left.sentence}, and most of it follows no "

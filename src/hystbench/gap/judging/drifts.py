@@ -1,0 +1,122 @@
+"""What of a gap that is called a drift follows known signals after all.
+
+A drift is slow and the input does not explain it. What a path leaves of one that
+wanders is no white noise, so slow signals follow it by chance. Here a random walk in
+each run competes with them.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+
+import numpy as np
+
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.judging.grouped_evidence import ColumnProducts
+from hystbench.gap.judging.known_signals import random_walks
+from hystbench.gap.thresholds import LOOSE
+from hystbench.record import FloatArray
+
+Groups = Mapping[str, FloatArray]
+"""Columns by group, shape (scored samples, k) each."""
+
+SLOW = ("beside", "path")
+"""Groups of what a drift may own."""
+
+
+def beside_a_drift(
+    state: ModelState,
+    own: Groups,
+    generic: Groups,
+    slow_power: Groups,
+    structured: float,
+    share: float,
+    power: float,
+) -> tuple[float, dict[str, FloatArray]]:
+    """Give the share of the gap that follows known signals, and the signals.
+
+    Parameters
+    ----------
+    state : ModelState
+        With a drift that has a path.
+    own, generic : mapping
+        What the named effects and the base may own, and known signals.
+    slow_power : mapping
+        Slow averages of the squared input. They count where they explain much of the
+        gap, and with random walks all of it likelier than paths do: that is heat.
+    structured : float
+        The share if what the path leaves were white.
+    share : float
+        What may stay; less is not looked at again.
+    power : float
+        Of the gap.
+
+    Returns
+    -------
+    structured : float
+    signals : dict
+        The known signals that count.
+    """
+    if structured > share:
+        most, _ = explained_beside_walks(state, own, generic)
+        structured = min(structured, most / power)
+    short = {name: columns for name, columns in own.items() if name not in SLOW}
+    if _explained(state, short, slow_power) > LOOSE * power:
+        _, as_path = explained_beside_walks(state, own, {})
+        heat, as_heat = explained_beside_walks(state, short, slow_power)
+        if heat > LOOSE * power and as_heat > as_path:
+            return heat / power, {**generic, **slow_power}
+    return structured, {**generic}
+
+
+def _explained(state: ModelState, own: Groups, signals: Groups) -> float:
+    """Give the power that signals explain beyond what is owned, beside white noise."""
+    columns = [*own.values(), *signals.values()]
+    places = _places(columns)
+    table = ColumnProducts.of(np.hstack(columns), state.residual)
+    few, more = (table.explained(x) for x in (places[: len(own)], places))
+    return few.noise - more.noise
+
+
+def explained_beside_walks(
+    state: ModelState, own: Groups, signals: Groups
+) -> tuple[float, float]:
+    """Explain a residual by signals and random walks, one in each run, together.
+
+    Parameters
+    ----------
+    state : ModelState
+    own, signals : mapping
+        Columns by group, shape (scored samples, k) each.
+
+    Returns
+    -------
+    power : float
+        Of what the signals explain in the likeliest model, the part beyond what is
+        owned.
+    evidence : float
+        Logarithm of the probability density of the residual.
+    """
+    walks, sizes = random_walks(state)
+    columns = [*own.values(), *signals.values(), walks]
+    places = _places(columns)
+    first, last = places[len(own)].start, places[-1].start
+    table = ColumnProducts.of(
+        np.hstack(columns), state.residual, np.concatenate([np.ones(last), sizes])
+    )
+    found = table.explained(places)
+    variances = np.repeat(found.variances, [len(x) for x in places if len(x)])
+    power = table.power_beyond(
+        range(first, last),
+        found.amplitudes[first:last],
+        range(first),
+        found.noise,
+        variances[:first],
+    )
+    return power, found.evidence
+
+
+def _places(groups: list[FloatArray]) -> list[range]:
+    ends = np.cumsum([0, *(columns.shape[1] for columns in groups)])
+    return [range(a, b) for a, b in itertools.pairwise(ends.tolist())]
