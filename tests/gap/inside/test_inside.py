@@ -11,6 +11,7 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
+from hystbench.blocks.resonance import Resonance
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Law, Moved
@@ -210,6 +211,27 @@ def test_what_a_given_base_is_the_same_as_is_sought_once(monkeypatch):
     assert first == second
     assert first.stiffness / first.mass == pytest.approx(w**2, rel=1e-3)
     assert [state.records[0] for state in found] == [measured, offset]
+
+
+def test_what_no_mass_on_a_spring_does_is_seen_on_one_record(monkeypatch):
+    """Half of the base is a mode and half a rigid path, as a record of jumps shows."""
+    base = Resonance(
+        frequency_hz=1.0, damping_ratio=0.1, participation=0.5, hold="linear"
+    )
+    u, rng = np.sin(2.1 * TIME), np.random.default_rng(2)
+    records = tuple(
+        record(str(k), x, base.simulate(x, x, DT) + 0.1 * rng.standard_normal(len(x)))
+        for k, x in enumerate((u, 2.0 * np.sign(u), 0.5 * u))
+    )
+    sought = []
+    monkeypatch.setattr(
+        "hystbench.gap.inside.hosts.one_coordinate",
+        lambda given, *more: sought.append(given) or one_coordinate(given, *more),
+    )
+    start = ModelState((base,), records, ScoredSamples.of(records), hold="linear")
+    assert same_as(start, MOVES) is None
+    (given,) = sought
+    assert [item.name for item in given] == ["1"]
 
 
 def test_drag_of_a_loose_mass_whose_acceleration_is_measured():
