@@ -10,7 +10,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from hystbench.gap.fitting.score import Products, Score
+from hystbench.gap.fitting.score import Score, Shared
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.scored_samples import rms
 from hystbench.gap.simulation.reshape import orthonormal
@@ -48,7 +48,7 @@ def score_of(state: ModelState, score: Score) -> float:
     return score_beside(state, score, beside_of(state, score))
 
 
-def beside_of(state: ModelState, score: Score) -> Products | None:
+def beside_of(state: ModelState, score: Score) -> Shared | None:
     """Give the products of what lies beside a model; None without."""
     if not state.beside:
         return None
@@ -56,14 +56,14 @@ def beside_of(state: ModelState, score: Score) -> Products | None:
 
 
 @lru_cache(maxsize=2)
-def _products(given: Same, score: Score) -> Products:
+def _products(given: Same, score: Score) -> Shared:
     """Give them for all chains that the same lies beside."""
     beside, records, sample = given.objects
     columns = ModelState((), records, sample, beside=beside).beside_columns
     return score.shared(columns, np.zeros(columns.shape[1]))
 
 
-def score_beside(state: ModelState, score: Score, beside: Products | None) -> float:
+def score_beside(state: ModelState, score: Score, beside: Shared | None) -> float:
     """Score a model where the products of what lies beside it are known."""
     nothing = np.zeros((len(state.sample), 0))
     return score.amplitudes(state.residual, nothing, state.freedom, beside=beside).score

@@ -37,9 +37,6 @@ KNOWN = 1e-5
 APART = 1e-12
 """Least over largest power of combinations of columns that are solved for."""
 
-Rows = FloatArray | tuple[FloatArray, ...]
-"""Of a table, by record."""
-
 
 class Amplitudes(NamedTuple):
     """Amplitudes of linear terms, and the score with them."""
@@ -49,30 +46,38 @@ class Amplitudes(NamedTuple):
 
 
 class Products(NamedTuple):
-    """Products of columns, with each other and with the directions.
+    """Products of columns with each other and with the directions, as forms of them.
 
     Parameters
     ----------
-    rows : ndarray, shape (parts, n, k), or tuple of ndarray
-        The columns by record.
-    across : ndarray, shape (parts, d, k)
-        With the directions, by record.
-    inside : ndarray, shape (d, k)
-        Amplitudes of the directions.
     charge : ndarray, shape (k, k)
         Charge for amplitudes, as a quadratic form.
     grams : ndarray, shape (parts, k, k)
         With each other, of what is left beyond the directions, by record.
-    within : ndarray, shape (k, k)
-        Of the amplitudes of the directions.
+    inside : ndarray, shape (d, k)
+        Amplitudes of the directions.
     """
 
-    rows: Rows
-    across: FloatArray
-    inside: FloatArray
     charge: FloatArray
     grams: FloatArray
-    within: FloatArray
+    inside: FloatArray
+
+
+class Shared(NamedTuple):
+    """Columns that many calls solve for beside their own.
+
+    Parameters
+    ----------
+    own : Products
+    table : ndarray, shape (parts, n, d + k)
+        The directions and the columns, by record.
+    across : ndarray, shape (parts, d, k)
+        Products of the directions with what is left of the columns beyond them.
+    """
+
+    own: Products
+    table: FloatArray
+    across: FloatArray
 
 
 def record_weight(records: int) -> float:
@@ -159,7 +164,7 @@ class Score:
         freedom: float = 0.0,
         stiffness: FloatArray | None = None,
         positive: Sequence[int] = (),
-        beside: Products | None = None,
+        beside: Shared | None = None,
     ) -> Amplitudes:
         """Find amplitudes of columns whose sum, taken off the residual, scores least.
 
@@ -184,17 +189,16 @@ class Score:
         whole = np.column_stack([residual, columns])
         if not np.isfinite(whole).all():
             return Amplitudes(np.zeros(own), np.inf)  # a model that runs away
-        k = own + (0 if beside is None else len(beside.charge))
+        k = own + (0 if beside is None else len(beside.own.charge))
         if k == 0:
             return Amplitudes(np.zeros(0), self.of(residual, freedom))
         scale = _sizes(columns)
         whole[:, 1:] /= scale
         charge = np.zeros(own) if stiffness is None else stiffness / scale**2
-        found = self._products(whole, np.diag(np.concatenate([[0.0], charge])))
-        if beside is not None and len(beside.charge):
-            found = self._joined(found, beside)
+        found = self._products(whole, np.diag(np.concatenate([[0.0], charge])), beside)
         # Of each record, of the directions and of the charge: one quadratic form each.
-        forms = np.concatenate([found.grams, [found.within, found.charge]])
+        within = found.inside.T @ found.inside
+        forms = np.concatenate([found.grams, [within, found.charge]])
         forms = forms.reshape(len(forms), -1)
         d = max(self.directions.shape[1], 1)
         full, last = np.eye(1, k + 1)[0], np.inf
@@ -221,8 +225,8 @@ class Score:
             full = np.concatenate([[1.0], -beta])
         return Amplitudes(-best[1][1 : own + 1] / scale, best[0])
 
-    def shared(self, columns: FloatArray, stiffness: FloatArray) -> Products:
-        """Give products of columns that many calls solve for beside their own.
+    def shared(self, columns: FloatArray, stiffness: FloatArray) -> Shared:
+        """Prepare columns that many calls solve for beside their own.
 
         They are replaced by combinations that are at right angles, those that the
         samples and the charge tell apart.
@@ -241,10 +245,17 @@ class Score:
         values, vectors = np.linalg.eigh(power + charge)
         kept = values > APART * values.max(initial=0.0)
         turned = vectors[:, kept] / np.sqrt(values[kept])
-        return self._products(columns @ turned, turned.T @ charge @ turned)
+        columns = columns @ turned
+        own = self._products(columns, turned.T @ charge @ turned)
+        rows = self._by_record(columns)
+        across = self._directions.mT @ rows - self._spread @ own.inside
+        table = np.concatenate([self._directions, rows], axis=2)
+        return Shared(own, table, across)
 
-    def _products(self, columns: FloatArray, charge: FloatArray) -> Products:
-        """Give products of columns with each other, by record.
+    def _products(
+        self, columns: FloatArray, charge: FloatArray, beside: Shared | None = None
+    ) -> Products:
+        """Give products of columns with each other and with those beside, by record.
 
         Notes
         -----
@@ -253,28 +264,22 @@ class Score:
         its products are ``C'C - A'Q'C - C'Q A + A'Q'Q A``.
         """
         rows = self._by_record(columns)
-        across = _each(self._directions, rows)
+        d = self.directions.shape[1]
+        every = rows.mT @ (self._directions if beside is None else beside.table)
+        across = every[:, :, :d]  # of the columns with the directions
         whole = self.used is None
-        inside = across.sum(axis=0) if whole else self.directions.T @ columns
-        found = Products(rows, across, inside, charge, charge, inside.T @ inside)
-        return found._replace(grams=self._beyond(found, found))
-
-    def _beyond(self, left: Products, right: Products) -> FloatArray:
-        """Give products of what is left of columns beyond the directions, by record."""
-        grams = _each(left.rows, right.rows)
-        grams -= left.inside.T @ right.across
-        grams -= left.across.mT @ right.inside
-        grams += left.inside.T @ self._spread @ right.inside
-        return grams
-
-    def _joined(self, left: Products, right: Products) -> Products:
-        """Give the products of two tables in one; of its rows nothing more is asked."""
-        mixed, within = self._beyond(left, right), left.inside.T @ right.inside
-        apart = np.zeros((len(left.charge), len(right.charge)))
-        return left._replace(
-            charge=_square(left.charge, apart, right.charge),
-            grams=_square(left.grams, mixed, right.grams),
-            within=_square(left.within, within, right.within),
+        inside = across.sum(axis=0).T if whole else self.directions.T @ columns
+        half = across @ inside
+        grams = rows.mT @ rows - half - half.mT + inside.T @ self._spread @ inside
+        if beside is None:
+            return Products(charge, grams, inside)
+        other = beside.own
+        mixed = every[:, :, d:] - across @ other.inside - inside.T @ beside.across
+        apart = np.zeros((len(charge), len(other.charge)))
+        return Products(
+            _square(charge, apart, other.charge),
+            _square(grams, mixed, other.grams),
+            np.hstack([inside, other.inside]),
         )
 
     @cached_property
@@ -283,20 +288,26 @@ class Score:
         return np.array([len(part) for part in self.parts])
 
     @cached_property
-    def _directions(self) -> Rows:
+    def _directions(self) -> FloatArray:
         return self._by_record(self.directions)
 
     @cached_property
     def _spread(self) -> FloatArray:
         """Products of the directions with each other, by record."""
-        return _each(self._directions, self._directions)
+        return np.asarray(self._directions.mT @ self._directions)
 
-    def _by_record(self, table: FloatArray) -> Rows:
-        """Give the rows that count, by record: in one piece where all have as many."""
-        n = len(self.parts[0])
-        if n * len(self.parts) == len(table) and len(set(self._counts)) == 1:
+    def _by_record(self, table: FloatArray) -> FloatArray:
+        """Give the rows that count, shape (parts, n, k); zeros where a record has less.
+
+        Those add nothing to a product.
+        """
+        n = int(self._counts.max())
+        if (self._counts == n).all() and n * len(self.parts) == len(table):
             return table.reshape(len(self.parts), n, -1)
-        return tuple(table[_place(part)] for part in self.parts)
+        out = np.zeros((len(self.parts), n, table.shape[1]))
+        for own, part in zip(out, self.parts, strict=True):
+            own[: len(part)] = table[_place(part)]
+        return out
 
     def _value(self, squares: FloatArray, power: float, freedom: float) -> float:
         d = self.directions.shape[1]
@@ -309,13 +320,6 @@ def _sizes(columns: FloatArray) -> FloatArray:
     """Give the root mean square of columns; one for those that are zero."""
     sizes = np.sqrt(np.einsum("ij,ij->j", columns, columns) / len(columns))
     return np.where(sizes > 0, sizes, 1.0)
-
-
-def _each(left: Rows, right: Rows) -> FloatArray:
-    """Give products of columns with each other, by record: shape (parts, k, l)."""
-    if isinstance(left, np.ndarray) and isinstance(right, np.ndarray):
-        return np.asarray(left.mT @ right)
-    return np.stack([one.T @ other for one, other in zip(left, right, strict=True)])
 
 
 def _square(first: FloatArray, mixed: FloatArray, second: FloatArray) -> FloatArray:

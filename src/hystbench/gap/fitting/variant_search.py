@@ -15,7 +15,7 @@ from hystbench.blocks.parameter import HUGE
 from hystbench.errors import InputError
 from hystbench.gap.effects.effect import Declined
 from hystbench.gap.effects.variant import Values, Variant
-from hystbench.gap.fitting.score import Amplitudes, Products, Score
+from hystbench.gap.fitting.score import Amplitudes, Score, Shared
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState, beside_columns
 from hystbench.record import FloatArray
@@ -211,8 +211,8 @@ class Attempt:
 
 
 @lru_cache(maxsize=3)
-def _retuned(state: ModelState, score: Score) -> Products:
-    """Give the products of what a model may re-tune, which all its attempts share."""
+def _retuned(state: ModelState, score: Score) -> Shared:
+    """Prepare what a model may re-tune, which all its attempts share."""
     columns = np.hstack([state.tangents, state.beside_columns])
     return score.shared(columns, state.change_charges(columns.shape[1]))
 
