@@ -53,6 +53,20 @@ def free_of(chain, names):
     )
 
 
+def test_a_refit_ends_where_it_could_not_come_so_far_as_is_wanted():
+    """Not after the first round: of a lag from a tenth the second one gains more."""
+    given_records = measured(lagged(1e-2), NOISE)
+    chain = lagged(1e-3)
+    state = state_of(chain, given_records, free=free_of(chain, ["time_constant_s"]))
+    score = plain_score(state, NOISE**2)
+    before = score_of(state, score)
+    once, twice, whole = (refit(state, score, rounds)[1] for rounds in (1, 2, 5))
+    assert once - twice > before - once
+    assert twice > whole
+    assert refit(state, score, wanted=whole)[1] == whole
+    assert refit(state, score, wanted=twice - 3 * (once - twice) - 1.0)[1] == twice
+
+
 @given(
     st.floats(2e-4, 3e-2),
     st.floats(1e-4, 5e-2),

@@ -293,3 +293,27 @@ def test_what_gains_too_little_of_what_is_needed_is_not_refitted():
     (less,) = rank(state, score, known, folds=False, needs=10 * alone.gain)
     assert less.state is None
     assert less.gain <= alone.gain
+
+
+@pytest.mark.parametrize("folds", [False, True])
+def test_what_is_far_behind_is_refitted_to_the_end_for_folds_alone(monkeypatch, folds):
+    """Without them what was judged best so far tells how far a refit has to come."""
+    wanted, plain = [], module.added
+
+    def noted(state, trial, score, least):
+        wanted.append(least)
+        return plain(state, trial, score, least)
+
+    monkeypatch.setattr(module, "added", noted)
+    base = block("gpi", envelope=ENVELOPE, **GPI)
+    made = (block("drive-lag", time_constant_s=1e-2), base)
+    state = state_of((base,), measured(made, NOISE, given=records() * 3))
+    known = [effects()[name] for name in ("drive-lag", "sensor-lag", "input-delay")]
+    found = rank(state, make_score(state, NOISE), known, folds=folds)
+    assert wanted[0] == np.inf
+    assert len(wanted) > 1
+    if folds:
+        assert set(wanted) == {np.inf}
+    else:
+        assert wanted[1] < np.inf
+        assert wanted[1] > min(item.score for item in found)

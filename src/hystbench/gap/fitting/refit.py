@@ -36,9 +36,18 @@ ENOUGH = 0.05
 
 
 def refit(
-    state: ModelState, score: Score, rounds: int = ROUNDS
+    state: ModelState, score: Score, rounds: int = ROUNDS, wanted: float = np.inf
 ) -> tuple[ModelState, float]:
     """Refit all free numbers together (Levenberg and Marquardt on the score).
+
+    Parameters
+    ----------
+    state : ModelState
+    score : Score
+    rounds : int
+    wanted : float
+        Score that is of use. A refit ends after its second round where it would not
+        come so far if each further one gained as much. (The first may be short.)
 
     Returns
     -------
@@ -48,7 +57,7 @@ def refit(
     """
     beside = beside_of(state, score)
     best = score_beside(state, score, beside)
-    for _ in range(rounds if state.free else 0):
+    for left in reversed(range(rounds if state.free else 0)):
         size = sizes(state)
         before = best
         for damping in DAMPING:
@@ -68,7 +77,9 @@ def refit(
             if value <= best:  # at the floor the score is flat, the step still right
                 state, best = moved, value
                 break
-        if before - best < ENOUGH:
+        gained = before - best
+        first = left == rounds - 1
+        if gained < ENOUGH or not (first or best - left * gained <= wanted):
             break
     return state, best
 
@@ -91,8 +102,18 @@ def sizes(state: ModelState) -> FloatArray:
     return np.where(values > 1e-3 * tenth, values, np.minimum(tenth, most))
 
 
-def added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, float]:
+def added(
+    state: ModelState, trial: Trial, score: Score, wanted: float = np.inf
+) -> tuple[ModelState, float]:
     """Add an effect as a trial found it and refit everything together.
+
+    Parameters
+    ----------
+    state : ModelState
+    trial : Trial
+    score : Score
+    wanted : float
+        Score that is of use, as of :func:`refit`.
 
     Raises
     ------
@@ -104,8 +125,8 @@ def added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, fl
     about.append(variant.operates)
     return _remembered(
         state,
-        lambda: ["added", *about, trial.values, score.digest],
-        lambda: _added(state, trial, score),
+        lambda: ["added", *about, trial.values, score.digest, wanted],
+        lambda: _added(state, trial, score, wanted),
     )
 
 
@@ -124,13 +145,15 @@ def _remembered(
     )
 
 
-def _added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, float]:
+def _added(
+    state: ModelState, trial: Trial, score: Score, wanted: float
+) -> tuple[ModelState, float]:
     after = with_effect(state, trial.variant, trial.values)
     if trial.variant.zero is not None:
         after = after.settled()
     if trial.variant.begun:
         after = fitted_to_the_end(after, score).state
-    return refit(after, score)
+    return refit(after, score, wanted=wanted)
 
 
 def tuned(state: ModelState, score: Score) -> ModelState:
