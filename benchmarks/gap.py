@@ -13,6 +13,7 @@ alphabetical order.
 
 from __future__ import annotations
 
+import gc
 import importlib
 import json
 import os
@@ -121,6 +122,7 @@ def work(what: str, case: str, candidates: int, share: float) -> dict[str, objec
     whole = what == "a case"
     records = (*evidence.fit, *evidence.hold_out) if whole else evidence.fit
     importlib.import_module("scipy.signal")  # what a case imports on its way
+    gc.freeze()  # as the command does
     wall, cpu = perf_counter(), process_time()
     answer = (
         close(evidence, model)

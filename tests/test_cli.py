@@ -25,6 +25,20 @@ def test_every_job_is_there_and_has_help(name):
     assert job_lines()[name]
 
 
+def test_what_a_command_imports_is_not_looked_through_for_cycles(monkeypatch):
+    """It is set apart once, as what is set apart is never freed."""
+    frozen = []
+    monkeypatch.setattr(group_module.gc, "get_freeze_count", lambda: len(frozen))
+    monkeypatch.setattr(
+        group_module.gc,
+        "freeze",
+        lambda: frozen.append("hystbench.commands.check" in sys.modules),
+    )
+    for _ in range(2):
+        group(COMMANDS).get_command(None, "check")
+    assert frozen == [True]
+
+
 def test_help_lists_the_commands_and_imports_none_of_them():
     result = start_hystbench("--help")
     assert result.returncode == 0

@@ -1,6 +1,7 @@
 """The group of all commands, each imported when it is called."""
 
 import ast
+import gc
 import importlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -75,6 +76,9 @@ class LazyGroup(click.Group):
         command: click.Command = getattr(
             importlib.import_module(f"{self.package}.{module}"), module
         )
+        # What was imported stays: to look through it for cycles takes a while.
+        if not gc.get_freeze_count():
+            gc.freeze()
         return command
 
     @property
