@@ -86,6 +86,18 @@ def test_a_german_spreadsheet(run, tmp_path):
     assert record.input.label == "Spulenstrom (mA)"
 
 
+def test_a_slash_in_the_header_of_a_text_is_no_group(run, tmp_path):
+    files = records(tmp_path, "time [s],voltage [V],speed [m/s]")
+    assert run("init", *files)[0] == 0
+    about = written()
+    assert about["input"]["column"] == "voltage [V]"
+    assert (about["output"]["column"], about["output"]["unit"]) == (
+        "speed [m/s]",
+        "m/s",
+    )
+    assert len(load_dataset(".").read("sine-5")) == 1200
+
+
 def test_flags_say_what_files_do_not(run, tmp_path):
     files = records(tmp_path, "a,b,c")
     said = refused("init", *files)

@@ -14,7 +14,7 @@ def read(path: Path) -> Table:
     frame = _frame(path)
     import pandas as pd  # late: a third of a second
 
-    found = Filling(path)
+    found = Filling(path, in_groups=False)
     for name in map(str, frame.columns):
         series = frame[name]
         if isinstance(series.dtype, pd.DatetimeTZDtype):

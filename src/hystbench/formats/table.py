@@ -41,22 +41,26 @@ class Column:
         As the file tells it.
     sampling_frequency_hz : float, optional
         Of this column alone, as the file tells it.
+    in_groups : bool
+        Whether a slash in the name stands between a group and a name in it. In a text
+        it does not: a header may be ``speed [m/s]``.
     """
 
     name: str
     values: FloatArray
     unit: str | None = None
     sampling_frequency_hz: float | None = None
+    in_groups: bool = True
 
     @property
     def group(self) -> str:
         """The group that it lies in, empty at the top."""
-        return self.name.rpartition("/")[0]
+        return self.name.rpartition("/")[0] if self.in_groups else ""
 
     @property
     def short(self) -> str:
         """Its name inside its group."""
-        return self.name.rpartition("/")[2]
+        return self.name.rpartition("/")[2] if self.in_groups else self.name
 
 
 @dataclass(frozen=True, repr=False)
@@ -182,10 +186,12 @@ class Filling:
     Parameters
     ----------
     path : Path
+    in_groups : bool
+        Whether names have groups, before a slash.
     """
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
+    def __init__(self, path: Path, in_groups: bool = True) -> None:
+        self.path, self.in_groups = path, in_groups
         self.columns: list[Column] = []
         self.numbers: dict[str, float] = {}
         self.notes: list[str] = []
@@ -219,7 +225,7 @@ class Filling:
         if array.ndim == 0:
             self.numbers[name] = float(array)
         elif array.ndim == 1:
-            self.columns.append(Column(name, array, unit, frequency))
+            self._take(name, array, unit, frequency)
         elif array.ndim > 2:
             self.leave_out(name, f"an array of {array.ndim} dimensions")
         elif min(array.shape) > MOST_COLUMNS:
@@ -228,7 +234,12 @@ class Filling:
             rows = array if array.shape[0] >= array.shape[1] else array.T
             for k, part in enumerate(rows.T, start=1):
                 own = np.ascontiguousarray(part)
-                self.columns.append(Column(f"{name}(:,{k})", own, unit, frequency))
+                self._take(f"{name}(:,{k})", own, unit, frequency)
+
+    def _take(
+        self, name: str, values: FloatArray, unit: str | None, frequency: float | None
+    ) -> None:
+        self.columns.append(Column(name, values, unit, frequency, self.in_groups))
 
     def leave_out(self, name: str, what: str, why: str = "") -> None:
         """Note that something of the file is no column."""

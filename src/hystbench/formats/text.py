@@ -104,7 +104,7 @@ def read(path: Path, wanted: Collection[str] | None = None) -> Table:
                 f"{layout.names[k]}: dates and times, taken as {stamps[k]}; seconds "
                 "from the first"
             )
-        found.append(Column(layout.names[k], column, unit or None))
+        found.append(Column(layout.names[k], column, unit or None, in_groups=False))
     if layout.separator != "," or layout.decimal != ".":
         comma = ", decimal commas" if layout.decimal == "," else ""
         notes.append(f"columns separated by {NAMES[layout.separator]}{comma}")

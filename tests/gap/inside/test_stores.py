@@ -1,10 +1,12 @@
 """Effects of stores: two tanks, written here by small steps of Euler."""
 
+from dataclasses import replace
 from itertools import islice
 
 import numpy as np
 import pytest
 
+from hystbench.blocks.store import Store
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.hosts import best_host, hosts
@@ -154,3 +156,21 @@ def test_a_curve_before_or_behind_stores_is_named_with_the_outflow(effect, read)
     best, _ = found(record)
     assert set(best.effects) == {"outflow", effect}
     assert np.sqrt(np.mean(best.state.residual**2)) < 1.5 * NOISE
+
+
+def test_overflow_is_named_beside_a_base_of_stores_that_was_given():
+    """The base has the law of the outflow; nothing of it is free."""
+    record = tanks(root=True, height=60.0)
+    upper = Store(
+        gain=1.0, rate=0.35, start_level=60.0, output="outflow", hold="zero-order"
+    )
+    lower = Store(gain=0.05, rate=0.3 / np.sqrt(20), start_level=2.5, hold="linear")
+    begun = next(stores((record,), "zero-order", NOISE, 2))
+    start = replace(begun, chain=(upper, lower), free=()).settled()
+    score = Score(start.sample, np.zeros((COUNT, 0)), NOISE**2)
+    (host,) = hosts(start, Quantities(output="level"), False, score)
+    best = chosen(search(host.fitted, score), score.floor)
+    assert best.effects == ("overflow",)
+    assert np.sqrt(np.mean(best.state.residual**2)) < 1.5 * NOISE
+    assert best.state.chain[0].height == pytest.approx(60.0, rel=0.03)
+    assert best.state.chain[0].rate == upper.rate

@@ -18,6 +18,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.store import Store
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.cache import records_digest
@@ -111,6 +112,9 @@ def hosts(
             yield Host(best.state, best, words)
             yield from _loose(best.state, score, words)
             yield from _of_two(best, further_modes_of(start), score)
+    if not identified and all(isinstance(block, Store) for block in start.chain):
+        yield Host(start, fitted(start, score), "the base is stores already")
+        return
     if not identified:
         same = same_as(start, quantities)
         if same is not None:
