@@ -68,3 +68,17 @@ def test_a_gap_beyond_the_tolerance_is_not_put_down_to_parameters():
         after = content["base_parameters"]["gain.value"]["after"]
         assert after <= 11.0 * (1 + tolerance) * (1 + 1e-12)
         assert (content["verdict"] == "parameters") == (word is not None)
+
+
+def test_what_moves_the_output_by_rounding_alone_moves_nothing():
+    """An offset of a millionth beside 1e11 changes a last digit here and there."""
+    chain = (block("gain", value=1e12, offset=0.0),)
+    given = measured((block("gain", value=1.2e12),))
+    model = base(chain, gain__value=None, gain__offset=None)
+    state, _ = start_state(given, model, declared=1.0)
+    gain, offset = state.tangents.T
+    assert np.sqrt(np.mean(gain**2)) > 0.1
+    assert not offset.any()
+    after, _ = refit(state, plain_score(state, 1.0))
+    assert after.chain[0].value == pytest.approx(1.2e12)
+    assert after.chain[0].offset == pytest.approx(0.0, abs=1e-6)

@@ -92,7 +92,8 @@ def sizes(state: ModelState) -> FloatArray:
     """
     output = state.measured - state.residual
     moved = np.sqrt(np.mean(state.tangents**2, axis=0))
-    tenth = 0.1 * np.sqrt(np.mean(output**2)) / np.maximum(moved, 1e-300)
+    tenth = 0.1 * float(np.sqrt(np.mean(output**2)))
+    tenth = tenth / np.maximum(moved, max(tenth / NOWHERE, 1e-300))
     values = np.array([abs(state.value(free)) for free in state.free])
     lists = [
         np.abs(getattr(state.chain[free.block], free.parameter)) for free in state.free

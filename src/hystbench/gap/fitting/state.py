@@ -16,7 +16,7 @@ from hystbench.blocks.held import Hold
 from hystbench.blocks.transfer_function import stable
 from hystbench.errors import InputError
 from hystbench.gap.effects.variant import Beside, Refused, Values
-from hystbench.gap.records.scored_samples import ScoredSamples
+from hystbench.gap.records.scored_samples import ScoredSamples, rms
 from hystbench.gap.simulation.reshape import orthonormal, reshapings
 from hystbench.gap.simulation.shared import in_short_steps, quick
 from hystbench.gap.simulation.simulation import Signals, Simulation
@@ -51,6 +51,8 @@ class Added(NamedTuple):
     """The chain's own block that it stands for."""
 
 
+ROUNDING = float(np.finfo(float).eps)
+"""Share of the output's rms, of which a smaller change is only rounding."""
 FORMS = (0.3, 0.6, 1.6, 3.0)
 """Factors on a number of an added effect: what other forms of it could do."""
 
@@ -154,7 +156,12 @@ class ModelState:
         except InputError:  # beyond what the block accepts, so the other way
             step = -step
             moved = simulated_with(self, {k: step})
-        return (self.sample.take(moved) - self._simulated) / step
+        change = self.sample.take(moved) - self._simulated
+        if rms(change) < ROUNDING * rms(self._simulated):
+            # As of a play that never moves: divided by its step, it would look like
+            # something, and any weight would do.
+            return np.zeros(len(change))
+        return change / step
 
     @cached_property
     def other_forms(self) -> FloatArray:
