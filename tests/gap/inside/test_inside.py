@@ -25,7 +25,7 @@ from hystbench.gap.inside.hypotheses import (
     with_one_fewer,
 )
 from hystbench.gap.inside.laws import evened, how_it_moves, laws_for, with_law
-from hystbench.gap.inside.named_inside import chosen, named_inside
+from hystbench.gap.inside.named_inside import chosen, named_inside, re_tuning
 from hystbench.gap.inside.one_coordinate import free_masses, one_coordinate
 from hystbench.gap.records.free_mass import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
@@ -524,3 +524,15 @@ def test_a_free_mass_of_which_the_speed_is_seen_may_have_moved_before():
     assert state.chain[0].start == "repeating"
     (state,) = free_masses((record,), "position", "zero-order")
     assert state.chain[0].start == "rest"
+
+
+def test_a_host_of_a_given_base_tells_how_much_fitting_it_anew_takes():
+    """Nobody said that its numbers are free: a wrong mass would hide behind a name."""
+    u = np.sin(2 * np.pi * 1.3 * TIME)
+    given = (record("run", u, 12.0 * u, ("V", "mm")),)
+    alone, fitted = (
+        ModelState((Gain(value=value),), given, ScoredSamples.of(given))
+        for value in (8.0, 11.0)  # of a gap of 4 squared there stays 1
+    )
+    assert "takes 94 % of the gap" in re_tuning(alone, fitted, 0.0)
+    assert re_tuning(alone, alone, 0.0) == ""

@@ -40,7 +40,7 @@ from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.memory import may_have_hysteresis
-from hystbench.gap.thresholds import PAYS, SCALE, UNNAMED_SHARE
+from hystbench.gap.thresholds import LOOSE, PAYS, SCALE, UNNAMED_SHARE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 
@@ -137,6 +137,8 @@ def named_inside(
         f"{host.words}{further_words(alone)}, with effects inside (rms of the fit "
         f"records above the floor: {before} of the base, {after} of what stands for it)"
     )
+    if not identified:
+        sentence += re_tuning(alone, fitted, floor_rms**2)
     # The first rung is the host re-tuned, so that no effect has the credit of that.
     rounds = _rounds(replace(fitted, offered=start.offered).settled(), best, found)
     model = Model(base.name, base.input, base.output, alone.chain)
@@ -147,6 +149,17 @@ def named_inside(
         alone,
         Named(state, tuple(rounds)),
         sentence,
+    )
+
+
+def re_tuning(alone: ModelState, fitted: ModelState, floor: float) -> str:
+    """Say what share of the gap goes because the host's own numbers are fitted."""
+    share = fitted.share(alone, floor, max(alone.power(floor), floor))
+    if share <= LOOSE:
+        return ""
+    return (
+        f"; its own numbers are fitted anew, and that alone takes {100 * share:.0f} % "
+        "of the gap's power: look whether they may differ so much"
     )
 
 
