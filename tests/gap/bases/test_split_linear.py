@@ -8,8 +8,7 @@ import pytest
 from hystbench.gap import search as search_module
 from hystbench.gap.bases.load import checked_base, load_base
 from hystbench.gap.bases.output_error import OutputError
-from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio
-from hystbench.gap.bases.split_linear import _block
+from hystbench.gap.bases.spectral import Rational, Spectra, Stretch, fit_ratio
 from hystbench.gap.bases.wiener_hammerstein import Halves, HalvesError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.places import INSIDE
@@ -157,10 +156,8 @@ def test_static_effects_are_offered_between_the_halves(name, split, clipped_reco
 
 def halves():
     return Halves(
-        np.array([1.3, 0.9]),
-        np.array([1.1, 0.2]),
-        np.array([0.8, 1.2]),
-        np.array([0.7]),
+        Rational(np.array([1.3, 0.9]), np.array([1.1, 0.2])),
+        Rational(np.array([0.8, 1.2]), np.array([0.7])),
         np.array([1.0, -0.2, 0.1, 0.05, -0.02]),
         0.4,
     )
@@ -170,12 +167,12 @@ def halves():
 def test_derivatives_are_those_of_the_simulation(start, clipped_records):
     records = clipped_records.fit[:1]
     masks = (np.ones(COUNT, dtype=bool),)
-    task = HalvesError(records, masks, "band-limited", 200.0, start)
-    now, given = halves(), task._derivatives(halves(), 0, task._sent(halves(), 0))
+    (way,) = HalvesError(records, masks, "band-limited", 200.0, start).ways
+    now, given = halves(), way.derivatives(halves(), way.sent(halves()))
     for k in range(now.count):
         step = np.zeros(now.count)
         step[k] = 1e-5
-        up, down = (task._sent(now.moved(sign * step), 0).output for sign in (1, -1))
+        up, down = (way.sent(now.moved(sign * step)).output for sign in (1, -1))
         wanted = (up - down) / 2e-5
         if start == "rest":
             assert given[:, k] == pytest.approx(wanted, abs=1e-6 * np.abs(wanted).max())
@@ -186,11 +183,12 @@ def test_halves_simulate_what_their_blocks_simulate(clipped_records):
     u = clipped_records.fit[0].u * np.minimum(1.0, np.arange(COUNT) / 250)
     made = replace(clipped_records.fit[0], u=u)
     masks = (np.ones(COUNT, dtype=bool),)
-    task = HalvesError((made,), masks, "linear", 200.0, "rest")
+    (way,) = HalvesError((made,), masks, "linear", 200.0, "rest").ways
     straight = replace(halves(), curve=np.eye(5)[0])
-    found = task._sent(straight, 0).output
-    front = _block(task, straight.front_b, straight.front_a, "rest")
-    back = _block(task, straight.back_b, straight.back_a, "rest")
+    found = way.sent(straight).output
+    front, back = (
+        half.block(200.0, "linear", "rest") for half in (straight.front, straight.back)
+    )
     w = front.simulate(u, u, DT)
     assert found == pytest.approx(back.simulate(w, u, DT) + 0.4, abs=5e-3)
 

@@ -71,7 +71,7 @@ def split_given(model: Model, evidence: Evidence) -> tuple[Model, str]:
         split = _with(model, (front, replace(back, start=block.start)))
     words = (
         f"; its transfer function is written as two in series, of order "
-        f"{len(best.front_a)} and {len(best.back_a)}, since a static curve between "
+        f"{len(best.front.a)} and {len(best.back.a)}, since a static curve between "
         "them explains much"
     )
     return split, words
@@ -91,15 +91,12 @@ def _ratio(block: TransferFunction) -> tuple[float, Ratio]:
 
 def _with(model: Model, blocks: tuple[Block, ...]) -> Model:
     """Put blocks in the place of the first, its free numbers being those of both."""
-    labels: dict[str, tuple[str, ...]] = {
-        "transfer-function": ("transfer-function", "transfer-function#2")
-    }
-    added = sum(isinstance(item, Gain) for item in blocks)
-    gains = [item for item in model.chain[1:] if isinstance(item, Gain)]
-    for k in range(len(gains)):
-        old = "gain" if k == 0 else f"gain#{k + 1}"
-        new = k + added
-        labels[old] = ("gain" if new == 0 else f"gain#{new + 1}",)
+    chain = (*blocks, *model.chain[1:])
+    split = replace(model, chain=chain, free=(), tolerances={}, provenance={})
+    old, new = ([label for label, _ in each.labelled()] for each in (model, split))
+    halves = [label for label in new if label.startswith("transfer-function")]
+    labels = {old[0]: halves}
+    labels |= {a: [b] for a, b in zip(old[1:], new[len(blocks) :], strict=True)}
 
     def named(name: str) -> list[str]:
         label, _, parameter = name.rpartition(".")
@@ -107,11 +104,9 @@ def _with(model: Model, blocks: tuple[Block, ...]) -> Model:
 
     shares: Mapping[str, float] = model.tolerances
     return replace(
-        model,
-        chain=(*blocks, *model.chain[1:]),
+        split,
         free=tuple(new for name in model.free for new in named(name)),
         tolerances={n: share for k, share in shares.items() for n in named(k)},
-        provenance={},
     )
 
 

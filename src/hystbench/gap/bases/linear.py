@@ -254,8 +254,8 @@ def _halves(
         return None
     unit = everything.evidence.output.unit
     words = (
-        f"; written as two in series, of order {len(halves.front_a)} and "
-        f"{len(halves.back_a)}, since a static curve between them leaves "
+        f"; written as two in series, of order {len(halves.front.a)} and "
+        f"{len(halves.back.a)}, since a static curve between them leaves "
         f"{np.sqrt(halves.cost / count):.4g} {unit}"
     )
     return chain, float(np.sqrt(error / count)), words

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -20,6 +22,59 @@ from hystbench.record import FloatArray, Mask, Record
 LEAST_GAIN = 1e-4
 #: A step is damped so many times before a descent ends.
 TRIALS = 8
+
+
+class Costed(Protocol):
+    """A model with its sum of squares, infinite where it cannot be run."""
+
+    @property
+    def cost(self) -> float:
+        """Sum of squares."""
+
+
+Fit = TypeVar("Fit", bound=Costed)
+
+
+def descended(
+    fit: Fit,
+    steps: Callable[[Fit], Callable[[float], Fit] | None],
+    rounds: int,
+    damping: float,
+) -> Fit:
+    """Go down a sum of squares by steps of Levenberg and Marquardt [1]_.
+
+    Parameters
+    ----------
+    fit : Costed
+        Where to start; given back as it is if no step pays.
+    steps : callable
+        Tells what a step makes of a model, by its damping; None where none is known.
+    rounds : int
+        Most steps.
+    damping : float
+        Of the first.
+
+    References
+    ----------
+    .. [1] D. W. Marquardt, "An algorithm for least-squares estimation of nonlinear
+       parameters", J. SIAM 11(2), 431-441, 1963, doi:10.1137/0111030.
+    """
+    for _ in range(rounds):
+        step = steps(fit)
+        if step is None:
+            break
+        for _ in range(TRIALS):
+            moved = step(damping)
+            if moved.cost < fit.cost:
+                break
+            damping *= 10.0
+        else:
+            break
+        small = moved.cost > (1 - LEAST_GAIN) * fit.cost
+        fit, damping = moved, max(damping / 10.0, 1e-9)
+        if small:
+            break
+    return fit
 
 
 @dataclass(frozen=True)
@@ -50,13 +105,7 @@ class OutputError:
 
     def block(self, ratio: Ratio) -> TransferFunction:
         """Give the block of a ratio; its constant is left out."""
-        numerator, denominator = ratio.coefficients(self.scale)
-        return TransferFunction(
-            numerator=tuple(numerator.tolist()),
-            denominator=tuple(denominator.tolist()),
-            hold=self.hold,
-            start=self.start,
-        )
+        return ratio.block(self.scale, self.hold, self.start)
 
     def simulate(self, ratio: Ratio) -> list[FloatArray]:
         """Simulate a ratio with its constant, one output a record."""
@@ -90,8 +139,6 @@ class OutputError:
     def refined(self, ratio: Ratio, masks: Sequence[Mask], rounds: int) -> Ratio:
         """Go down the sum of squares of the masked samples.
 
-        Steps of Levenberg and Marquardt [1]_.
-
         Parameters
         ----------
         ratio : Ratio
@@ -99,50 +146,31 @@ class OutputError:
         masks : sequence of ndarray of bool
         rounds : int
             Most steps.
-
-        References
-        ----------
-        .. [1] D. W. Marquardt, "An algorithm for least-squares estimation of nonlinear
-           parameters", J. SIAM 11(2), 431-441, 1963, doi:10.1137/0111030.
         """
-        cost = self.squares(ratio, masks)
-        damping = 1e-6
-        for _ in range(rounds):
+
+        def steps(ratio: Ratio) -> Callable[[float], Ratio] | None:
             triangle = self._triangle(ratio, masks)
             if not np.all(np.isfinite(triangle)):
-                break  # its derivatives run away though it does not: no step is known
-            for _ in range(TRIALS):
-                moved = self._moved(ratio, _step(triangle, damping))
-                after = self._squares_or_none(moved, masks)
-                if after is not None and after < cost:
-                    break
-                damping *= 10.0
-            else:
-                break
-            small = after > (1 - LEAST_GAIN) * cost
-            ratio, cost, damping = moved, after, max(damping / 10.0, 1e-9)
-            if small:
-                break
+                return None  # its derivatives run away though it does not
+            return lambda damping: self._moved(ratio, _step(triangle, damping), masks)
+
+        ratio = replace(ratio, cost=self.squares(ratio, masks))
+        ratio = descended(ratio, steps, rounds, 1e-6)
         offset = ratio.offset
         if self.own_offsets:
             left = [x[mask] for x, mask in zip(self.left(ratio), masks, strict=True)]
             offset += float(np.mean(np.concatenate(left)))
-        return Ratio(ratio.a, ratio.b, offset, cost)
+        return replace(ratio, offset=offset)
 
-    def _squares_or_none(self, ratio: Ratio, masks: Sequence[Mask]) -> float | None:
-        """Sum of squares; None where the block refuses so far a step."""
-        try:
-            with np.errstate(over="ignore", invalid="ignore"):  # no number is no step
-                value = self.squares(ratio, masks)
-        except InputError:
-            return None
-        return value if np.isfinite(value) else None
-
-    def _moved(self, ratio: Ratio, step: FloatArray) -> Ratio:
+    def _moved(self, ratio: Ratio, step: FloatArray, masks: Sequence[Mask]) -> Ratio:
         k = len(ratio.a)
         a = stable(ratio.a + step[:k])
         a[: self.held] = ratio.a[: self.held]  # not what its pole's margin makes of it
-        return Ratio(a, ratio.b + step[k:-1], ratio.offset + step[-1], 0.0)
+        moved = Ratio(a, ratio.b + step[k:-1], ratio.offset + step[-1], np.inf)
+        # No number is no step, nor is one so far that the block refuses it.
+        with suppress(InputError), np.errstate(over="ignore", invalid="ignore"):
+            moved = replace(moved, cost=self.squares(moved, masks))
+        return moved
 
     def _triangle(self, ratio: Ratio, masks: Sequence[Mask]) -> FloatArray:
         """Triangle of the derivatives, and of the error as its last column."""

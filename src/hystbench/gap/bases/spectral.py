@@ -21,6 +21,7 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from hystbench.blocks.held import Hold
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.record import ComplexArray, FloatArray
 
 #: Highest order that is fitted.
@@ -101,22 +102,42 @@ class Spectra:
 
 
 @dataclass(frozen=True)
-class Ratio:
-    """``(b_0 + .. + b_m s^m) / (a_0 + .. + a_{k-1} s^{k-1} + s^k)`` and a constant.
+class Rational:
+    """``(b_0 + .. + b_m s^m) / (a_0 + .. + a_{k-1} s^{k-1} + s^k)``.
 
-    Coefficients ascend; s is in units of the spectra's scale.
+    Coefficients ascend; s is in units of a scale in rad/s.
     """
 
     a: FloatArray
     b: FloatArray
-    offset: float
-    cost: float
 
-    def coefficients(self, scale: float) -> tuple[FloatArray, FloatArray]:
-        """Numerator and denominator in descending powers of s, the last of it one."""
+    @property
+    def static(self) -> float:
+        """Give the value at s = 0."""
+        return float(self.b[0] / self.a[0]) if len(self.a) else float(self.b[0])
+
+    def at(self, s: ComplexArray) -> ComplexArray:
+        """Give its values."""
+        return np.asarray(np.polyval(self.b[::-1], s) / below(self.a, s))
+
+    def block(self, scale: float, hold: Hold, start: str) -> TransferFunction:
+        """Write it as a block, the last coefficient of whose denominator is one."""
         down = np.append(self.a, 1.0) / scale ** np.arange(len(self.a) + 1)
         up = self.b / scale ** np.arange(len(self.b))
-        return up[::-1] / down[0], down[::-1] / down[0]
+        return TransferFunction(
+            numerator=tuple((up[::-1] / down[0]).tolist()),
+            denominator=tuple((down[::-1] / down[0]).tolist()),
+            hold=hold,
+            start=start,
+        )
+
+
+@dataclass(frozen=True)
+class Ratio(Rational):
+    """A rational function and a constant, and the sum of squares that these leave."""
+
+    offset: float
+    cost: float
 
 
 def fit_ratio(spectra: Spectra, order: int, zeros: int) -> Ratio:
@@ -252,7 +273,7 @@ class _Problem:
         triangles = []
         for lines in self.spectra.lines:
             linear, transients = self._linear(lines, a)
-            weight = 1 / _polynomial(a, lines.s)
+            weight = 1 / below(a, lines.s)
             powers = lines.powers[:, : self.order]
             if now is None:
                 moved = powers * (weight * lines.y)[:, None]
@@ -276,13 +297,14 @@ class _Problem:
         self, lines: RecordSpectrum, a: FloatArray
     ) -> tuple[ComplexArray, ComplexArray]:
         """Columns of numerator and constant, and those of the transient."""
-        weight = 1 / _polynomial(a, lines.s)
+        weight = 1 / below(a, lines.s)
         weighted = lines.powers[:, : self.order + 1] * weight[:, None]
         own = weighted[:, : self.zeros + 1] * lines.u[:, None]
         return np.column_stack([own, weighted[:, 0] * lines.constant]), weighted
 
 
-def _polynomial(a: FloatArray, s: ComplexArray) -> ComplexArray:
+def below(a: FloatArray, s: ComplexArray) -> ComplexArray:
+    """Give the values of a denominator."""
     return cast(ComplexArray, np.polyval(np.append(a, 1.0)[::-1], s))
 
 
@@ -293,14 +315,18 @@ def _transformed(
     f = np.asarray(np.fft.rfftfreq(n, item.dt), dtype=np.float64)
     # every line but the first stands for itself and its mirror image
     size = np.sqrt(np.where(f > 0, 2.0, 1.0) / n)
-    shaped = np.ones(len(f), dtype=np.complex128)
-    if hold == "linear":
-        shaped *= np.sinc(f * item.dt) ** 2
-    elif hold == "zero-order":
-        shaped *= np.sinc(f * item.dt) * np.exp(-1j * np.pi * f * item.dt)
     constant: FloatArray = np.where(f > 0, 0.0, n * size)
     u, y = np.fft.rfft(item.u), np.fft.rfft(item.y)
-    return 2 * np.pi * f, u * shaped * size, y * size, constant
+    return 2 * np.pi * f, u * held(f * item.dt, hold) * size, y * size, constant
+
+
+def held(cycles: FloatArray, hold: Hold) -> FloatArray | ComplexArray:
+    """Give what a hold makes of lines, by cycles a sample."""
+    if hold == "linear":
+        return np.sinc(cycles) ** 2
+    if hold == "zero-order":
+        return np.asarray(np.sinc(cycles) * np.exp(-1j * np.pi * cycles))
+    return np.ones(len(cycles))
 
 
 def _lines_that_matter(spectrum: ComplexArray) -> int:

@@ -25,9 +25,10 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
+from hystbench.blocks.held import Hold
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.bases.spectral import Ratio
-from hystbench.gap.bases.wiener_hammerstein import DEGREE, Halves, HalvesError
+from hystbench.gap.bases.spectral import Ratio, Rational
+from hystbench.gap.bases.wiener_hammerstein import Halves, HalvesError
 from hystbench.gap.records.folds import Fold
 from hystbench.record import FloatArray
 
@@ -119,26 +120,14 @@ def parts_of(
 
     The front has a gain of one where it has any.
     """
-    fb, bb = halves.front_b, halves.back_b
-    unit = fb[0] / halves.front_a[0] if fb[0] else 1.0
-    front = _block(task, fb / unit, halves.front_a, task.start)
+    a, b = halves.front.a, halves.front.b
+    unit = b[0] / a[0] if b[0] else 1.0
+    front = Rational(a, b / unit).block(task.scale, task.hold, task.start)
     after = task.start if task.start != "rest" else "settled"
-    back = _block(task, bb, halves.back_a, after)
-    if back.hold == "zero-order":  # a staircase is smooth behind the front
-        back = replace(back, hold="linear")
+    # A staircase is smooth behind the front.
+    smooth: Hold = "linear" if task.hold == "zero-order" else task.hold
+    back = halves.back.block(task.scale, smooth, after)
     return front, back, task.middle(halves) / unit
-
-
-def _block(
-    task: HalvesError, b: FloatArray, a: FloatArray, start: str
-) -> TransferFunction:
-    numerator, denominator = Ratio(a, b, 0.0, 0.0).coefficients(task.scale)
-    return TransferFunction(
-        numerator=tuple(numerator.tolist()),
-        denominator=tuple(denominator.tolist()),
-        hold=task.hold,
-        start=start,
-    )
 
 
 def _line(task: HalvesError, chain: tuple[Block, ...]) -> tuple[float, float, float]:
@@ -165,7 +154,7 @@ def _grown(task: HalvesError, halves: Halves) -> Halves:
         tried = [
             task.refined(way, ROUNDS)
             for way in _more(halves)
-            if len(way.front_a) + len(way.back_a) <= MOST
+            if len(way.front.a) + len(way.back.a) <= MOST
         ]
         if not tried:
             return halves
@@ -177,19 +166,19 @@ def _grown(task: HalvesError, halves: Halves) -> Halves:
 
 def _more(halves: Halves) -> Iterator[Halves]:
     """Give halves with one more pole, one more zero, or both, far out."""
-    for a, b in _longer(halves.front_a, halves.front_b):
-        yield replace(halves, front_a=a, front_b=b)
-    for a, b in _longer(halves.back_a, halves.back_b):
-        yield replace(halves, back_a=a, back_b=b)
+    for front in _longer(halves.front):
+        yield replace(halves, front=front)
+    for back in _longer(halves.back):
+        yield replace(halves, back=back)
 
 
-def _longer(a: FloatArray, b: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
-    far = np.array([BEYOND, 1.0])
+def _longer(half: Rational) -> Iterator[Rational]:
+    a, b, far = half.a, half.b, np.array([BEYOND, 1.0])
     pole, zero = np.convolve(np.append(a, 1.0), far)[:-1], np.convolve(b, far / BEYOND)
-    yield pole, BEYOND * b
-    yield pole, BEYOND * zero
+    yield Rational(pole, BEYOND * b)
+    yield Rational(pole, BEYOND * zero)
     if len(b) <= len(a):
-        yield a, zero
+        yield Rational(a, zero)
 
 
 def _on_folds(task: HalvesError, halves: Halves, folds: Sequence[Fold]) -> float:
@@ -204,16 +193,15 @@ def _on_folds(task: HalvesError, halves: Halves, folds: Sequence[Fold]) -> float
 
 def ways_at_ends(ratio: Ratio) -> Iterator[Halves]:
     """Give the curve before a linear model and behind it."""
-    none, one, curve = np.zeros(0), np.ones(1), np.zeros(DEGREE)
-    yield Halves(none, one, ratio.a, ratio.b, curve)
-    yield Halves(ratio.a, ratio.b, none, one, curve)
+    nothing, whole = Rational(np.zeros(0), np.ones(1)), Rational(ratio.a, ratio.b)
+    yield Halves(nothing, whole)
+    yield Halves(whole, nothing)
 
 
 def ways_inside(ratio: Ratio) -> Iterator[Halves]:
     """Deal poles and zeros to two halves, both proper and both with a pole."""
     poles, zeros = _pairs(np.append(ratio.a, 1.0)), _pairs(ratio.b)
-    sides = [(False, True)] * len(zeros)
-    choices = list(itertools.product(*sides))
+    choices = list(itertools.product((False, True), repeat=len(zeros)))
     if 2 ** (len(poles) + len(zeros)) > MOST_WAYS:
         choices = [choices[0], choices[-1]]
     for of_poles in itertools.product((False, True), repeat=len(poles)):
@@ -224,13 +212,8 @@ def ways_inside(ratio: Ratio) -> Iterator[Halves]:
             if proper and len(front_a) > 1 and len(back_a) > 1:
                 # a gain of one for constants, unless it lets none through
                 static = front_b[0] / front_a[0] or 1.0
-                yield Halves(
-                    front_a[:-1],
-                    front_b / static,
-                    back_a[:-1],
-                    back_b,
-                    np.zeros(DEGREE),
-                )
+                front = Rational(front_a[:-1], front_b / static)
+                yield Halves(front, Rational(back_a[:-1], back_b))
 
 
 def _pairs(ascending: FloatArray) -> list[list[complex]]:
