@@ -3,7 +3,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.errors import InputError
 from hystbench.gap.holdout.shrink import (
     left_rms,
     resampled_rms,
@@ -14,8 +13,8 @@ from hystbench.gap.holdout.shrink import (
 )
 from hystbench.gap.records.nuisance import (
     degree_that_carries_on,
+    left_over,
     path_and_mains,
-    split_first,
     without_nuisance,
 )
 from tests.gap.made import record, sine
@@ -169,7 +168,7 @@ def test_offset_and_mains_are_estimated_on_the_first_part_only():
     rest = noise(3, size=0.01)
     item = record(sine(2, count=4000), new + rest)
     nuisance = path_and_mains(0, [50.0])
-    scored = split_first(item)
+    _, scored = left_over(item, 0 * time, nuisance)
     assert np.array_equal(np.flatnonzero(~scored), np.arange(1200))
     left = without_nuisance(item.y, nuisance(item), ~scored)
     assert np.std(left[scored]) < 0.02
@@ -199,10 +198,3 @@ def test_rms_goes_down_with_what_is_added():
     # whole periods of sines: amplitude over root two, orthogonal
     assert sizes == pytest.approx([np.sqrt((4 + 1) / 2), np.sqrt(1 / 2), 0])
     assert away is None
-
-
-def test_no_hold_out_and_too_short_are_one_clear_line():
-    with pytest.raises(InputError, match=r"^no hold-out records"):
-        shrink([], [], [], 0.1, "declared")
-    with pytest.raises(InputError, match=r"^record stub: 5 samples; "):
-        split_first(record(sine(1, count=5), name="stub"))

@@ -86,8 +86,7 @@ def identified_linear(evidence: Evidence) -> Linear:
     Raises
     ------
     InputError
-        If a record is too short for folds, or no linear model predicts the folds
-        better than a constant.
+        If no linear model predicts the folds better than a constant.
     """
     best, unit = linear_of(evidence), evidence.output.unit
     signed = with_signs(evidence)
@@ -127,11 +126,6 @@ def linear_of(evidence: Evidence) -> Linear:
     ----------
     evidence : Evidence
         Only its fit records are looked at.
-
-    Raises
-    ------
-    InputError
-        If a record is too short for folds.
     """
     everything = Orders(evidence)
     orders = Orders(_coarse(evidence))

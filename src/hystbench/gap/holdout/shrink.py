@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.errors import InputError
 from hystbench.gap.records.nuisance import Nuisance, left_over
 from hystbench.gap.records.scored_samples import rms
 from hystbench.record import FloatArray, Mask, Record
@@ -121,14 +120,7 @@ def shrink(
         Gives regressors of what is new in a record. With them the first 30 % of each
         record estimate and the rest is scored, for both models alike; without them
         every sample is scored.
-
-    Raises
-    ------
-    InputError
-        If there is no hold-out record or one is too short.
     """
-    if not records:
-        raise InputError("no hold-out records; expected at least one")
     upper = floor_method == "upper-bound"
     shrunk = []
     for record, old_output, new_output in zip(records, before, after, strict=True):

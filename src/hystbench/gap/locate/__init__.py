@@ -56,11 +56,6 @@ def locate(
         come first, the largest first. Behind them stand the others, by what they save;
         last those whose p-value, times the number of views, is not below 0.05.
 
-    Raises
-    ------
-    InputError
-        If there is no record, or one is too short.
-
     Notes
     -----
     What an effect adds was fitted by the search; a view shows where on its axis that

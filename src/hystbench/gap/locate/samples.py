@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import cast
@@ -10,7 +10,6 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from hystbench.errors import InputError
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.view_kinds import ViewKind
@@ -19,8 +18,6 @@ from hystbench.record import FloatArray
 
 ENOUGH = 14_000
 """More samples than this tell a map over an axis nothing more."""
-FEWEST = 32
-"""Of a record that has a spectrum."""
 PRIMES = (1, 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61)
 TURNS = 0.01
 """Of the input's range, that it moves before a turn counts: noise is no turn."""
@@ -69,10 +66,6 @@ class ViewSamples:
     stride: int
     contributions: tuple[Contribution, ...] = ()
 
-    def thin(self, of: Callable[[Compared], FloatArray]) -> FloatArray:
-        """Work out a signal on all samples of each record; keep every stride-th."""
-        return self.thinned([of(item) for item in self.compared])
-
     def thinned(self, signals: Sequence[FloatArray]) -> FloatArray:
         """Keep every stride-th sample of a signal of each record."""
         pairs = zip(signals, self.places, strict=True)
@@ -96,33 +89,35 @@ class ViewSamples:
     @cached_property
     def residual(self) -> FloatArray:
         """Measured minus simulated."""
-        return self.thin(lambda item: item.residual)
+        return self.thinned([item.residual for item in self.compared])
 
     @cached_property
     def input(self) -> FloatArray:
         """Input u."""
-        return self.thin(lambda item: item.record.u)
+        return self.thinned([item.record.u for item in self.compared])
 
     @cached_property
     def simulated(self) -> FloatArray:
         """Simulated output."""
-        return self.thin(lambda item: item.simulated)
+        return self.thinned([item.simulated for item in self.compared])
 
     @cached_property
     def speed(self) -> FloatArray:
         """Input's rate du/dt, in the input's unit a second."""
-        return self.thin(lambda item: np.gradient(item.record.u, item.record.dt))
+        return self.thinned(
+            [np.gradient(item.record.u, item.record.dt) for item in self.compared]
+        )
 
     @cached_property
     def direction(self) -> FloatArray:
         """Plus one where the input rises, minus one where it falls."""
         half = 0.5 * TURNS * self.reach
-        return self.thin(lambda item: _direction(item.record.u, half))
+        return self.thinned([_direction(x.record.u, half) for x in self.compared])
 
     @cached_property
     def time(self) -> FloatArray:
         """Time from the start of each record, in seconds."""
-        return self.thin(lambda item: item.record.time)
+        return self.thinned([item.record.time for item in self.compared])
 
     @cached_property
     def reach(self) -> float:
@@ -185,21 +180,7 @@ def take_samples(
     floor: Floor,
     contributions: Sequence[Contribution] = (),
 ) -> ViewSamples:
-    """Choose the stride and gather the records.
-
-    Raises
-    ------
-    InputError
-        If there is no record, or one is too short to have a spectrum.
-    """
-    if not compared:
-        raise InputError("locate: expected at least one record, got none")
-    for item in compared:
-        if len(item.record) < FEWEST:
-            raise InputError(
-                f"{item.record.name}: expected at least {FEWEST} samples to locate a "
-                f"gap, got {len(item.record)}"
-            )
+    """Choose the stride and gather the records."""
     total = sum(len(item.record) for item in compared)
     least = max(1, total // ENOUGH)
     stride = next((prime for prime in PRIMES if prime >= least), least)

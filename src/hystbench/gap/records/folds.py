@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hystbench.errors import InputError
 from hystbench.record import Mask, Record
 
 #: With so many records whole ones are held out; with fewer, blocks of each.
@@ -22,10 +21,8 @@ FOLDS = 5
 BLOCKS = 4
 #: Part of a block on each side of it that neither fits nor judges.
 GUARD = 0.1
-#: Samples without which a block says nothing.
-SHORTEST = 25
-#: Samples of a record that can be cut into blocks.
-LEAST = SHORTEST * BLOCKS
+#: Samples of a record that can be cut into blocks: with fewer than 25 one says nothing.
+LEAST = 25 * BLOCKS
 
 
 @dataclass(frozen=True)
@@ -60,7 +57,7 @@ def make_folds(
     Parameters
     ----------
     records : sequence of Record
-        Those with ``use: fit``.
+        Those with ``use: fit``, of at least ``LEAST`` samples each.
     whole : bool, optional
         Whether whole records are held out. By default where there are three; False
         asks the easier question, whether a model interpolates within each record: of
@@ -69,25 +66,9 @@ def make_folds(
     Returns
     -------
     tuple of Fold
-
-    Raises
-    ------
-    InputError
-        If there is no record, or one is too short.
     """
-    if not records:
-        raise InputError("no fit records; expected at least one with 'use: fit'")
     if whole is None:
         whole = len(records) >= RECORDS
-    if whole and len(records) < 2:
-        raise InputError("1 fit record; expected at least 2 to hold out a whole one")
-    shortest = SHORTEST if whole else LEAST
-    for record in records:
-        if len(record) < shortest:
-            raise InputError(
-                f"record {record.name}: {len(record)} samples; cross-validation "
-                f"expects at least {shortest}"
-            )
     folds = _by_record(records) if whole else _by_block(records)
     return tuple(
         Fold(_measured(fold.train, records), _measured(fold.validation, records))

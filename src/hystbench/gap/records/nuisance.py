@@ -11,35 +11,15 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from hystbench.errors import InputError
 from hystbench.gap.records.scored_samples import rms
 from hystbench.record import FloatArray, Mask, Record
 
 #: Part of a hold-out record that estimates what is new in it.
 FIRST = 0.3
-#: Samples without which the first part estimates nothing.
-SHORTEST = 10
-#: Samples of a record that has such a part.
-LEAST = math.ceil(SHORTEST / FIRST)
+#: Samples of a record that has such a part: with fewer than ten it estimates nothing.
+LEAST = math.ceil(10 / FIRST)
 #: Regressors of what is new in a record: shape (n, m) from the record; m may be 0.
 Nuisance = Callable[[Record], FloatArray]
-
-
-def split_first(record: Record) -> Mask:
-    """Mark the samples that are scored: all but the first part of a record.
-
-    Raises
-    ------
-    InputError
-        If the record is too short to divide.
-    """
-    first = round(FIRST * len(record))
-    if len(record) * FIRST < SHORTEST:
-        raise InputError(
-            f"record {record.name}: {len(record)} samples; expected enough for a "
-            f"first {FIRST:.0%} that estimates and a rest that is scored"
-        )
-    return np.arange(len(record)) >= first
 
 
 def without_nuisance(
@@ -95,7 +75,7 @@ def left_over(
         residual = without_nuisance(residual, record.of_start, everything)
     if nuisance is None:
         return residual, record.counted
-    late = split_first(record)
+    late = np.arange(len(record)) >= round(FIRST * len(record))
     rest = without_nuisance(residual, nuisance(record), ~late & record.counted)
     return rest, late & record.counted
 
