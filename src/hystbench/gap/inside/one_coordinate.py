@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -73,31 +73,17 @@ def masses(
     At each natural frequency and damping ratio the gain and an offset of the output are
     solved for.
     """
-    found: list[tuple[float, tuple[Block, ...]]] = []
-    sample = ScoredSamples.of(records)
-    wanted = sample.take([record.y for record in records])
-    starts = _starts(records)
-    span = max(record.dt * len(record) for record in records)
-    fastest = 0.8 * np.pi / min(record.dt for record in records)
-    grid = np.geomspace(2 * np.pi / span, fastest, FREQUENCIES)
-    for start, w, ratio in itertools.product(starts, grid, RATIOS):
-        unit = Mechanism(
-            mass=1.0,
-            damping=2 * ratio * w,
-            stiffness=w**2,
-            output=output,
-            start=start,
-            hold=hold,
-        )
-        motion = sample.take([unit.driven(r.u, r.dt, ()) for r in records])
-        columns = np.column_stack([motion, np.ones(len(motion))])
-        gain, offset = solved(columns, wanted).tolist()
-        rest = float(np.mean((wanted - columns @ [gain, offset]) ** 2))
-        if gain == 0.0 or not np.isfinite(rest):
-            continue
-        found.append((rest, (_times(unit, gain), Gain(value=1.0, offset=offset))))
-    for _, chain in sorted(found, key=lambda item: item[0])[:BEGUN]:
-        own = {0: ("mass", "damping", "stiffness"), 1: ("offset",)}
+    span, step = _span_and_step(records)
+    grid = np.geomspace(2 * np.pi / span, 0.8 * np.pi / step, FREQUENCIES)
+    about: Any = {"output": output, "hold": hold}
+    units = (
+        Mechanism(mass=1.0, damping=2 * ratio * w, stiffness=w**2, start=start, **about)
+        for start, w, ratio in itertools.product(_starts(records), grid, RATIOS)
+    )
+    ones = np.ones(len(ScoredSamples.of(records)))
+    own = {0: ("mass", "damping", "stiffness"), 1: ("offset",)}
+    for _, unit, gain, offset in _solved_for(units, records, lambda _: ones)[:BEGUN]:
+        chain = (_times(unit, gain), Gain(value=1.0, offset=offset))
         yield _state(chain, records, hold, own)
     if output != "acceleration":
         yield from free_masses(records, output, hold)
@@ -106,44 +92,61 @@ def masses(
 def free_masses(
     records: tuple[Record, ...], output: str, hold: Hold
 ) -> Iterator[ModelState]:
-    """Give a mass without a spring, begun at the rate of decay that fits best."""
+    """Give a mass without a spring, begun at the rate of decay that fits best.
+
+    A constant force is solved for as well as the gain.
+    """
     windows = any(record.decay_s is not None for record in records)
     allowed = ("rest",) if windows else free_starts(output)
     starts = [own for own in _starts(records) if own in allowed]
+    span, step = _span_and_step(records)
+    rates = np.geomspace(0.3 / span, 0.3 / step, FREQUENCIES)
+    about: Any = {"output": output, "hold": hold}
+    units = (
+        Mechanism(mass=1.0, damping=rate, stiffness=0.0, start=start, **about)
+        for start, rate in itertools.product(starts, rates)
+    )
+
+    sample = ScoredSamples.of(records)
+
+    def pushed(unit: Mechanism) -> FloatArray:
+        return sample.take([unit.driven(np.ones(len(r)), r.dt, ()) for r in records])
+
+    for _, unit, gain, bias in _solved_for(units, records, pushed)[:1]:
+        block = replace(_times(unit, gain), bias=bias / abs(gain))
+        yield _state((block,), records, hold, {0: ("mass", "damping", "bias")})
+
+
+def _solved_for(
+    units: Iterable[Mechanism],
+    records: tuple[Record, ...],
+    beside: Callable[[Mechanism], FloatArray],
+) -> list[tuple[float, Mechanism, float, float]]:
+    """Find how many times each mechanism moves, and another signal beside it.
+
+    Returns
+    -------
+    list of (float, Mechanism, float, float)
+        Mean square that is left, mechanism, its gain and that of the other signal; the
+        best come first.
+    """
     sample = ScoredSamples.of(records)
     wanted = sample.take([record.y for record in records])
-    span = max(record.dt * len(record) for record in records)
-    step = min(record.dt for record in records)
     found = []
-    rates = np.geomspace(0.3 / span, 0.3 / step, FREQUENCIES)
-    for start, rate in itertools.product(starts, rates):
-        unit = Mechanism(
-            mass=1.0,
-            damping=rate,
-            stiffness=0.0,
-            output=output,
-            start=start,
-            hold=hold,
-        )
-        ones = [np.ones(len(record)) for record in records]
-        columns = np.column_stack(
-            [
-                sample.take([unit.driven(r.u, r.dt, ()) for r in records]),
-                sample.take(
-                    [
-                        unit.driven(one, r.dt, ())
-                        for one, r in zip(ones, records, strict=True)
-                    ]
-                ),
-            ]
-        )
-        gain, bias = solved(columns, wanted).tolist()
-        rest = float(np.mean((wanted - columns @ [gain, bias]) ** 2))
+    for unit in units:
+        motion = sample.take([unit.driven(r.u, r.dt, ()) for r in records])
+        columns = np.column_stack([motion, beside(unit)])
+        gain, other = solved(columns, wanted).tolist()
+        rest = float(np.mean((wanted - columns @ [gain, other]) ** 2))
         if gain != 0.0 and np.isfinite(rest):
-            found.append((rest, replace(_times(unit, gain), bias=bias / abs(gain))))
-    if found:
-        _, block = min(found, key=lambda item: item[0])
-        yield _state((block,), records, hold, {0: ("mass", "damping", "bias")})
+            found.append((rest, unit, gain, other))
+    return sorted(found, key=lambda item: item[0])
+
+
+def _span_and_step(records: Sequence[Record]) -> tuple[float, float]:
+    """Give the longest duration and the shortest sampling interval."""
+    span = max(record.dt * len(record) for record in records)
+    return span, min(record.dt for record in records)
 
 
 def _times(unit: Mechanism, gain: float) -> Mechanism:
@@ -163,17 +166,10 @@ def _starts(records: Sequence[Record]) -> Sequence[str]:
 
     Where periods were left out the first sample is in the middle of a motion.
     """
-    at_rest = _from_rest(records) and not all(item.repeats for item in records)
+    signals = [x for record in records for x in (record.u, record.y)]
+    little = all(abs(x[0]) < 0.02 * np.max(np.abs(x)) for x in signals)
+    at_rest = little and not all(item.repeats for item in records)
     return ("rest",) if at_rest else possible_starts(records)
-
-
-def _from_rest(records: Sequence[Record]) -> bool:
-    """Tell whether every record begins with little of its input and output."""
-
-    def little(x: FloatArray) -> bool:
-        return bool(abs(x[0]) < 0.02 * np.max(np.abs(x)))
-
-    return all(little(record.u) and little(record.y) for record in records)
 
 
 def _state(
