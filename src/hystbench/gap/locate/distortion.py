@@ -96,7 +96,10 @@ class Distortion:
 
     @property
     def told(self) -> str:
-        """What lies on the lines beside the input's."""
+        """What lies on the lines beside the input's, and what does not repeat.
+
+        The latter is none of the input's doing.
+        """
         parts = [f"{percent(self.shares[OWN])} lies on the input's own lines"]
         parts += [
             f"{percent(self.shares[kind])} on {name} lines beside them "
@@ -106,18 +109,17 @@ class Distortion:
         ]
         if len(parts) == 1:
             parts.append("little or nothing beside them")
-        return f" Of the gap of periodic records {'; '.join(parts)}."
-
-    @property
-    def told_repeating(self) -> str:
-        """What does not repeat with the input, and so is none of its doing."""
-        other = self.shares[BETWEEN]
-        if other < LEAST_SHARE:
-            return " Next to all of the gap of periodic records repeats with the input."
-        return (
-            f" Of the gap of periodic records {percent(other)} does not repeat with "
-            "the input."
-        )
+        lines, other = f" Of the gap of periodic records {'; '.join(parts)}.", ""
+        if self.shares[BETWEEN] < LEAST_SHARE:
+            other = (
+                " Next to all of the gap of periodic records repeats with the input."
+            )
+        else:
+            other = (
+                f" Of the gap of periodic records {percent(self.shares[BETWEEN])} does "
+                "not repeat with the input."
+            )
+        return lines + other
 
     def picture(self, unit: str) -> ViewPicture:
         """Draw the lines of the record that holds most beside the input's."""

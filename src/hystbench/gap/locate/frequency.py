@@ -8,7 +8,6 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 
 from hystbench.gap.locate.distortion import take_distortion
@@ -25,7 +24,7 @@ from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, view_of
 from hystbench.gap.records.floor import periodogram
 from hystbench.gap.records.scored_samples import Compared, whole_periods
-from hystbench.record import FloatArray
+from hystbench.record import ComplexArray, FloatArray, Mask
 from hystbench.sentences import percent, shortly
 
 BANDS = 12
@@ -67,7 +66,7 @@ def frequency(samples: ViewSamples) -> View:
     )
     drawn = [_spectrum(samples, spectra), _response(spectra)]
     if distortion is not None:
-        told += distortion.told + distortion.told_repeating
+        told += distortion.told
         drawn.append(distortion.picture(samples.units[1]))
     ends = (start, end)
     return view_of("frequency", form, "frequency", ends, "Hz", told, drawn)
@@ -155,8 +154,6 @@ def _response(spectra: Spectra) -> ViewPicture:
     return ViewPicture("response", words, tuple(panels))
 
 
-ComplexArray = NDArray[np.complex128]
-
 U, R, S = range(3)
 """Input, residual and simulated output, as rows and columns of a spectral matrix."""
 SEGMENTS = 4
@@ -195,7 +192,7 @@ class Spectra:
         return np.asarray(self.matrix[row, row].real)
 
     @cached_property
-    def excited(self) -> NDArray[np.bool_]:
+    def excited(self) -> Mask:
         """Bins in which the input has power."""
         power = self.power(U)
         return np.asarray(power > EXCITED * float(np.max(power)))

@@ -97,27 +97,23 @@ class Moving:
         """Damping by power as a rate of decay, which no stiffness changes."""
         return np.asarray(self.numbers[:, 2] * self.numbers[:, 0])
 
-    def moves(self, values: FloatArray, errors: FloatArray) -> int:
-        """Tell whether a number grows (1), falls (-1) or stays (0) with the level.
-
-        Parameters
-        ----------
-        values, errors : ndarray, shape (levels,)
-            Errors are relative to the values.
-        """
-        # A value that noise made negative is next to nothing.
-        size = np.log(np.maximum(values, 1e-3 * np.max(np.abs(values))))
-        away = (size - size[0]) / np.hypot(errors, errors[0])
-        away[0] = 0.0
-        most = float(away[np.argmax(np.abs(away))])
-        return int(np.sign(most)) if abs(most) > SURE else 0
+    @property
+    def told(self) -> tuple[FloatArray, FloatArray]:
+        """Frequency, damping by power as a rate, gain; and their relative errors."""
+        values = np.column_stack([self.numbers[:, 0], self.rates, self.numbers[:, 3]])
+        return values, self.errors[:, [0, 2, 3]]
 
     @property
     def moved(self) -> tuple[int, int, int]:
-        """How frequency, damping by power and gain move."""
-        columns = (self.numbers[:, 0], self.rates, self.numbers[:, 3])
-        errors = self.errors[:, [0, 2, 3]].T
-        frequency, damping, gain = map(self.moves, columns, errors)
+        """Whether frequency, damping and gain grow (1), fall (-1) or stay (0)."""
+        values, errors = self.told
+        # A value that noise made negative is next to nothing.
+        size = np.log(np.maximum(values, 1e-3 * np.max(np.abs(values), axis=0)))
+        away = (size - size[0]) / np.hypot(errors, errors[0])
+        away[0] = 0.0
+        most = away[np.argmax(np.abs(away), axis=0), range(3)]
+        ways = np.where(np.abs(most) > SURE, np.sign(most), 0.0).astype(int)
+        frequency, damping, gain = ways.tolist()
         return frequency, damping, gain
 
     @property
@@ -148,8 +144,8 @@ class Moving:
     @property
     def chi_square(self) -> tuple[float, int]:
         """How far all numbers are from the same at every level, and the freedom."""
-        values = np.column_stack([self.numbers[:, 0], self.rates, self.numbers[:, 3]])
-        weights = self.errors[:, [0, 2, 3]] ** -2
+        values, errors = self.told
+        weights = errors**-2
         means = np.sum(weights * values, axis=0) / np.sum(weights, axis=0)
         away = np.sum(weights * (values / means - 1) ** 2)
         return float(away), 3 * (len(values) - 1)

@@ -18,13 +18,10 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 
 from hystbench.gap.records.scored_samples import Compared, whole_periods
-from hystbench.record import FloatArray
-
-ComplexArray = NDArray[np.complex128]
+from hystbench.record import ComplexArray, FloatArray, Mask
 
 EXCITED = 1e-3
 """Of the strongest line's input power, that an excited line holds."""
@@ -52,18 +49,13 @@ class LevelLines(NamedTuple):
     missed: ComplexArray
     ends: bool
 
-    def within(self, chosen: NDArray[np.bool_]) -> LevelLines:
+    def within(self, chosen: Mask) -> LevelLines:
         """Give some of the lines."""
-        return LevelLines(
-            self.frequency[chosen],
-            self.u[chosen],
-            self.y[chosen],
-            self.missed[chosen],
-            self.ends,
-        )
+        u, y, missed = (each[chosen] for each in (self.u, self.y, self.missed))
+        return LevelLines(self.frequency[chosen], u, y, missed, self.ends)
 
     @property
-    def excited(self) -> NDArray[np.bool_]:
+    def excited(self) -> Mask:
         """Lines that the input excites."""
         power = np.abs(self.u) ** 2
         return np.asarray(power > EXCITED * float(np.max(power, initial=0.0)))

@@ -5,17 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hystbench.gap.locate.forms import fit_form, named_or, narrowest
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, view_of
 from hystbench.gap.records.floor import periodogram
 from hystbench.gap.records.nuisance import shows_a_path
-from hystbench.record import FloatArray
+from hystbench.record import FloatArray, Mask
 from hystbench.sentences import shortly
-
-BoolArray = NDArray[np.bool_]
 
 DRIFT, LINE = "a drift", "a lone line"
 ORDERS = 4
@@ -152,13 +149,13 @@ def _level(power: FloatArray) -> FloatArray:
     return np.asarray(np.exp(np.interp(np.arange(len(power)), centres, levels)))
 
 
-def _lines_of(cause: FloatArray) -> BoolArray:
+def _lines_of(cause: FloatArray) -> Mask:
     """Tell the bins in which the input has a line, and their neighbours."""
     lone = (cause > CAUSED * np.max(cause)) & (cause > STANDS_OUT * _level(cause))
     return np.convolve(lone, np.ones(3), mode="same") > 0
 
 
-def _harmonics(cause: FloatArray) -> BoolArray:
+def _harmonics(cause: FloatArray) -> Mask:
     """Tell the bins of harmonics of the input's strongest line."""
     strongest = int(np.argmax(cause[1:])) + 1
     order = np.arange(len(cause)) / strongest
