@@ -12,7 +12,7 @@ ORDER = 20
 """Order N of the base: so many operators and one more."""
 
 
-def identified_gpi(evidence: Evidence, order: int = ORDER) -> tuple[Model, str]:
+def identified_gpi(evidence: Evidence) -> tuple[Model, str]:
     """Identify the generalized Prandtl-Ishlinskii model of the slowest fit record.
 
     Parameters
@@ -20,8 +20,6 @@ def identified_gpi(evidence: Evidence, order: int = ORDER) -> tuple[Model, str]:
     evidence : Evidence
         Of its fit records only the slowest is looked at, or the one that the dataset
         names for identification.
-    order : int
-        Order N.
 
     Returns
     -------
@@ -38,7 +36,7 @@ def identified_gpi(evidence: Evidence, order: int = ORDER) -> tuple[Model, str]:
     from hystbench.identification import identify  # late: scipy
 
     slow = evidence.slowest
-    found = identify(slow.u, slow.y, order)
+    found = identify(slow.u, slow.y, ORDER)
     block = GeneralizedPrandtlIshlinskii(
         envelope=tuple(found.envelope.to_dict().values()),
         thresholds=tuple(found.thresholds.tolist()),
@@ -49,7 +47,7 @@ def identified_gpi(evidence: Evidence, order: int = ORDER) -> tuple[Model, str]:
     if found.offset:
         chain = (block, Gain(value=1.0, offset=found.offset))
     note = (
-        f"gpi base of order {order} from record {slow.name}, from {found.start}: "
+        f"gpi base of order {ORDER} from record {slow.name}, from {found.start}: "
         f"{found.message}"
     )
     return Model("gpi", evidence.input, evidence.output, chain), note

@@ -7,7 +7,6 @@ it remembers of the time before is no effect.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Literal
 
@@ -111,15 +110,6 @@ def _without(record: Record, base: Model, asked: Model) -> Record:
     return replace(record, lead=lead)
 
 
-def _ratios(base: Model) -> Iterator[tuple[float, ...]]:
-    """Give the denominators of a linear base."""
-    for block in base.chain:
-        if isinstance(block, TransferFunction):
-            yield block.denominator
-        elif isinstance(block, Mechanism):
-            yield block.mass, block.damping, block.stiffness
-
-
 def free_motion(base: Model, time: FloatArray) -> FloatArray:
     """Give what other states of a linear base at the first sample would do.
 
@@ -134,9 +124,13 @@ def free_motion(base: Model, time: FloatArray) -> FloatArray:
         Damped sines and cosines, and exponentials; zeros where the base does not
         settle within the time given.
     """
-    poles = np.concatenate(
-        [np.zeros(0, dtype=complex), *(np.roots(down) for down in _ratios(base))]
-    )
+    poles = np.zeros(0, dtype=complex)
+    for block in base.chain:
+        if isinstance(block, TransferFunction):
+            poles = np.append(poles, np.roots(block.denominator))
+        elif isinstance(block, Mechanism):
+            own = np.roots([block.mass, block.damping, block.stiffness])
+            poles = np.append(poles, own)
     span = time[-1] if len(time) else 0.0
     if len(poles) == 0 or -np.max(poles.real) * span < SETTLES:
         return np.zeros((len(time), len(poles)))

@@ -131,13 +131,13 @@ def linear_of(evidence: Evidence) -> Linear:
     orders = Orders(_coarse(evidence))
     if orders.evidence is evidence:
         orders = everything
-    gain = static(orders.evidence, orders.whole, orders.folds)
+    gain = static(orders)
     found = orders.searched(gain)
-    moved = impedance(orders.evidence, orders.whole, orders.folds)
+    moved = impedance(orders)
     tried: list[Judged] = [gain, *found] if moved is None else [gain, moved[0], *found]
     chain: tuple[Block, ...]
     if as_good(gain, tried):
-        gain = static(evidence, everything.whole, everything.folds)
+        gain = static(everything)
         value, offset = gain.numbers
         chain = (Gain(value=value, offset=offset),)
         fit, fold, what = gain.fit, gain.folds, "order 0 (a gain and an offset)"
@@ -164,7 +164,7 @@ def linear_of(evidence: Evidence) -> Linear:
         what = f"order {len(chosen.ratio.a)}, {zeros} zero{'s' * (zeros != 1)}"
         what += f", start: {ratio.start}"
     unit = evidence.output.unit
-    still = constant(orders.evidence, orders.whole, orders.folds).folds
+    still = constant(orders).folds
     note = (
         f"linear base: {what}; rms error {fit:.4g} {unit} on the fit records, "
         f"{fold:.4g} {unit} on folds of them"
@@ -172,7 +172,8 @@ def linear_of(evidence: Evidence) -> Linear:
     # A free mass adds up what drives it: it is no filter with a curve in the middle.
     free_mass = any(item.decay_s is not None for item in evidence.fit)
     split = not free_mass and not isinstance(chain[0], Impedance)
-    if split and _is_bent(orders, found):
+    ratios = [item.ratio for item in found]
+    if split and is_bent(_errors(orders, found), ratios):
         halves = _halves(everything, found)
         if halves is not None:
             chain, fit, more = halves
@@ -216,11 +217,6 @@ def _errors(orders: Orders, found: Sequence[Found]) -> HalvesError:
     return HalvesError(
         orders.evidence.fit, orders.whole, task.hold, orders.spectra.scale, task.start
     )
-
-
-def _is_bent(orders: Orders, found: Sequence[Found]) -> bool:
-    """Tell whether a static curve somewhere pays at all."""
-    return is_bent(_errors(orders, found), [item.ratio for item in found])
 
 
 def _halves(

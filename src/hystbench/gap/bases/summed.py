@@ -9,9 +9,8 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.impedance import INPUTS, NUMBERS, Impedance
+from hystbench.gap.bases.orders import Orders
 from hystbench.gap.bases.output_error import without_mean
-from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.records.folds import Fold
 from hystbench.record import FloatArray, Mask
 
 
@@ -23,33 +22,28 @@ class Sum(NamedTuple):
     numbers: tuple[float, ...]
 
 
-def constant(
-    evidence: Evidence, whole: tuple[Mask, ...], folds: tuple[Fold, ...]
-) -> Sum:
+def constant(orders: Orders) -> Sum:
     """Fit a constant."""
-    ones = [np.ones((len(item), 1)) for item in evidence.fit]
-    return summed(ones, evidence, whole, folds)
+    return summed([np.ones((len(item), 1)) for item in orders.evidence.fit], orders)
 
 
-def static(evidence: Evidence, whole: tuple[Mask, ...], folds: tuple[Fold, ...]) -> Sum:
+def static(orders: Orders) -> Sum:
     """Fit a gain and a constant."""
-    signals = [np.column_stack([x.u, np.ones(len(x))]) for x in evidence.fit]
-    return summed(signals, evidence, whole, folds)
+    fit = orders.evidence.fit
+    return summed([np.column_stack([x.u, np.ones(len(x))]) for x in fit], orders)
 
 
-def summed(
-    signals: Sequence[FloatArray],
-    evidence: Evidence,
-    whole: tuple[Mask, ...],
-    folds: tuple[Fold, ...],
-) -> Sum:
+def summed(signals: Sequence[FloatArray], orders: Orders) -> Sum:
     """Fit a sum of signals: error on all records, on the folds, and the numbers.
 
     Parameters
     ----------
     signals : sequence of ndarray, shape (n, k)
         Of each record, in columns; the last is of ones.
+    orders : Orders
+        The records with their folds.
     """
+    evidence, whole = orders.evidence, orders.whole
     sizes = np.maximum(np.sqrt(np.mean(np.vstack(signals) ** 2, axis=0)), 1e-300)
     scaled = [columns / sizes for columns in signals]
     outputs = [record.y for record in evidence.fit]
@@ -73,7 +67,7 @@ def summed(
         best[-1] = np.mean(
             np.concatenate([(y - x @ best)[mask] for x, y, mask in each])
         )
-    judged = sum(squares(solved(fold.train), fold.validation) for fold in folds)
+    judged = sum(squares(solved(fold.train), fold.validation) for fold in orders.folds)
     count = sum(int(mask.sum()) for mask in whole)
     return Sum(
         float(np.sqrt(squares(best, whole) / count)),
@@ -82,20 +76,18 @@ def summed(
     )
 
 
-def impedance(
-    evidence: Evidence, whole: tuple[Mask, ...], folds: tuple[Fold, ...]
-) -> tuple[Sum, Block] | None:
+def impedance(orders: Orders) -> tuple[Sum, Block] | None:
     """Fit the force of a mass on a spring to a motion; none to any other input.
 
     It grows with the frequency: a ratio of polynomials that can be run has no such.
     """
-    about = evidence.quantities
+    evidence, about = orders.evidence, orders.evidence.quantities
     if about.causality != "motion to force" or about.input not in INPUTS:
         return None
     signals = [
         Impedance.columns(about.input, evidence.input_hold, record.u, record.dt)
         for record in evidence.fit
     ]
-    found = summed(signals, evidence, whole, folds)
+    found = summed(signals, orders)
     numbers: dict[str, Any] = dict(zip(NUMBERS, found.numbers, strict=True))
     return found, Impedance(**numbers, input=about.input, hold=evidence.input_hold)
