@@ -4,7 +4,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.gap.holdout.shrink import (
-    left_rms,
     resampled_rms,
     rms_interval,
     share_explained,
@@ -14,6 +13,7 @@ from hystbench.gap.holdout.shrink import (
 from hystbench.gap.records.nuisance import (
     degree_that_carries_on,
     left_over,
+    left_rms,
     path_and_mains,
     without_nuisance,
 )

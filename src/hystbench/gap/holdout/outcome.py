@@ -20,10 +20,10 @@ from hystbench.gap.holdout.show import (
     nuisance_of,
     score_hold_out,
 )
-from hystbench.gap.holdout.shrink import left_rms
 from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.nuisance import left_rms
 from hystbench.gap.thresholds import AS_GOOD
 from hystbench.gap.vocabulary import Vocabulary, with_device
 

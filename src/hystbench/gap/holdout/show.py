@@ -13,13 +13,14 @@ from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.holdout.shrink import Shrink, left_rms, shrink
+from hystbench.gap.holdout.shrink import Shrink, shrink
 from hystbench.gap.judging.black_box import BlackBox
 from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.nuisance import (
     Nuisance,
     degree_that_carries_on,
+    left_rms,
     path_and_mains,
 )
 from hystbench.gap.records.scored_samples import rms

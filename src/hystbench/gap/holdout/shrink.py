@@ -158,35 +158,6 @@ def shrink(
     )
 
 
-def left_rms(
-    records: Sequence[Record],
-    simulated: Sequence[FloatArray | None],
-    nuisance: Nuisance | None = None,
-) -> float | None:
-    """RMS residual of a model over all records together.
-
-    Parameters
-    ----------
-    records : sequence of Record
-    simulated : sequence of ndarray or None
-        Its output of each record; None where it runs away.
-    nuisance : callable, optional
-        As for :func:`shrink`.
-
-    Returns
-    -------
-    float or None
-        None where the model runs away on a record.
-    """
-    left = [
-        residual[scored]
-        for record, output in zip(records, simulated, strict=True)
-        if output is not None
-        for residual, scored in [left_over(record, output, nuisance)]
-    ]
-    return rms(np.concatenate(left)) if len(left) == len(records) else None
-
-
 def share_explained(
     before: float, after: float, floor: float, upper_bound: bool = False
 ) -> Explained:

@@ -80,6 +80,35 @@ def left_over(
     return rest, late & record.counted
 
 
+def left_rms(
+    records: Sequence[Record],
+    simulated: Sequence[FloatArray | None],
+    nuisance: Nuisance | None = None,
+) -> float | None:
+    """RMS residual of a model over all records together.
+
+    Parameters
+    ----------
+    records : sequence of Record
+    simulated : sequence of ndarray or None
+        Its output of each record; None where it runs away.
+    nuisance : callable, optional
+        As for :func:`left_over`.
+
+    Returns
+    -------
+    float or None
+        None where the model runs away on a record.
+    """
+    left = [
+        residual[scored]
+        for record, output in zip(records, simulated, strict=True)
+        if output is not None
+        for residual, scored in [left_over(record, output, nuisance)]
+    ]
+    return rms(np.concatenate(left)) if len(left) == len(records) else None
+
+
 def path_and_mains(degree: int | None, mains_hz: Sequence[float] = ()) -> Nuisance:
     """Regressors of a polynomial in time and of tones of unknown phase.
 
@@ -130,16 +159,8 @@ def degree_that_carries_on(
     """
     best, least = 0, np.inf
     for degree in range(HIGHEST + 1):
-        nuisance = path_and_mains(degree, mains_hz)
-        left = [
-            residual[scored]
-            for residual, scored in (
-                left_over(record, output, nuisance)
-                for record, output in zip(records, simulated, strict=True)
-            )
-        ]
-        size = rms(np.concatenate(left))
-        if size < CLEARLY * least:
+        size = left_rms(records, simulated, path_and_mains(degree, mains_hz))
+        if size is not None and size < CLEARLY * least:
             best, least = degree, size
     return best
 

@@ -171,7 +171,8 @@ def _looks(gap: dict[str, Any]) -> list[dict[str, Any]]:
         gone, beside = rows[0]["instead_of"], listed(rows[0]["beside"])
         own = next(item for item in rows if item["name"] == gone)
         if not taken:
-            came = f"could not be judged again ({_why_not(own)}) and stays"
+            why = own.get("declined", "it was not refitted there")
+            came = f"could not be judged again ({why}) and stays"
         elif taken == [gone]:
             came = "stays"
         else:
@@ -186,10 +187,6 @@ def _looks(gap: dict[str, Any]) -> list[dict[str, Any]]:
         about = {"round": rows[0]["round"], "sentence": sentence}
         found.append(about | {"rows": _ranked(rows)})
     return found
-
-
-def _why_not(item: dict[str, Any]) -> str:
-    return str(item.get("declined", "it was not refitted there"))
 
 
 def _declined(gap: dict[str, Any]) -> list[dict[str, Any]]:
