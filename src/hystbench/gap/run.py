@@ -12,7 +12,7 @@ from typing import Any
 
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.files import read_json, whole_folder, write_columns, write_json
-from hystbench.gap.bases.lead import without_lead
+from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.on_records import compared_records, run_base, start_state
@@ -154,7 +154,8 @@ def found_on_fit(
     Parameters are those of :func:`closed_gap`.
     """
     say = say_in_words(say)
-    evidence = without_lead(evidence, base, "fit", say)
+    about = base, evidence.input_hold, evidence.quantities, say
+    evidence = replace(evidence, fit=without_leads(evidence.fit, *about))
     vocabulary = vocabulary.in_device(evidence.device_kind)
     base, built_in = build_in(base, evidence, vocabulary.fixed, say)
     decision = search(
@@ -216,11 +217,12 @@ def as_found(
 
     They are asked for beside the base, and again beside forces that stand for it.
     """
-    evidence = without_lead(evidence, base, "hold_out", say)
-    if not any(isinstance(block, Mechanism) for block in found.base.chain):
-        return evidence
-    model = augmented(found.base, found.state)
-    return without_lead(evidence, base, "hold_out", say, model)
+    about = base, evidence.input_hold, evidence.quantities, say
+    records = without_leads(evidence.hold_out, *about)
+    if any(isinstance(block, Mechanism) for block in found.base.chain):
+        model = augmented(found.base, found.state)
+        records = without_leads(records, *about, model)
+    return replace(evidence, hold_out=records)
 
 
 def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> None:

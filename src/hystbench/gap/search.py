@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from hystbench.blocks.held import Hold
 from hystbench.blocks.store import Store
-from hystbench.gap.bases.lead import leads_left_out
+from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.effects import among
 from hystbench.gap.effects.places import places_between_halves
@@ -176,12 +176,12 @@ def _without_leads(
 
     A base without the forces is too far off to show it.
     """
-    if inside is None or quantities.causality == "storage":
+    if inside is None:
         return records
     found = augmented(inside.base, inside.named.state)
     if any(isinstance(block, Store) for block in found.chain):
         return records  # the level that it begins with is a number of its own
-    return leads_left_out(records, base, hold, "fit", say, found)
+    return without_leads(records, base, hold, quantities, say, found)
 
 
 def _leaves_little(inside: Inside | None, floor: Floor) -> bool:

@@ -7,7 +7,7 @@ import pytest
 
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.bases.lead import leads_left_out, without_lead
+from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.records.evidence import Evidence
@@ -39,11 +39,8 @@ def linear(free=FREE):
 
 
 def leads(base, *records, quantities=NONE_KNOWN):
-    fit = tuple(item for item in records if item.use == "fit")
-    held = tuple(item for item in records if item.use == "hold-out")
-    evidence = Evidence("device", fit, held, quantities=quantities)
-    found = without_lead(without_lead(evidence, base, "fit"), base, "hold_out")
-    return [item.lead for item in (*found.fit, *found.hold_out)]
+    found = without_leads(records, base, "band-limited", quantities)
+    return [item.lead for item in found]
 
 
 def test_of_a_record_that_was_cut_out_of_a_longer_one_the_first_tenth_is_left_out():
@@ -100,27 +97,21 @@ def middle_of_a_motion():
 def test_a_base_that_is_far_off_hides_a_start_which_forces_show():
     given = (middle_of_a_motion(),)
     base, right = sprung(0.0), sprung(70.0)
-    assert leads_left_out(given, base, "zero-order", "fit") is given
-    (found,) = leads_left_out(given, base, "zero-order", "fit", found=right)
+    about = (base, "zero-order", NONE_KNOWN)
+    assert without_leads(given, *about) is given
+    (found,) = without_leads(given, *about, found=right)
     assert found.lead == 247
 
 
 def test_what_has_no_lead_already_is_looked_at_no_more():
     given = (replace(middle_of_a_motion(), lead=10),)
     base, right = sprung(0.0), sprung(70.0)
-    assert leads_left_out(given, base, "zero-order", "fit", found=right) is given
+    assert without_leads(given, base, "zero-order", NONE_KNOWN, found=right) is given
 
 
 def test_scores_leave_a_lead_out():
-    found = without_lead(Evidence("device", (record(537),), ()), linear(), "fit")
-    assert found.fit[0].counted.sum() == pytest.approx(1800)
-
-
-def test_records_of_one_use_are_left_as_they_are_where_the_other_is_asked():
-    """The search begins before the outputs of hold-out records are looked at."""
-    evidence = Evidence("device", (record(537),), (record(537, "hold-out"),))
-    found = without_lead(evidence, linear(), "fit")
-    assert found.hold_out is evidence.hold_out
+    (found,) = without_leads((record(537),), linear(), "band-limited", NONE_KNOWN)
+    assert found.counted.sum() == pytest.approx(1800)
 
 
 def test_forces_in_a_free_mass_leave_leads_of_both_uses_out_alike():

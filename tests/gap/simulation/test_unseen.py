@@ -13,7 +13,7 @@ import pytest
 from hystbench.blocks.external import External
 from hystbench.challenge.case import make_case
 from hystbench.challenge.spec import CaseSpec
-from hystbench.gap.bases.load import load_base, simulated_column
+from hystbench.gap.bases.load import given_base, load_base
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Declined
 from hystbench.gap.records.evidence import Evidence
@@ -99,8 +99,8 @@ def seen(module, tmp_path):
             fit = tuple(
                 replace(item, simulated=model.simulate(item.u, item.dt)) for item in fit
             )
-            base, _ = simulated_column(
-                Evidence("hidden", fit, (), simulated_column="s")
+            base, _ = given_base(
+                "column", Evidence("hidden", fit, (), simulated_column="s")
             )
             return fit, base
         case.model.save(tmp_path / "model.yaml")
@@ -138,7 +138,7 @@ def test_beside_a_name_stands_what_a_stored_output_did_not_let_be_tried(tmp_path
     gain = block("gain", value=12.0)
     lagging = measured((gain, block("sensor-lag", time_constant_s=0.004)), 0.02)
     fit = tuple(replace(item, simulated=12.0 * item.u) for item in lagging)
-    base, _ = simulated_column(Evidence("rig", fit, (), simulated_column="s"))
+    base, _ = given_base("column", Evidence("rig", fit, (), simulated_column="s"))
     decision = search("rig", fit, base, declared=0.02)
     assert decision.content["effects"][0]["name"] == "sensor-lag"
     assert "drive-lag" in decision.content["not_tried"]
@@ -174,7 +174,7 @@ def test_a_simulator_that_remembers_may_be_of_a_wrong_shape(kind, module):
 
 def test_of_a_stored_output_it_is_not_known():
     made = record(sine(3.0), sine(3.0), simulated=2 * sine(3.0))
-    base, _ = simulated_column(Evidence("made", (made,), (), simulated_column="s"))
+    base, _ = given_base("column", Evidence("made", (made,), (), simulated_column="s"))
     simulation = Simulation(base.chain, (made,))
     assert (simulation.loop, simulation.behind_hysteresis) == (0, 1)
 

@@ -8,7 +8,6 @@ it remembers of the time before is no effect.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
@@ -18,8 +17,8 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.bases.orders import LEAD
 from hystbench.gap.progress import Say, silent
-from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model
+from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
 
 MOSTLY = 0.5
@@ -28,13 +27,14 @@ SETTLES = 5.0
 """Time constants in which a state is forgotten: less than a hundredth is left of it."""
 
 
-def without_lead(
-    evidence: Evidence,
+def without_leads(
+    records: tuple[Record, ...],
     base: Model,
-    use: Literal["fit", "hold_out"],
+    hold: Hold,
+    quantities: Quantities,
     say: Say = silent,
     found: Model | None = None,
-) -> Evidence:
+) -> tuple[Record, ...]:
     """Leave out of the score the leads of records that begin in the middle of a motion.
 
     The lead is the first tenth, which an identified base was not fitted to either. It
@@ -44,38 +44,22 @@ def without_lead(
 
     Parameters
     ----------
-    evidence : Evidence
+    records : tuple of Record
+        Of one use; one that has no lead already stays as it is. Hold-out records are
+        looked at when the search is over.
     base : Model
         Where it was given and not identified, nothing is left out; nor of stores,
         whose level at the start is a number of the model.
-    use : {"fit", "hold_out"}
-        Of which records. Hold-out records are looked at when the search is over.
+    hold : {"zero-order", "linear", "band-limited"}
+    quantities : Quantities
+        What the device takes and gives.
     say : callable
         Told of how many records the lead is left out.
     found : Model, optional
         The base with what was found: it is asked in the place of the base, whose own
         error may hide a start.
     """
-    if evidence.quantities.causality == "storage":
-        return evidence
-    of_use = evidence.fit if use == "fit" else evidence.hold_out
-    told = use.replace("_", "-")
-    records = leads_left_out(of_use, base, evidence.input_hold, told, say, found)
-    if use == "fit":
-        return replace(evidence, fit=records)
-    return replace(evidence, hold_out=records)
-
-
-def leads_left_out(
-    records: tuple[Record, ...],
-    base: Model,
-    hold: Hold,
-    use: str,
-    say: Say = silent,
-    found: Model | None = None,
-) -> tuple[Record, ...]:
-    """Leave out the leads of records; one that has no lead stays as it is."""
-    if not is_identified(base):
+    if not is_identified(base) or quantities.causality == "storage":
         return records
     held = base.with_hold(hold)
     asked = held if found is None else found.with_hold(hold)
@@ -84,7 +68,8 @@ def leads_left_out(
     if cut:
         who = "the base" if found is None else "the model with its forces"
         say(
-            f"the first tenth of {cut} of {len(records)} {use} records is not scored: "
+            f"the first tenth of {cut} of {len(records)} {records[0].use} records is "
+            "not scored: "
             f"what {who} leaves there is what another state at the first sample would "
             "do"
         )

@@ -35,8 +35,9 @@ def load_base(text: str | Model, evidence: Evidence) -> tuple[Model, str]:
     ----------
     text : str or Model
         A model file; ``gpi`` or ``linear`` to identify one from the fit records;
-        ``column`` for the simulated output beside them; a simulator by its name, as
-        for :func:`simulator_base`; or a model itself.
+        ``column`` for the simulated output beside them; a simulator, as
+        ``package.module:function``, ``command: ...`` or a file .fmu or .onnx; or a
+        model itself.
     evidence : Evidence
 
     Returns
@@ -122,12 +123,12 @@ def given_base(text: str, evidence: Evidence) -> tuple[Model, str]:
         If the text is no base, units differ, or the base cannot be had.
     """
     if text == "column":
-        return simulated_column(evidence)
+        return _column(evidence)
     if kind_of_base(text) == "file":
         path = Path(text)
         model = checked_base(load_model(path), str(path), evidence)
         return model, f"base {model.name} from {text}"
-    return simulator_base(text, evidence)
+    return _simulator(text, evidence)
 
 
 def checked_base(model: Model, place: str, evidence: Evidence) -> Model:
@@ -153,41 +154,18 @@ def checked_base(model: Model, place: str, evidence: Evidence) -> Model:
     except InputError as error:
         raise InputError(f"{place}: {error}") from None
     held = model.with_hold(evidence.input_hold)
-    _check_bounded(held, evidence, place)
-    check_repeats(held, evidence)
+    for record in evidence.fit:
+        with np.errstate(over="ignore", invalid="ignore"):  # said in our own words
+            y = held.simulate(record.u, record.dt)
+        check_bounded(place, y, record.dt, f"record {record.name}")
+    _check_repeats(held, evidence)
     return model
 
 
-def _check_bounded(model: Model, evidence: Evidence, place: str) -> None:
-    """Refuse a model whose output on a fit record is not finite."""
-    for record in evidence.fit:
-        with np.errstate(over="ignore", invalid="ignore"):  # said in our own words
-            y = model.simulate(record.u, record.dt)
-        check_bounded(place, y, record.dt, f"record {record.name}")
-
-
-def simulator_base(text: str, evidence: Evidence) -> tuple[Model, str]:
+def _simulator(text: str, evidence: Evidence) -> tuple[Model, str]:
     """Take a simulator as the base, and try it on the fit records.
 
-    Parameters
-    ----------
-    text : str
-        ``package.module:function``, ``command: ...``, or a file .fmu or .onnx.
-    evidence : Evidence
-        Its units are taken to be the simulator's.
-
-    Returns
-    -------
-    Model
-        One block that is the simulator.
-    str
-        One sentence.
-
-    Raises
-    ------
-    InputError
-        If it cannot be run, gives anything but finite numbers, one a sample, or
-        something else when it is called again.
+    Units of the records are taken to be its own.
     """
     kind = kind_of_base(text)
     block: Simulator
@@ -201,27 +179,16 @@ def simulator_base(text: str, evidence: Evidence) -> tuple[Model, str]:
     else:
         block = External(function=text)
     model = Model(text, evidence.input, evidence.output, (block,))
-    check_repeats(model, evidence)
+    _check_repeats(model, evidence)
     units = f"from {evidence.input.unit} to {evidence.output.unit}"
     return model, f"base {text}, taken to be {units}"
 
 
-def check_repeats(model: Model, evidence: Evidence) -> None:
+def _check_repeats(model: Model, evidence: Evidence) -> None:
     """Refuse a model with a function that gives another output when called again.
 
     The function runs on all fit records, and on the first of them once more: so one
     that draws at random is found, and one that goes on from where it was left.
-
-    Parameters
-    ----------
-    model : Model
-    evidence : Evidence
-        Only its fit records are used.
-
-    Raises
-    ------
-    InputError
-        With the name of the function.
     """
     first = evidence.fit[0]
     for k, block in enumerate(model.chain):
@@ -244,25 +211,8 @@ def check_repeats(model: Model, evidence: Evidence) -> None:
             )
 
 
-def simulated_column(evidence: Evidence) -> tuple[Model, str]:
-    """Take the simulated output beside the records as the base.
-
-    Parameters
-    ----------
-    evidence : Evidence
-
-    Returns
-    -------
-    Model
-        One ``simulated-column`` block, which holds the records.
-    str
-        One sentence.
-
-    Raises
-    ------
-    InputError
-        If the dataset names no such column.
-    """
+def _column(evidence: Evidence) -> tuple[Model, str]:
+    """Take the simulated output beside the records as the base: a block holds them."""
     column = evidence.simulated_column
     if column is None:
         raise InputError(
