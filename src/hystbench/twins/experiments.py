@@ -15,7 +15,7 @@ from hystbench.adaptive import make_filter
 from hystbench.filters import MOST_CORRECTION
 from hystbench.published import FILTERS
 from hystbench.record import Record
-from hystbench.twins.runs import Settings, scaled
+from hystbench.twins.runs import Settings
 
 
 @dataclass(frozen=True)
@@ -86,4 +86,6 @@ def within_margin(
     for record in records:
         adaptive = make_filter(model, job, record, identified)
         most = max(most, adaptive.correction(adaptive.largest_power(record.u)))
-    return scaled(job, min(factor, MOST_CORRECTION / most) if most else factor)
+    times = min(factor, MOST_CORRECTION / most) if most else factor
+    steps = {name: times * mu for name, mu in job["convergence_factor"].items()}
+    return {**job, "convergence_factor": steps}

@@ -4,7 +4,7 @@ A twin's thirteen records and the four filters on them take a tenth of a second.
 takes longer, and imports more, is in :mod:`hystbench.twins.fits`.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from hystbench.adaptive import make_filter, steps_of
@@ -45,12 +45,6 @@ def filter_jobs(settings: Settings) -> dict[str, Settings]:
     return {model: jobs[model] for model in in_order(jobs)}
 
 
-def scaled(job: Settings, factor: float) -> dict[str, Any]:
-    """Give a filter's settings with all its step sizes times a factor."""
-    steps = {name: factor * mu for name, mu in job["convergence_factor"].items()}
-    return dict(job) | {"convergence_factor": steps}
-
-
 def run_records(
     model: str,
     job: Settings,
@@ -58,19 +52,13 @@ def run_records(
     identified: Settings | None,
 ) -> dict[Cell, Run]:
     """Run a filter on records; ``identified`` is the result of Algorithm 1."""
-    filters = [make_filter(model, job, r, identified) for r in records.values()]
-    results = run_all(list(zip(filters, records.values(), strict=True)))
+    jobs = [(make_filter(model, job, r, identified), r) for r in records.values()]
+    # On one core: the workflow runs other jobs beside.
+    results = run_many(((each, r.u, r.y) for each, r in jobs), workers=1)
     return {
         (record.name, model): filter_run(adaptive, record, result)
-        for adaptive, record, result in zip(
-            filters, records.values(), results, strict=True
-        )
+        for (adaptive, record), result in zip(jobs, results, strict=True)
     }
-
-
-def run_all(jobs: Sequence[tuple[AdaptiveFilter, Record]]) -> list[Result]:
-    """Run filters on records, on one core: the workflow runs other jobs beside."""
-    return list(run_many(((each, r.u, r.y) for each, r in jobs), workers=1))
 
 
 def filter_run(adaptive: AdaptiveFilter, record: Record, result: Result) -> Run:
