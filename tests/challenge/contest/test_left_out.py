@@ -3,7 +3,7 @@
 import pytest
 
 from hystbench.challenge.contest.frames import frame
-from hystbench.challenge.contest.left_out import left_out
+from hystbench.challenge.contest.never_seen import left_out
 from hystbench.challenge.contest.score import judge
 from hystbench.gap.schema import SCHEMA
 

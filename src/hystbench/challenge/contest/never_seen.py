@@ -1,4 +1,4 @@
-"""What a solver says of what no set but the transfer set holds: blind by kind."""
+"""What a solver says of what it cannot name, or has never seen: blind by kind."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from hystbench.challenge.contest.tables import how_often, names_that_count, wils
 from hystbench.challenge.plant.effects import IN_ACTUATOR, UNLISTED
 from hystbench.challenge.plant.hysteresis import KEPT
 
+LEFT_OUT = ("left_out", "cases", "no_name", "low", "high", "confident", "called")
+"""Columns of the table of what is left out."""
 EVERY = "all"
 """The last row of each sort."""
 FORMS = tuple(
@@ -21,6 +23,28 @@ FORMS = tuple(
     if law.use == "transfer"
 )
 """Forms of listed effects that no set but the transfer set holds."""
+
+
+def left_out(cases: pd.DataFrame) -> pd.DataFrame:
+    """Sum up cases whose hidden effect the solver had to do without.
+
+    Parameters
+    ----------
+    cases : DataFrame
+        Judged cases of one solver with one hidden effect each, as ``frames.frame`` has
+        them.
+
+    Returns
+    -------
+    DataFrame
+        A row an effect, in alphabetical order, then all: the share of cases in which
+        no name is given, with its 95 % interval, the share in which one is given with
+        more than .8, and what was named how often. A free shape of the
+        hysteresis beside a plant of another family than the base's is no name.
+    """
+    nameless = cases.assign(truth="")
+    found = list(_rows(nameless, cases["truth"]))
+    return pd.DataFrame(found, columns=list(LEFT_OUT)).round(4)
 
 
 def never_seen(cases: pd.DataFrame) -> Iterator[tuple[Any, ...]]:
@@ -43,16 +67,19 @@ def never_seen(cases: pd.DataFrame) -> Iterator[tuple[Any, ...]]:
     """
     single = cases[cases["kind"] == "single"]
     forms = single["truth"] + ": " + single["form"]
-    yield from _rows("form", single[forms.isin(FORMS)], forms)
     plain = cases[cases["kind"].isin(("single", "none")) & cases["family"].isin(KEPT)]
-    yield from _rows("family", plain, plain["family"])
     unlisted = cases[cases["kind"] == "unlisted"]
-    yield from _rows("unlisted", unlisted, unlisted["truth"])
+    for sort, chosen, names in (
+        ("form", single[forms.isin(FORMS)], forms),
+        ("family", plain, plain["family"]),
+        ("unlisted", unlisted, unlisted["truth"]),
+    ):
+        for row in _rows(chosen, names):
+            yield sort, *row
 
 
-def _rows(
-    sort: str, cases: pd.DataFrame, names: pd.Series[Any]
-) -> Iterator[tuple[Any, ...]]:
+def _rows(cases: pd.DataFrame, names: pd.Series[Any]) -> Iterator[tuple[Any, ...]]:
+    """Give ``name, cases, right, low, high, confidently_wrong, called`` by name."""
     groups = [*cases.groupby(names), (EVERY, cases)] if len(cases) else []
     for name, group in groups:
         said = names_that_count(group)
@@ -65,4 +92,4 @@ def _rows(
         ]
         interval = (right.share, right.low, right.high)
         surely = sum(map(sure, wrong)) / len(wrong)
-        yield (sort, str(name), len(both), *interval, surely, how_often(wrong))
+        yield str(name), len(both), *interval, surely, how_often(wrong)
