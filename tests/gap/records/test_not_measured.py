@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench.gap.holdout.shrink import left_rms, shrink
+from hystbench.gap.holdout.shrink import shrink
 from hystbench.gap.judging.black_box import BlackBox
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.folds import make_folds
-from hystbench.gap.records.nuisance import left_over, path_and_mains
+from hystbench.gap.records.nuisance import left_over, left_rms, path_and_mains
 from hystbench.gap.records.scored_samples import Compared, ScoredSamples
 from hystbench.model import load_model
 from tests.gap.closing import close_gap
