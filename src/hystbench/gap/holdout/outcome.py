@@ -14,12 +14,7 @@ from typing import Any
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.fitting.on_records import run_base
-from hystbench.gap.holdout.show import (
-    Outcome,
-    as_recorded,
-    nuisance_of,
-    score_hold_out,
-)
+from hystbench.gap.holdout.show import Outcome, as_recorded, nuisance_of, score_hold_out
 from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.records.evidence import Evidence

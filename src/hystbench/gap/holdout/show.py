@@ -79,10 +79,7 @@ def score_hold_out(fitted: FitResult, records: tuple[Record, ...]) -> Outcome:
         "gap": found.mapping(),
         "records": [item.mapping() for item in found.records],
         "ladder": [
-            {
-                "name": rung.name,
-                "rms": left_rms(records, run(rung.state)[0], nuisance),
-            }
+            {"name": rung.name, "rms": left_rms(records, run(rung.state)[0], nuisance)}
             for rung in fitted.rungs
         ],
         "runs_away": [item.mapping() for item in lost],

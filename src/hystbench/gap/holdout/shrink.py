@@ -190,9 +190,7 @@ def share_explained(
     return gone / above if above > 0 else None
 
 
-def resampled_rms(
-    residuals: Sequence[Sequence[FloatArray]],
-) -> FloatArray:
+def resampled_rms(residuals: Sequence[Sequence[FloatArray]]) -> FloatArray:
     """RMS of residuals over all records, of draws of records and blocks within them.
 
     Each draw takes as many records as there are, with replacement, and rebuilds each

@@ -16,11 +16,7 @@ from hystbench.gap.fitting.least_squares import Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.beginnings import Beginnings
-from hystbench.gap.inside.hypotheses import (
-    fitted_likely,
-    may_gain,
-    starts,
-)
+from hystbench.gap.inside.hypotheses import fitted_likely, may_gain, starts
 from hystbench.gap.inside.laws import Offer, host_of
 from hystbench.gap.inside.modes import (
     NONE,
@@ -198,11 +194,7 @@ def _passing(
 
 
 def _with_mode(
-    state: ModelState,
-    chain: tuple[Block, ...],
-    place: int,
-    mode: Mechanism,
-    rest: bool,
+    state: ModelState, chain: tuple[Block, ...], place: int, mode: Mechanism, rest: bool
 ) -> ModelState:
     """Put a mode in before what is left of the block that it was in, or instead."""
     new = OtherMechanism(**{x.name: getattr(mode, x.name) for x in fields(mode)})

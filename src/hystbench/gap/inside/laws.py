@@ -18,9 +18,7 @@ from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.gap.effects import among
 from hystbench.gap.effects.law import Changed, Law, Moved, Passed
-from hystbench.gap.fitting.least_squares import (
-    Fitted,
-)
+from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.stores import how_it_fills
 

@@ -249,10 +249,7 @@ def mode_of(
 
 
 def sum_of(
-    block: TransferFunction,
-    poles: ComplexArray,
-    residues: ComplexArray,
-    direct: float,
+    block: TransferFunction, poles: ComplexArray, residues: ComplexArray, direct: float
 ) -> OtherModes:
     """Join simple poles and a constant to one ratio."""
     down = np.poly(poles)

@@ -28,11 +28,7 @@ from hystbench.gap.inside.further_modes import (
     with_modes,
 )
 from hystbench.gap.inside.hosts import hosts
-from hystbench.gap.inside.hypotheses import (
-    may_gain,
-    singles,
-    together,
-)
+from hystbench.gap.inside.hypotheses import may_gain, singles, together
 from hystbench.gap.inside.laws import laws_for
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round
@@ -230,10 +226,7 @@ def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> 
 
 
 def charged(
-    item: Fitted,
-    found: Sequence[Fitted],
-    floor: float,
-    share: float = UNNAMED_SHARE,
+    item: Fitted, found: Sequence[Fitted], floor: float, share: float = UNNAMED_SHARE
 ) -> float:
     """Give the score with what effects have to pay: the first, and each further one.
 

@@ -156,8 +156,5 @@ def with_changed(state: ModelState, effect: str, changed: Changed) -> ModelState
     already = set(state.free)
     more = tuple(x for x in (Free(*own) for own in changed.free) if x not in already)
     return replace(
-        state,
-        chain=tuple(chain),
-        free=(*state.free, *more),
-        added=(*state.added, item),
+        state, chain=tuple(chain), free=(*state.free, *more), added=(*state.added, item)
     )

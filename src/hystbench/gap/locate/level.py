@@ -93,14 +93,13 @@ class Moving:
         return np.asarray(np.maximum(found, STEADY))
 
     @property
-    def rates(self) -> FloatArray:
-        """Damping by power as a rate of decay, which no stiffness changes."""
-        return np.asarray(self.numbers[:, 2] * self.numbers[:, 0])
-
-    @property
     def told(self) -> tuple[FloatArray, FloatArray]:
-        """Frequency, damping by power as a rate, gain; and their relative errors."""
-        values = np.column_stack([self.numbers[:, 0], self.rates, self.numbers[:, 3]])
+        """Frequency, damping by power, gain; and their relative errors.
+
+        The damping is a rate of decay, which no stiffness changes.
+        """
+        frequency, _, ratio, gain = self.numbers.T
+        values = np.column_stack([frequency, ratio * frequency, gain])
         return values, self.errors[:, [0, 2, 3]]
 
     @property
@@ -198,10 +197,7 @@ MODES = 2
 NUMBERS = 8
 """Of a mode at a level: its pole, and three complex numbers of its band."""
 INTEGRALS = {"position": 0, "velocity": 1, "acceleration": 2}
-ROLES = (
-    ("first", "first by width"),
-    ("second", "second by width"),
-)
+ROLES = (("first", "first by width"), ("second", "second by width"))
 
 
 def take_levels(samples: ViewSamples) -> tuple[Moving, ...]:

@@ -51,17 +51,9 @@ def decay_of_free_mass(
             continue
         velocity, acceleration = _derivatives(record)
         position = record.y - np.mean(record.y)
-        columns.append(
-            np.column_stack(
-                [
-                    acceleration,
-                    velocity,
-                    position,
-                    np.sign(velocity),
-                    np.ones(len(record)),
-                ]
-            )
-        )
+        friction, constant = np.sign(velocity), np.ones(len(record))
+        own = (acceleration, velocity, position, friction, constant)
+        columns.append(np.column_stack(own))
         wanted.append(record.u)
     if not columns:
         return None

@@ -84,10 +84,7 @@ def _drawn(picture: Content) -> EmbeddedPicture:
 
     tall = (_height(panel) for panel in panels)
     return draw(
-        paint,
-        words=picture["words"],
-        height=max(tall),
-        panels=(1, len(panels)),
+        paint, words=picture["words"], height=max(tall), panels=(1, len(panels))
     )
 
 
