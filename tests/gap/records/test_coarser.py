@@ -26,7 +26,7 @@ def record(highest, n=4 * ENOUGH, period=None):
 def test_the_input_says_how_many_samples_can_be_spared(highest, factor):
     one = record(highest)
     assert sparing([one], "band-limited") == factor
-    (kept,) = coarser([one], "band-limited")
+    (kept,) = coarser((one,), "band-limited")
     assert len(kept) == len(one) // factor
     assert kept.dt == pytest.approx(factor * one.dt)
     np.testing.assert_array_equal(kept.u, one.u[::factor])
@@ -36,17 +36,17 @@ def test_the_input_says_how_many_samples_can_be_spared(highest, factor):
 @pytest.mark.parametrize("hold", ["zero-order", "linear"])
 def test_no_sample_of_a_staircase_or_of_straight_lines_can_be_spared(hold):
     one = record(0.02)
-    assert coarser([one], hold)[0] is one
+    assert coarser((one,), hold)[0] is one
 
 
 def test_a_short_record_is_left_as_it_is():
     one = record(0.02, n=ENOUGH)
-    assert coarser([one], "band-limited")[0] is one
+    assert coarser((one,), "band-limited")[0] is one
 
 
 def test_of_whole_periods_the_last_ones_are_kept():
     one = record(0.02, n=8 * ENOUGH, period=4 * ENOUGH)
-    (kept,) = coarser([one], "band-limited")
+    (kept,) = coarser((one,), "band-limited")
     assert kept.period_samples == len(kept) == ENOUGH
     np.testing.assert_array_equal(kept.u, one.u[4 * ENOUGH :: 4])
 
@@ -54,7 +54,7 @@ def test_of_whole_periods_the_last_ones_are_kept():
 def test_a_period_stays_whole():
     # Neither every second nor every third sample of 6005 makes a whole period.
     one = record(0.02, n=2 * 6005, period=6005)
-    (kept,) = coarser([one], "band-limited")
+    (kept,) = coarser((one,), "band-limited")
     assert kept.period_samples == len(kept) == 6005
 
 
@@ -74,5 +74,5 @@ def test_samples_that_were_not_measured_are_not_the_ones_that_stay():
     one = record(0.02)
     lost = np.zeros(len(one), dtype=bool)
     lost[::4] = True
-    (kept,) = coarser([replace(one, interpolated=lost)], "band-limited")
+    (kept,) = coarser((replace(one, interpolated=lost),), "band-limited")
     assert kept.counted.sum() >= ENOUGH

@@ -196,9 +196,7 @@ def _coarse(evidence: Evidence) -> Evidence:
     if evidence.quantities.causality == "motion to force":
         return evidence
     records = coarser(evidence.fit, evidence.input_hold)
-    if all(a is b for a, b in zip(records, evidence.fit, strict=True)):
-        return evidence
-    return replace(evidence, fit=records)
+    return evidence if records is evidence.fit else replace(evidence, fit=records)
 
 
 def _on_all_samples(found: Found, everything: Orders) -> Found:

@@ -43,7 +43,7 @@ def on_fewer(start: ModelState, quantities: Quantities) -> ModelState:
     if any(record.decay_s is not None for record in start.records):
         return start
     records = coarser(start.records, start.hold)
-    if all(a is b for a, b in zip(records, start.records, strict=True)):
+    if records is start.records:
         return start
     chain = start.chain
     if left_out(records, start.records):

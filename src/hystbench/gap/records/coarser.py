@@ -27,18 +27,18 @@ ENOUGH = 2 * SAMPLES
 """Samples that a record keeps, twice as many as are scored: it is simulated quickly."""
 
 
-def coarser(records: Sequence[Record], hold: Hold) -> tuple[Record, ...]:
+def coarser(records: tuple[Record, ...], hold: Hold) -> tuple[Record, ...]:
     """Give records of every so-manieth sample; the same ones where none can be spared.
 
     Parameters
     ----------
-    records : sequence of Record
+    records : tuple of Record
     hold : {"zero-order", "linear", "band-limited"}
         Only a band-limited input is told by fewer samples.
     """
     records = _last_periods(records)
     factor = sparing(records, hold)
-    return tuple(_every(record, factor) for record in records)
+    return records if factor == 1 else tuple(_every(x, factor) for x in records)
 
 
 def sparing(records: Sequence[Record], hold: Hold) -> int:
@@ -69,8 +69,6 @@ def _fastest(x: FloatArray) -> float:
 
 def _every(record: Record, factor: int) -> Record:
     """Keep every so-manieth sample."""
-    if factor == 1:
-        return record
     period = record.period_samples
     return replace(
         record.cut(slice(None, None, factor)),
@@ -85,7 +83,7 @@ def left_out(fewer: Sequence[Record], records: Sequence[Record]) -> bool:
     )
 
 
-def _last_periods(records: Sequence[Record]) -> tuple[Record, ...]:
+def _last_periods(records: tuple[Record, ...]) -> tuple[Record, ...]:
     """Keep the last whole periods, as many as hold enough samples.
 
     All records begin as if their periods had come before, or none is cut.
@@ -97,7 +95,7 @@ def _last_periods(records: Sequence[Record]) -> tuple[Record, ...]:
         for item in records
     ]
     if any(count >= len(item) for count, item in zip(kept, records, strict=True)):
-        return tuple(records)
+        return records
     return tuple(
         replace(item.cut(slice(-count, None)), period_samples=item.period_samples)
         for count, item in zip(kept, records, strict=True)
