@@ -17,9 +17,9 @@ from hystbench.blocks.state_space import (
     StateSpace,
     curve_drive,
     discretise,
-    discretise_modes,
     lag,
     moments_of,
+    square,
 )
 from hystbench.blocks.step import Sampling, Step, smooth_curve
 from hystbench.record import FloatArray
@@ -187,16 +187,11 @@ def states_of(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> Float
         phi, b, _, _, following = _steps(*_bytes(system), dt, hold)
         out[0, :size] = -following * v[0]
         out[1:, :size] = np.outer(v[:-1], b)
-        phi = _padded_columns(_square(phi))
+        phi = _padded_columns(square(phi))
         behind = np.outer(v, following)
-    columns = _square(phi)
+    columns = square(phi)
     kernels.call("hb_states", len(v), len(columns) // kernels.WIDTH, columns, out)
     return out[:, :size] + behind
-
-
-def _square(phi: FloatArray) -> FloatArray:
-    """Give a matrix of which the diagonal may stand alone."""
-    return phi if phi.ndim == 2 else np.diag(phi)
 
 
 def _padded_columns(phi: FloatArray) -> FloatArray:
@@ -284,12 +279,8 @@ def _from_bytes(a: bytes, b: bytes, c: bytes, d: float) -> StateSpace:
 def _steps(a: bytes, b: bytes, c: bytes, d: float, dt: float, hold: Hold) -> Steps:
     """Discretise, once for records of the same rate and for every candidate."""
     system = _from_bytes(a, b, c, d)
-    if system.is_diagonal:
-        phi, now, following = discretise_modes(system, dt, hold)
-        moved = phi * following
-    else:
-        phi, now, following = discretise(system, dt, hold)
-        moved = phi @ following
+    phi, now, following = discretise(system, dt, hold)
+    moved = phi * following if phi.ndim == 1 else phi @ following
     direct = d + float(system.c @ following)
     return Steps(phi, now + moved, system.c, direct, following)
 
@@ -345,7 +336,7 @@ def _loop(a: bytes, b: bytes, c: bytes, d: float, dt: float, hold: Hold) -> Loop
         kernel, phi = "hb_modes", kernels.pad(steps.phi)
     else:
         kernel, sizes = "hb_state_space", (*sizes, size)
-        phi = _padded_columns(_square(steps.phi))
+        phi = _padded_columns(square(steps.phi))
     fixed = (phi, kernels.pad(steps.b), kernels.pad(steps.c))
     places = tuple(map(kernels.Fixed, fixed))
     return Loop(kernel, sizes, places, steps.d, kernels.pad(steps.following))

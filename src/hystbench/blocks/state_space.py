@@ -42,12 +42,22 @@ def discretise(
     """Integrate the state equation over one sampling interval.
 
     Returns ``phi``, ``now``, ``following`` of ``x(k+1) = phi x(k) + now v(k) +
-    following v(k+1)``.
+    following v(k+1)``. Of a diagonal A ``phi`` is its diagonal, shape (m,).
     """
-    phi, step, ramp = _exponential(system, dt)
+    if system.is_diagonal:
+        x, gain = np.diag(system.a) * dt, system.b * dt
+        phi, step, ramp = np.exp(x), *_of_modes(x)
+    else:
+        gain = np.ones(len(system.b))  # the matrix exponential has it inside
+        phi, step, ramp = _exponential(system, dt)
     if hold == "zero-order":
-        return phi, step, np.zeros(len(step))
-    return phi, step - ramp, ramp
+        return phi, gain * step, np.zeros(len(step))
+    return phi, gain * (step - ramp), gain * ramp
+
+
+def square(phi: FloatArray) -> FloatArray:
+    """Give a matrix of which the diagonal may stand alone."""
+    return phi if phi.ndim == 2 else np.diag(phi)
 
 
 def _exponential(
@@ -76,22 +86,12 @@ def _exponential(
     return phi, exponential[:m, m], exponential[:m, m + 1]
 
 
-def discretise_modes(
-    system: StateSpace, dt: float, hold: Hold
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Do what :func:`discretise` does where A is diagonal, mode by mode.
-
-    ``phi`` is its diagonal.
-    """
-    x = np.diag(system.a) * dt
+def _of_modes(x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Give what a one, and a ramp to one, add to modes of these poles times dt."""
     step = _over(np.expm1(x), x, 1.0)
     # (step - 1) / x loses digits near zero, where it is 1/2 + x/6 + x^2/24 + ...
     series = 1 / 2 + x * (1 / 6 + x * (1 / 24 + x * (1 / 120 + x / 720)))
-    ramp = np.where(np.abs(x) < 1e-2, series, _over(step - 1.0, x, 0.5))
-    phi, gain = np.exp(x), system.b * dt
-    if hold == "zero-order":
-        return phi, gain * step, np.zeros(len(x))
-    return phi, gain * (step - ramp), gain * ramp
+    return step, np.where(np.abs(x) < 1e-2, series, _over(step - 1.0, x, 0.5))
 
 
 def _over(above: FloatArray, below: FloatArray, at_zero: float) -> FloatArray:
@@ -237,8 +237,5 @@ def _moments_of_modes(
 
 def _over_interval(system: StateSpace, dt: float) -> tuple[FloatArray, FloatArray]:
     """Give what is left of the state after one interval, and what a one adds to it."""
-    if system.is_diagonal:
-        x = np.diag(system.a) * dt
-        return np.diag(np.exp(x)), system.b * dt * _over(np.expm1(x), x, 1.0)
-    phi, step, _ = _exponential(system, dt)
-    return phi, step
+    phi, step, _ = discretise(system, dt, "zero-order")
+    return square(phi), step

@@ -5,7 +5,7 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.linear import respond
 from hystbench.blocks.parameter import HUGE, number
-from hystbench.blocks.state_space import discretise_modes, lag
+from hystbench.blocks.state_space import discretise, lag
 from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
@@ -40,7 +40,7 @@ class ThermalDrift(Block, name="thermal-drift", place="mechanics"):
         """Let the heat go through one low-pass, or two."""
         seconds = [self.time_constant_s, self.second_time_constant_s]
         lags = [
-            np.array(discretise_modes(lag(tau), sampling.dt, "linear")).ravel()
+            np.array(discretise(lag(tau), sampling.dt, "linear")).ravel()
             for tau in seconds
             if tau > 0
         ]
