@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.linalg
 import scipy.signal
 import scipy.special
 from hypothesis import given
@@ -25,7 +26,7 @@ from hystbench.blocks.logarithmic_creep import LogarithmicCreep
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.resonance import Resonance
 from hystbench.blocks.sensor_lag import SensorLag
-from hystbench.blocks.state_space import StateSpace, discretise, discretise_modes
+from hystbench.blocks.state_space import StateSpace, discretise
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from tests.blocks.responses import frequency_response
@@ -200,19 +201,22 @@ def test_repeated_poles_are_no_trouble():
 
 
 @given(st.lists(st.floats(1e-6, 1e8), min_size=1, max_size=5, unique=True))
-def test_modes_are_discretised_as_any_other_system(rates):
+def test_modes_are_discretised_as_a_matrix_exponential_does_it(rates):
     # A time step from 1e-10 to 1e4 time constants.
     m = len(rates)
     system = StateSpace(-np.diag(rates), np.array(rates), np.ones(m), 0.0)
     for hold in ("zero-order", "linear"):
-        phi, now, following = discretise_modes(system, DT, hold)
+        phi, now, following = discretise(system, DT, hold)
         for i, rate in enumerate(rates):
-            # one mode at a time: side by side, expm drowns the slow in the fast
-            single = StateSpace(-np.array([[rate]]), np.array([rate]), np.ones(1), 0.0)
-            a, b, c = discretise(single, DT, hold)
-            np.testing.assert_allclose(phi[i], a[0, 0], rtol=1e-9, atol=1e-13)
-            np.testing.assert_allclose(now[i], b[0], rtol=1e-9, atol=1e-13)
-            np.testing.assert_allclose(following[i], c[0], rtol=1e-9, atol=1e-13)
+            # One mode at a time: side by side, expm drowns the slow in the fast.
+            # Its state, an input of one, and the rise of the input over the interval.
+            x = rate * DT
+            moves = np.array([[-x, x, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]])
+            a, step, ramp = scipy.linalg.expm(moves)[0]
+            b, c = (step, 0.0) if hold == "zero-order" else (step - ramp, ramp)
+            np.testing.assert_allclose(phi[i], a, rtol=1e-9, atol=1e-13)
+            np.testing.assert_allclose(now[i], b, rtol=1e-9, atol=1e-13)
+            np.testing.assert_allclose(following[i], c, rtol=1e-9, atol=1e-13)
 
 
 @pytest.mark.parametrize(
