@@ -174,15 +174,13 @@ def _named(places: Mapping[Path, Path], whole: Path) -> Iterator[None]:
         for place, final in places.items():
             if name is not None and name.is_relative_to(place):
                 name = final / name.relative_to(place)
-        if name is None or any(_is_hidden(part) for part in name.parts):
+        if name is None or any(
+            part == ENTRIES or part.startswith(TEMPORARY) for part in name.parts
+        ):
             name = whole
         # NumPy tells in words alone that less was written than was asked for.
         told = error.strerror or str(error)
         raise OSError(error.errno or errno.EIO, told, str(name)) from error
-
-
-def _is_hidden(part: str) -> bool:
-    return part == ENTRIES or part.startswith(TEMPORARY)
 
 
 def write_text(path: str | Path, text: str, *, edit: bool = False) -> None:

@@ -97,6 +97,7 @@ def whole(
     ends = {0, len(values) - 1} & set(lost.tolist())
     if missing is None or ends or not np.isnan(values[lost]).all():
         at = int(min(ends) if missing is not None and ends else lost[0])
+        shown = "'nan' or empty" if np.isnan(values[at]) else repr(str(values[at]))
         hint = ""
         if missing is not None and ends:
             hint = "; at an end nothing can be interpolated: give 'rows' without it"
@@ -104,14 +105,10 @@ def whole(
             hint = " (for lone ones say 'missing: interpolate' of this record)"
         raise InputError(
             f"{table.path}: {table.place(rows.start + at)}: column {column.name!r} is "
-            f"{_shown(values[at])}; expected a finite number{hint}"
+            f"{shown}; expected a finite number{hint}"
         )
     there = np.flatnonzero(np.isfinite(values))
     return cast(FloatArray, np.interp(np.arange(len(values)), there, values[there]))
-
-
-def _shown(value: float) -> str:
-    return "'nan' or empty" if np.isnan(value) else repr(str(value))
 
 
 def check_moves(file: Path, item: Mapping[str, str], values: FloatArray) -> None:

@@ -235,10 +235,11 @@ class Impedance(Dynamics, name="impedance", place="base"):
         """Give position, velocity and acceleration."""
         if self._is_curve(z):
             return self._along_curve(z, dt)
+        rate = _weighed(z, RATE, 1) / dt
         if self.input == "position":
-            return z, _rate(z, dt), _curvature(z, dt)
+            return z, rate, _weighed(z, CURVATURE, 2) / dt**2
         way = np.cumsum((z[1:] + z[:-1]) / 2 * dt)
-        return np.concatenate([np.zeros(min(len(z), 1)), way]), z.copy(), _rate(z, dt)
+        return np.concatenate([np.zeros(min(len(z), 1)), way]), z.copy(), rate
 
     def _along_curve(
         self, z: FloatArray, dt: float
@@ -285,11 +286,3 @@ def _weighed(x: FloatArray, rows: FloatArray, order: int) -> FloatArray:
         found[place] = own @ x[: len(own)]
         found[-1 - place] = sign * (own @ back[: len(own)])
     return found
-
-
-def _rate(x: FloatArray, dt: float) -> FloatArray:
-    return _weighed(x, RATE, 1) / dt
-
-
-def _curvature(x: FloatArray, dt: float) -> FloatArray:
-    return _weighed(x, CURVATURE, 2) / dt**2

@@ -79,7 +79,11 @@ class RateDependentHysteresis(
         if self.form == "acting-field":
             v = self._acting(v, dt / fine)
         else:
-            rate = np.gradient(v, dt) if fine == 1 else _rates(given, fine) / dt
+            if fine == 1:
+                rate = np.gradient(v, dt)
+            else:
+                rates = weighed(given, _rate_weights(POINTS, AHEAD, fine))
+                rate = np.concatenate([rates[-1:, 0], rates.T[1:].ravel()]) / dt
             effect = self.coefficient * np.abs(rate) ** self.exponent
             if self.form == "excess-field":
                 v = v - np.copysign(effect, rate)
@@ -141,9 +145,3 @@ def _rate_weights(points: int, ahead: int, fine: int) -> FloatArray:
     """
     places = np.arange(1 - fine, 1) / fine - ahead
     return np.array([central_difference(points, place, 1 / fine) for place in places])
-
-
-def _rates(v: FloatArray, fine: int) -> FloatArray:
-    """Give the rate ``fine`` times finer, per sample of the record."""
-    rates = weighed(v, _rate_weights(POINTS, AHEAD, fine))
-    return np.concatenate([rates[-1:, 0], rates.T[1:].ravel()])

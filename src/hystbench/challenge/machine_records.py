@@ -30,15 +30,12 @@ FIT, HELD_OUT, PERIOD = 1500, 1000, 500
 _FASTER = NOMINAL_PERIOD / PERIOD
 
 
-def _faster(function: Function) -> Function:
-    return lambda t: function(_FASTER * t)
-
-
 def _tones(
     random: np.random.Generator, low: float, high: float, peak: float
 ) -> Function:
     """Multisine whose period is five hundred samples."""
-    return _faster(multisine(random, low / _FASTER, high / _FASTER, peak))
+    function = multisine(random, low / _FASTER, high / _FASTER, peak)
+    return lambda t: function(_FASTER * t)
 
 
 def _steps(

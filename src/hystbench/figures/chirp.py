@@ -41,13 +41,13 @@ def draw(*, records: Sequence[Path], runs: Sequence[Path]) -> Figure:
     _ranges(ranges, record, output)
     panels.error_in_time(error, record, output, everything)
 
-    text = load_text()
+    text, shown = load_text(), record.time[part]
     for moment, name, align, shift in (
         (text.chirp_minimum, "smallest at", "right", -2),
         (text.chirp_resonance, "largest at", "left", 2),
     ):
         for axes in (displacement, ranges, error):
-            if axes is not displacement or _within(record, part, moment.time_s):
+            if axes is not displacement or shown[0] <= moment.time_s <= shown[-1]:
                 axes.axvline(
                     moment.time_s, color=style.BLACK, linewidth=0.8, linestyle=":"
                 )
@@ -82,10 +82,6 @@ def _around_resonance(record: Record) -> slice:
     count = min(round((_BEFORE + _AFTER) / record.dt) + 1, len(record))
     start = min(round(first / record.dt), len(record) - count)
     return slice(start, start + count)
-
-
-def _within(record: Record, part: slice, time_s: float) -> bool:
-    return bool(record.time[part.start] <= time_s <= record.time[part.stop - 1])
 
 
 def _ranges(axes: Axes, record: Record, output: Output) -> None:

@@ -8,7 +8,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from hystbench.compare.cells import ComparedCell
+from hystbench.compare.cells import NOT_RUN, ComparedCell
 from hystbench.compare.rows import read_items
 from hystbench.errors import InputError
 from hystbench.figures import style
@@ -52,10 +52,13 @@ def draw(*, table: Path) -> Figure:
     for cell in cells:
         x, y = models.index(cell.model), signals.index(cell.signal)
         value = values[y, x]
+        told = NOT_RUN if cell.status == NOT_RUN else "diverged"
+        if math.isfinite(value):
+            told = f"{value:+.2f}".replace("-", "\N{MINUS SIGN}")
         axes.text(
             x + 0.5,
             y + 0.5,
-            _number(value) if math.isfinite(value) else _word(cell.status),
+            told,
             horizontalalignment="center",
             verticalalignment="center_baseline",
             color="white" if abs(value) > 0.6 * _LIMIT else style.BLACK,
@@ -63,7 +66,8 @@ def draw(*, table: Path) -> Figure:
         )
         if cell.published_consistent != "yes":
             axes.add_patch(_frame(x, y, cell.published_consistent))
-    axes.set_xticks(np.arange(len(models)) + 0.5, [_two_lines(m) for m in models])
+    labels = [style.look(model).label.replace(" ", "\n") for model in models]
+    axes.set_xticks(np.arange(len(models)) + 0.5, labels)
     unseen = {cell.signal for cell in cells if cell.half == "held-out"}
     titles = [
         style.signal_title(s) + (f" {_HELD_OUT}" if s in unseen else "")
@@ -104,15 +108,3 @@ def _frame(x: int, y: int, consistent: str) -> Rectangle:
         linewidth=1.0,
         linestyle="-" if consistent == "no" else ":",
     )
-
-
-def _two_lines(model: str) -> str:
-    return style.look(model).label.replace(" ", "\n")
-
-
-def _number(value: float) -> str:
-    return f"{value:+.2f}".replace("-", "\N{MINUS SIGN}")
-
-
-def _word(status: str) -> str:
-    return status if status == "not run" else "diverged"

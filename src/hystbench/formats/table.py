@@ -158,8 +158,9 @@ class Table:
 
 def as_numbers(values: object) -> FloatArray | None:
     """Give an array as float64, times as seconds; None where it has no real numbers."""
-    array = np.ma.filled(np.ma.asarray(values), np.nan) if _masked(values) else values
-    array = np.asarray(array)
+    if isinstance(values, np.ma.MaskedArray) and values.dtype.kind == "f":
+        values = values.filled(np.nan)
+    array = np.asarray(values)
     if array.dtype.kind == "M":
         lost = np.isnat(array)
         first = array[~lost][0] if (~lost).any() else np.datetime64("NaT")
@@ -174,10 +175,6 @@ def as_numbers(values: object) -> FloatArray | None:
     if array.dtype.kind not in "fiub":
         return None
     return np.ascontiguousarray(array, dtype=np.float64)
-
-
-def _masked(values: object) -> bool:
-    return isinstance(values, np.ma.MaskedArray) and values.dtype.kind == "f"
 
 
 class Filling:

@@ -180,9 +180,10 @@ def _effects(found: Check) -> dict[str, list[str]]:
     if not found.effects:
         return {key: [] for key in ("seen", "alike", "hidden")}
     seen = _listed(f"{x.effect} {percent(x.seen_from)}" for x in found.revealed)
-    alike = [x for x in found.revealed if x.rivals]
     pairs = _listed(
-        f"{x.effect} from {x.rivals[0][0]} {_up_to(x.rivals[0][1])}" for x in alike
+        f"{x.effect} from {rival} {'ever' if share > 1 else percent(share)}"
+        for x in found.revealed
+        for rival, share in x.rivals[:1]
     )
     told = {
         "seen": ["  Seen from this share of the output on (rms):", *seen],
@@ -207,7 +208,3 @@ def _listed(parts: Iterable[str]) -> list[str]:
     """Put parts behind each other; none is broken between two lines."""
     kept = ", ".join(part.replace(" ", "\0") for part in parts)
     return [line.replace("\0", " ") for line in _lines(kept, 4, 4)]
-
-
-def _up_to(share: float) -> str:
-    return "ever" if share > 1 else percent(share)

@@ -77,8 +77,9 @@ def searched_of(task: Task, effect: str) -> dict[str, Searched]:
     small = Searched(-0.3 / size, 0.3 / size, (0.01 / size,))
     slow = Searched(span / 200, span, (span / 50, span / 8))
     share = Searched(-1.0, 1.0, (0.02,))
+    two_decades = np.geomspace(0.0045 / step, 0.45 / step, MODES).tolist()
     mode = {
-        "frequency_hz": Searched(2.0 / span, 0.45 / step, _frequencies(step)),
+        "frequency_hz": Searched(2.0 / span, 0.45 / step, tuple(two_decades)),
         "damping_ratio": Searched(1e-3, 0.3, (0.05,)),
         "participation": Searched(-1.0, 1.0, (0.1,)),
     }
@@ -129,11 +130,6 @@ def searched_of(task: Task, effect: str) -> dict[str, Searched]:
     if effect == "stiffness-hardening" and not has_mode:
         table[effect] |= mode
     return table[effect]
-
-
-def _frequencies(step: float) -> tuple[float, ...]:
-    """Spread evenly in their logarithm over two decades below the highest."""
-    return tuple(float(f) for f in np.geomspace(0.0045 / step, 0.45 / step, MODES))
 
 
 #: The parameter that the effect is proportional to.

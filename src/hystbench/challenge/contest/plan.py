@@ -108,7 +108,8 @@ def plan(
         for k in range(cases):
             spec = _spec(name, stratum, first + k, number + k)
             if _wanted(spec, without, only):
-                entries.append(Entry(_hash(name, spec.seed), spec))
+                told = hashlib.sha256(f"{name} {spec.seed}".encode()).hexdigest()
+                entries.append(Entry(f"case-{told[:10]}", spec))
     if not entries:
         raise InputError(
             f"blind: without, only: no case of the set {name!r} is left; expected "
@@ -167,7 +168,3 @@ def _spec(name: str, stratum: Stratum, seed: int, place: int) -> CaseSpec:
 
 #: A prime above the number of effects.
 _STRIDE = 31
-
-
-def _hash(name: str, seed: int) -> str:
-    return "case-" + hashlib.sha256(f"{name} {seed}".encode()).hexdigest()[:10]

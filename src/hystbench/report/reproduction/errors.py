@@ -45,7 +45,9 @@ def headline_table(cells: Sequence[ComparedCell], half: str) -> Table:
     for signal in signals:
         row = [words(signal_title(signal))]
         for model in models:
-            row += _pair(by_key[signal, model])
+            cell = by_key[signal, model]
+            printed = cell.published + MARKS[cell.published_consistent]
+            row += [number(float(cell.published), printed), _ours(cell)]
         rows.append(row)
     about = {
         "held-out": "Mean square error (µm²) on the held-out signals, those that the "
@@ -62,11 +64,6 @@ def headline_table(cells: Sequence[ComparedCell], half: str) -> Table:
         note="Orange: off by more than a factor of 2. † ‡: the printed pair of MSE and "
         "RE cannot be true, or may not be.",
     )
-
-
-def _pair(cell: ComparedCell) -> list[Cell]:
-    printed = cell.published + MARKS[cell.published_consistent]
-    return [number(float(cell.published), printed), _ours(cell)]
 
 
 def _ours(cell: ComparedCell) -> Cell:

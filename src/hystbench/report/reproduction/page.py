@@ -7,7 +7,7 @@ from markupsafe import Markup
 from hystbench.figures.style import look, looks, signal_title
 from hystbench.report.layout import page_environment
 from hystbench.report.markup import inline, one_micro, paragraphs
-from hystbench.report.picture import Link, Picture
+from hystbench.report.picture import Link
 from hystbench.report.reproduction import claims, errors, words
 from hystbench.report.reproduction.read import (
     Content,
@@ -44,7 +44,11 @@ def page(content: Content) -> str:
             source=words.source(found),
             missing=words.missing(found, [f.name for f in content.figures]),
             headline=headline,
-            figures=_in_order(list(figures.values())),
+            # the paper's figures first, by their number
+            figures=sorted(
+                figures.values(),
+                key=lambda f: (not f.name.startswith("figure"), f.name),
+            ),
             more=[_as_it_is(each) for each in content.tables],
             measured=isinstance(found, Measured),
             files=_files(content),
@@ -106,13 +110,6 @@ def _full(markdown: str) -> dict[str, list[Markup]]:
         kind = "listed" if part.startswith("- ") else "below"
         found[kind].append(inline(part.removeprefix("- ")))
     return found
-
-
-def _in_order(figures: list[Picture]) -> list[Picture]:
-    """Put the paper's figures first, by their number."""
-    return sorted(
-        figures, key=lambda each: (not each.name.startswith("figure"), each.name)
-    )
 
 
 def _as_it_is(shown: Shown) -> Table:
