@@ -12,7 +12,12 @@ from hystbench.commands.gap import gap
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import numbers_of
 from hystbench.gap.fitting.state import Added
-from hystbench.gap.judging.known_signals import halves, in_runs, low_pass
+from hystbench.gap.judging.known_signals import (
+    halves,
+    in_runs,
+    low_pass,
+    random_walks,
+)
 from hystbench.gap.judging.unnamed import (
     SORTS,
     Unnamed,
@@ -347,3 +352,18 @@ def test_a_slow_path_that_the_inputs_power_causes_is_no_drift(seed):
     assert found.sort() == "history"
     # A random walk that is as large in records of other sizes is none of it.
     assert not named_drift(walk, seed, sizes).too_much()
+
+
+def test_a_longer_run_has_the_larger_random_walk():
+    """Its variance grows with time, whatever share of all samples a run has."""
+    given = [
+        record(np.sin(np.arange(n) / 20), name=f"{n}", dt=1e-3) for n in (500, 2000)
+    ]
+    state = state_of((GAIN,), given, count=2000)
+    columns, sizes = random_walks(state)
+    local = sizes / np.sqrt(np.mean(columns**2, axis=0))
+    count = len(sizes) // 2
+    np.testing.assert_allclose(local[count:] / local[:count], 2.0)
+    np.testing.assert_allclose(local[0] / local[9], 10.0)
+    many = state_of((GAIN,), given * 50, count=200)
+    assert random_walks(many)[0].shape[1] == 1000

@@ -127,15 +127,20 @@ def test_a_free_correction_is_no_rival_of_a_law_that_leaves_little(
 
 
 @pytest.mark.parametrize(
-    ("behind", "numbers", "first"),
+    ("behind", "numbers", "needs", "exact", "first"),
     [
-        (SCALE - 0.1, 1.0, "saturation"),
-        (SCALE - 0.1, 2.0, "sensor-nonlinearity"),  # no simpler: the score decides
-        (SCALE + 0.1, 1.0, "sensor-nonlinearity"),  # they can be told apart
+        (SCALE - 0.1, 1.0, PAYS, True, "saturation"),
+        # No simpler: the score decides.
+        (SCALE - 0.1, 2.0, PAYS, True, "sensor-nonlinearity"),
+        # They can be told apart.
+        (SCALE + 0.1, 1.0, PAYS, True, "sensor-nonlinearity"),
+        # It does not pay, or was not simulated exactly.
+        (SCALE - 0.1, 1.0, 299.0, True, "sensor-nonlinearity"),
+        (SCALE - 0.1, 1.0, PAYS, False, "sensor-nonlinearity"),
     ],
 )
 def test_of_effects_that_cannot_be_told_apart_the_fewest_numbers_go_first(
-    behind, numbers, first
+    behind, numbers, needs, exact, first
 ):
     curve = Candidate(
         "sensor-nonlinearity", "sensor", "both", 0.0, 300.0, Leaves(0.01, 2.0)
@@ -144,7 +149,8 @@ def test_of_effects_that_cannot_be_told_apart_the_fewest_numbers_go_first(
         "saturation", "material", "", behind, 300.0 - behind, Leaves(0.01, numbers)
     )
     last = Candidate("drift", "sensor", declined="added already")
-    ranking = simplest_of_a_tie([curve, other, last])
+    of_them = {"sensor-nonlinearity", *(["saturation"] if exact else [])}
+    ranking = simplest_of_a_tie([curve, other, last], of_them, needs)
     assert ranking[0].effect == first
     assert sorted(x.score for x in ranking[:2]) == [0.0, behind]  # as they were
     assert ranking[-1] is last

@@ -51,8 +51,8 @@ class Added(NamedTuple):
     """The chain's own block that it stands for."""
 
 
-ROUNDING = float(np.finfo(float).eps)
-"""Share of the output's rms, of which a smaller change is only rounding."""
+ROUNDING = 16 * float(np.finfo(float).eps)
+"""Share of the output's rms: a smaller change is what a simulation rounds off."""
 FORMS = (0.3, 0.6, 1.6, 3.0)
 """Factors on a number of an added effect: what other forms of it could do."""
 

@@ -231,8 +231,8 @@ def of_many_modes(start: ModelState) -> bool:
 def same_as(start: ModelState, quantities: Quantities) -> ModelState | None:
     """Give a model of one coordinate that simulates what a given base does.
 
-    It may differ by as much of the gap as may stay unnamed. Of a base that a gain and
-    an offset do as well there is none: nothing moves in it.
+    It may differ by no more of the gap than two models that do the same. Of a base that
+    a gain and an offset do as well there is none: nothing moves in it.
     """
     simulated = tuple(
         replace(record, y=y, simulated=None, interpolated=None)

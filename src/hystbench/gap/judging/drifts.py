@@ -12,17 +12,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.state import ModelState, beside_columns
 from hystbench.gap.judging.grouped_evidence import ColumnProducts
-from hystbench.gap.judging.known_signals import random_walks
+from hystbench.gap.judging.known_signals import PATH, random_walks
 from hystbench.gap.thresholds import LOOSE
 from hystbench.record import FloatArray
 
 Groups = Mapping[str, FloatArray]
 """Columns by group, shape (scored samples, k) each."""
-
-SLOW = ("beside", "path")
-"""Groups of what a drift may own."""
 
 
 def beside_a_drift(
@@ -61,13 +58,25 @@ def beside_a_drift(
     if structured > share:
         most, _ = explained_beside_walks(state, own, generic)
         structured = min(structured, most / power)
-    short = {name: columns for name, columns in own.items() if name not in SLOW}
+    short = without_paths(state, own)
     if _explained(state, short, slow_power) > LOOSE * power:
         _, as_path = explained_beside_walks(state, own, {})
         heat, as_heat = explained_beside_walks(state, short, slow_power)
         if heat > LOOSE * power and as_heat > as_path:
             return heat / power, {**generic, **slow_power}
     return structured, {**generic}
+
+
+def without_paths(state: ModelState, own: Groups) -> dict[str, FloatArray]:
+    """Give what is owned but for the paths of a drift; tones of the mains stay."""
+    tones = [
+        beside_columns(state, beside, values)
+        for beside, values in state.beside
+        if beside.effect != PATH
+    ]
+    short = {**own, "beside": np.hstack([np.zeros((len(state.sample), 0)), *tones])}
+    del short["path"]
+    return short
 
 
 def _explained(state: ModelState, own: Groups, signals: Groups) -> float:

@@ -24,7 +24,9 @@ SLOW_COSINES = 3
 PATH_COSINES = 5
 """Over a record, that a path of its own may have."""
 WALK_COSINES = 100
-"""Over a record, of a random walk: all but 0.6 % of its power."""
+"""Over a run, of a random walk: all but 0.6 % of its power."""
+WALKS_COSINES = 1000
+"""Of the random walks of all runs, at most: many runs have fewer each."""
 TIMES = 5
 """Of low-passes, from the shortest step on, and of slow averages."""
 DELAYS = (1, 2, 4, 8, 16)
@@ -139,12 +141,17 @@ def random_walks(state: ModelState) -> tuple[FloatArray, FloatArray]:
     -------
     columns : ndarray, shape (scored samples, cosines of all runs)
     sizes : ndarray, shape (cosines of all runs,)
-        The standard deviations, the largest of all being one.
+        RMS over the samples of all runs that columns of these standard deviations have,
+        the largest being one.
     """
-    number = np.arange(1, WALK_COSINES + 1)
+    most = WALKS_COSINES // len(runs(state.records))
+    number = np.arange(1, max(min(WALK_COSINES, most), PATH_COSINES) + 1)
     found = _cosines(state, number)
+    columns = np.hstack([cosines for cosines, _ in found])
     sizes = np.concatenate([np.sqrt(duration) / number for _, duration in found])
-    return np.hstack([columns for columns, _ in found]), sizes / sizes.max()
+    # Zeros in other runs count in the RMS of a column, which a short run has less of.
+    sizes *= np.sqrt(np.mean(columns**2, axis=0))
+    return columns, sizes / sizes.max()
 
 
 def _cosines(

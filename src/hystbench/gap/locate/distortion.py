@@ -109,7 +109,7 @@ class Distortion:
         ]
         if len(parts) == 1:
             parts.append("little or nothing beside them")
-        lines, other = f" Of the gap of periodic records {'; '.join(parts)}.", ""
+        lines = f" Of the gap of periodic records {'; '.join(parts)}."
         if self.shares[BETWEEN] < LEAST_SHARE:
             other = (
                 " Next to all of the gap of periodic records repeats with the input."

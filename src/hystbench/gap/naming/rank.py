@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -165,7 +165,8 @@ def rank(
         candidates = in_order(
             first_on_folds(in_order([again, *candidates]), state, score)
         )
-    return tuple(_beyond_others(candidates, state, score))
+    candidates = _beyond_others(candidates, state, score)
+    return tuple(simplest_of_a_tie(candidates, exact, needs))
 
 
 def _near(gain: float) -> float:
@@ -176,22 +177,34 @@ def _near(gain: float) -> float:
 def _beyond_others(
     candidates: Sequence[Candidate], state: ModelState, score: Score
 ) -> list[Candidate]:
-    """Charge effects for their freedom to choose a law; of a tie take the simplest."""
-    return simplest_of_a_tie(
-        beyond_simpler_laws(by_all_their_laws(candidates), state, score)
-    )
+    """Charge effects for their freedom to choose a law."""
+    return beyond_simpler_laws(by_all_their_laws(candidates), state, score)
 
 
-def simplest_of_a_tie(candidates: Sequence[Candidate]) -> list[Candidate]:
+def simplest_of_a_tie(
+    candidates: Sequence[Candidate], exact: Collection[str], needs: float
+) -> list[Candidate]:
     """Put what has the fewest numbers first, of those that cannot be told apart.
 
     Scores stay as they are: a name that leads for that alone has a confidence of less
     than a half.
+
+    Parameters
+    ----------
+    candidates : sequence of Candidate
+        What scores least, first.
+    exact : collection of str
+        Effects that were simulated exactly; others cannot lead.
+    needs : float
+        What an effect has to gain to be taken.
     """
     tied = [
         item
         for item in candidates
-        if item.state is not None and item.score < candidates[0].score + SCALE
+        if item.state is not None
+        and item.effect in exact
+        and item.gain >= needs
+        and item.score < candidates[0].score + SCALE
     ]
     if len(tied) < 2:
         return list(candidates)
@@ -280,13 +293,13 @@ def _each_judged(
     """Judge effects, the likeliest first.
 
     What is not judged on folds only has to do better than one that stands: far behind
-    the best so far, where nothing is simulated exactly either, a refit ends early.
+    the best so far, beyond what a free form is charged beside it, a refit ends early.
     """
     wanted = np.inf
     for trial in likely:
         item = _judged(trial, state, score, now, wanted)
         if not folds and item.state is not None:
-            wanted = min(wanted, item.score + NEAR)
+            wanted = min(wanted, item.score + CERTAIN + NEAR)
         yield item
 
 
