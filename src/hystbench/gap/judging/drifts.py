@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
+from functools import partial
 
 import numpy as np
 
@@ -55,13 +56,17 @@ def beside_a_drift(
     signals : dict
         The known signals that count.
     """
-    if structured > share:
-        most, _ = explained_beside_walks(state, own, generic)
-        structured = min(structured, most / power)
     short = without_paths(state, own)
-    if _explained(state, short, slow_power) > LOOSE * power:
-        _, as_path = explained_beside_walks(state, own, {})
-        heat, as_heat = explained_beside_walks(state, short, slow_power)
+    may_be_heat = _explained(state, short, slow_power) > LOOSE * power
+    if structured <= share and not may_be_heat:
+        return structured, {**generic}
+    explained = partial(explained_beside_walks, state, random_walks(state))
+    if structured > share:
+        most, _ = explained(own, generic)
+        structured = min(structured, most / power)
+    if may_be_heat:
+        _, as_path = explained(own, {})
+        heat, as_heat = explained(short, slow_power)
         if heat > LOOSE * power and as_heat > as_path:
             return heat / power, {**generic, **slow_power}
     return structured, {**generic}
@@ -89,13 +94,18 @@ def _explained(state: ModelState, own: Groups, signals: Groups) -> float:
 
 
 def explained_beside_walks(
-    state: ModelState, own: Groups, signals: Groups
+    state: ModelState,
+    walks: tuple[FloatArray, FloatArray],
+    own: Groups,
+    signals: Groups,
 ) -> tuple[float, float]:
     """Explain a residual by signals and random walks, one in each run, together.
 
     Parameters
     ----------
     state : ModelState
+    walks : (ndarray, ndarray)
+        Cosines of the random walks and their sizes: :func:`random_walks`.
     own, signals : mapping
         Columns by group, shape (scored samples, k) each.
 
@@ -107,8 +117,8 @@ def explained_beside_walks(
     evidence : float
         Logarithm of the probability density of the residual.
     """
-    walks, sizes = random_walks(state)
-    columns = [*own.values(), *signals.values(), walks]
+    cosines, sizes = walks
+    columns = [*own.values(), *signals.values(), cosines]
     places = _places(columns)
     first, last = places[len(own)].start, places[-1].start
     table = ColumnProducts.of(

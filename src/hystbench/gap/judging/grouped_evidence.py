@@ -125,10 +125,7 @@ class ColumnProducts:
         least = NOTHING * noise
         for step in range(STEPS + 1):
             root = np.sqrt(variances)[member]
-            scaled = gram * (root[:, None] * root) / noise
-            scaled.flat[:: len(used) + 1] += 1.0
-            inverse, determinant = _factored(scaled)
-            white = inverse.T @ (inverse @ (root * across)) / noise
+            white, inverse, determinant = _solved(gram, across, root, noise)
             amplitudes = root * white
             left = self.power - amplitudes @ (2 * across - gram @ amplitudes)
             left = max(float(left), least * self.rows)
@@ -165,20 +162,35 @@ class ColumnProducts:
         variances : ndarray, shape (own,)
             Of the amplitudes of the others.
         """
+        gram, root = self.gram[np.ix_(own, own)], np.sqrt(variances)
         across = self.gram[np.ix_(own, columns)] @ amplitudes
-        root = np.sqrt(variances)
-        scaled = self.gram[np.ix_(own, own)] * (root[:, None] * root) / noise
-        scaled.flat[:: len(root) + 1] += 1.0
-        inverse, _ = _factored(scaled)
-        taken = root * (inverse.T @ (inverse @ (root * across))) / noise
+        taken = root * _solved(gram, across, root, noise)[0]
         power = amplitudes @ self.gram[np.ix_(columns, columns)] @ amplitudes
-        power -= taken @ (2 * across - self.gram[np.ix_(own, own)] @ taken)
+        power -= taken @ (2 * across - gram @ taken)
         return max(float(power), 0.0) / self.rows
 
     def _evidence(self, noise: float, determinant: float, power: float) -> float:
         """Give the log density: ``power`` over the noise is the exponent's double."""
         spread = self.rows * float(np.log(2 * np.pi * noise))
         return -0.5 * (spread + determinant + power / noise)
+
+
+def _solved(
+    gram: FloatArray, across: FloatArray, root: FloatArray, noise: float
+) -> tuple[FloatArray, FloatArray, float]:
+    """Solve for amplitudes, in standard deviations ``root`` of what they may be.
+
+    Returns
+    -------
+    amplitudes : ndarray, shape (k,)
+        Posterior mean, over ``root``.
+    inverse, determinant : ndarray, float
+        Of one plus the products over the noise: as :func:`_factored` gives them.
+    """
+    scaled = gram * (root[:, None] * root) / noise
+    scaled.flat[:: len(root) + 1] += 1.0
+    inverse, determinant = _factored(scaled)
+    return inverse.T @ (inverse @ (root * across)) / noise, inverse, determinant
 
 
 def _factored(matrix: FloatArray) -> tuple[FloatArray, float]:
