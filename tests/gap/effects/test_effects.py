@@ -637,3 +637,25 @@ def test_some_rate_of_the_grid_explains_half_of_any_slew_limit(share):
     real = limited(share * state.simulation.fastest())
     left = [np.mean((real - limited(x)) ** 2) for x in variant.grids["rate"]]
     assert min(left) < 0.5 * np.mean((real - u) ** 2)
+
+
+def slew_limit_beside_steps():
+    """The variant of a slew limit for two steps of 4, half a second each."""
+    u = np.repeat([0.0, 4.0, 0.0, -4.0], 250)
+    state = state_of((block("gain", value=1.0),), (record(u, y=u, dt=1e-3),))
+    (variant,) = effects()["slew-limit"].variants(state.simulation)
+    return variant
+
+
+def test_a_slew_limit_moves_the_middle_of_a_step_by_a_sample():
+    """By less it would be a moment between two samples: two intervals more are one."""
+    interval, size = 1e-3, 4.0
+    _, fastest = slew_limit_beside_steps().ends("rate")
+    assert fastest < size / (3 * interval)
+    assert fastest > size / (4 * interval)
+
+
+def test_a_slew_limit_may_be_as_slow_as_the_record():
+    """What a step within a sample is divided by says nothing of the drive."""
+    slowest, _ = slew_limit_beside_steps().ends("rate")
+    assert slowest <= 8.0 / 1.0
