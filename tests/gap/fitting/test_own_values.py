@@ -17,7 +17,7 @@ from hystbench.gap.fitting.own_values import (
     own_values,
     values_of_record,
 )
-from hystbench.gap.naming.with_own_values import without_shared
+from hystbench.gap.naming.with_own_values import SHARED, without
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import decide_in, show_in
 from hystbench.gap.schema import RECORD_VALUES
@@ -146,6 +146,15 @@ def test_an_effect_is_named_beside_late_triggers():
     assert 0 < values_of(content)["share_of_gap_power"] < 1
 
 
+def test_zeros_of_each_record_are_no_drift_beside_an_effect():
+    """A path follows them, but offsets alone explain less than path and lag do."""
+    owns = [(0, 1, zero) for zero in (3, -2, 1, 0, -4)]
+    content = search("made", made(owns, LAG_S), rig(), declared=NOISE).content
+    (effect,) = content["effects"]
+    assert effect["name"] in ("sensor-lag", "drive-lag", "creep")
+    assert content["record_values"]["kinds"] == ["offset"]
+
+
 def test_late_triggers_alone_are_no_gap_and_hold_out_records_have_theirs(tmp_path):
     held = made([(0.0027, 1, 0), (0, 1, 0)], first=20)
     held = [replace(item, name=f"h{item.name}", use="hold-out") for item in held]
@@ -176,9 +185,9 @@ def test_a_delay_that_all_share_hides_those_of_each():
     ):
         variant = next(effects()[name].variants(both.simulation))
         both = with_effect(both, variant, values)
-    left = without_shared(both)
+    left = without(both, SHARED)
     assert [item.effect for item in left.added] == ["drive-lag"]
-    assert without_shared(start) is start
+    assert without(start, SHARED) is start
 
 
 LATE = {"delay_s": 0.002}

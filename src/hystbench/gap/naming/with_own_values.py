@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -63,15 +63,23 @@ def named_apart(
     """
     found = (start, named, NONE)
     square = floor_rms**2
-    paths = any(not values for _, values in named.state.beside)
+    paths = {one.effect for one, values in named.state.beside if not values}
     if not paths and named.state.power(square) <= unnamed_share * start.power(square):
         return found
     score = make_score(start, floor_rms, forms=False)
     least = score_of(named.state, score) - (0.0 if paths else PAYS)
     if least <= score.least(start.freedom + 1):
         return found  # noise alone, and what is their own charged, scores no less
-    models = dict.fromkeys((named.state, without_shared(named.state), start))
-    likely = _likely(start, tuple(models), score, least)
+    kinds = kinds_of(start)
+    # Beside a delay, a gain or an offset that all records share it would not be seen
+    # that each has its own.
+    states = dict.fromkeys((named.state, without(named.state, SHARED), start))
+    models = [(state, kinds) for state in states]
+    if paths:
+        # A path follows an offset, so that it may stand for that of each record.
+        level, _ = finished(without(named.state, paths), score)
+        models.append((level, ("offset",)))
+    likely = _likely(start, models, score, least)
     # Beside more than that they cannot be told from what the simulator does wrong.
     most = max(ABOVE_NOISE * square, unnamed_share * start.power(square))
     for _ in range(ROUNDS):
@@ -93,7 +101,8 @@ def named_apart(
         found, least = (apart, again, replace(own, share=share)), value
         if same:
             break  # naming has told all that it can
-        likely = _likely(start, (on_records(again.state, start.records),), score, least)
+        told = on_records(again.state, start.records)
+        likely = _likely(start, [(told, kinds)], score, least)
     return found
 
 
@@ -101,17 +110,14 @@ def _names(named: Named) -> set[tuple[str, str]]:
     return {(item.effect, item.form) for item in named.state.added}
 
 
-SHARED = {"input-delay", "calibration-error"}
+SHARED = frozenset({"input-delay", "calibration-error"})
 """Effects that do to all records what each may have of its own."""
 
 
-def without_shared(state: ModelState) -> ModelState:
-    """Give a model without a delay, a gain or an offset that all records share.
-
-    Beside one that was named it would not be seen that each record has its own.
-    """
+def without(state: ModelState, effects: Collection[str]) -> ModelState:
+    """Give a model without some effects, where they can be taken out."""
     for number in reversed(range(len(state.added))):
-        if state.added[number].effect in SHARED and removable(state, number):
+        if state.added[number].effect in effects and removable(state, number):
             state = without_effect(state, number)
     return state
 
@@ -121,17 +127,21 @@ ROUNDS = 3
 
 
 def _likely(
-    start: ModelState, models: Sequence[ModelState], score: Score, least: float
+    start: ModelState,
+    models: Sequence[tuple[ModelState, Sequence[str]]],
+    score: Score,
+    least: float,
 ) -> list[tuple[float, OwnValues]]:
     """Find what records have of their own beside models, and the scores with it.
 
+    Of the kinds that are given beside each.
     A model is refitted without it, and what is their own found again, while that helps.
     """
     found = []
-    for state in models:
+    for state, kinds in models:
         best: tuple[float, OwnValues] = (np.inf, NONE)
         for _ in range(ROUNDS):
-            own = _own_values(state, start, score.floor)
+            own = _own_values(state, start, score.floor, kinds)
             if not own.records:
                 break
             bare = own.taken_off(start.records, start.hold)
@@ -147,9 +157,10 @@ def _likely(
     return sorted(found, key=lambda item: item[0])
 
 
-def _own_values(state: ModelState, start: ModelState, floor: float) -> OwnValues:
+def _own_values(
+    state: ModelState, start: ModelState, floor: float, kinds: Sequence[str]
+) -> OwnValues:
     """Find what records have of their own beside a model, or look it up."""
-    kinds = kinds_of(start)
     return remembered_of(
         state,
         lambda: ["own values", records_digest(start.records), floor, kinds],
