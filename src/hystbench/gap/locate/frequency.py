@@ -8,6 +8,7 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy import fft
 
 from hystbench.gap.locate.distortion import take_distortion
@@ -232,23 +233,22 @@ def _lines(item: Compared) -> tuple[FloatArray, ComplexArray]:
     frequency : ndarray, shape (m,)
     matrix : ndarray of complex, shape (9, m)
     """
-    from scipy.signal import csd  # late: it takes long to load
-
     record = item.record
     signals = np.stack([record.u, item.residual, item.simulated])
     n, period = len(record), record.period_samples
-    size, window, overlap = n // SEGMENTS, "hann", n // SEGMENTS // 2
     if period and n >= SEGMENTS * period:
         signals = whole_periods(signals, period).reshape(3, -1)
-        size, window, overlap = period, "boxcar", 0
+        size = step = period
+        window = np.ones(size)
+    else:
+        size, step = n // SEGMENTS, n // SEGMENTS - n // SEGMENTS // 2
+        window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(size) / size)  # Hann
     centred = signals - signals.mean(axis=1, keepdims=True)
-    frequency, matrix = csd(
-        centred[None],
-        centred[:, None],
-        1 / record.dt,
-        window=window,
-        nperseg=size,
-        noverlap=overlap,
-        detrend=False,
-    )
-    return frequency[1:], matrix.reshape(9, -1)[:, 1:] * frequency[1]
+    # As scipy.signal.csd, which takes a fifth of a search's time to load.
+    parts = sliding_window_view(centred, size, axis=1)[:, ::step]
+    lines = fft.rfft(parts * window)
+    matrix = np.einsum("akm,bkm->abm", lines, lines.conj()) / parts.shape[1]
+    # In lines of both signs there is the same power; the highest may be its own.
+    matrix[..., 1 : (size + 1) // 2] *= 2
+    frequency = np.arange(lines.shape[-1]) / (size * record.dt)
+    return frequency[1:], matrix.reshape(9, -1)[:, 1:] / (size * np.sum(window**2))
