@@ -121,7 +121,7 @@ def work(what: str, case: str, candidates: int, share: float) -> dict[str, objec
     evidence, model = load_evidence(Path(case, "dataset")), f"{case}/model.yaml"
     whole = what == "a case"
     records = (*evidence.fit, *evidence.hold_out) if whole else evidence.fit
-    importlib.import_module("scipy.signal")  # what a case imports on its way
+    importlib.import_module("scipy.optimize")  # what a case imports on its way
     gc.freeze()  # as the command does
     wall, cpu = perf_counter(), process_time()
     answer = (
