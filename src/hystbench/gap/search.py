@@ -16,7 +16,13 @@ from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.named_inside import Inside, apart_inside, beats, named_inside
+from hystbench.gap.inside.named_inside import (
+    Inside,
+    apart_inside,
+    beats,
+    betters,
+    named_inside,
+)
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
 from hystbench.gap.naming.add_effects import add_effects
 from hystbench.gap.naming.with_own_values import named_apart
@@ -95,6 +101,9 @@ def search(
         start, floor, inside, own = _with_forces(
             base, start, floor, quantities, declared, say, unnamed_share
         )
+    if inside is not None and not betters(inside, start, floor.rms):
+        say("inside: what stands for the base leaves more than the base does")
+        inside = None
     enough = ""
     # A base that was given is re-tuned where it is a host: that may stand for a chain.
     if inside is not None and is_identified(base):

@@ -155,6 +155,22 @@ def test_zeros_of_each_record_are_no_drift_beside_an_effect():
     assert content["record_values"]["kinds"] == ["offset"]
 
 
+def test_zeros_are_found_together_with_a_creep_that_looks_like_them():
+    """Loads that are put on and partly taken off: slow creep is nearly an offset."""
+    rng, time, found = np.random.default_rng(3), np.arange(COUNT) * DT, []
+    loads = [(1, 2), (2, -1), (-1, 0), (3, 3), (-2, -3)]
+    for k, (load, zero) in enumerate(loads):
+        on, off = (np.clip((time - at) / 0.02, 0, 1) for at in (0.1, 0.4))
+        u = load * (on - 0.7 * off)
+        slow = lfilter([1 - np.exp(-DT / 0.3)], [1, -np.exp(-DT / 0.3)], u)
+        y = GAIN * (u + 0.2 * slow) + zero + NOISE * rng.standard_normal(COUNT)
+        found.append(record(u, y, name=f"r{k}", dt=DT))
+    content = search("made", tuple(found), rig(), declared=NOISE).content
+    (effect,) = content["effects"]
+    assert effect["name"] == "creep"
+    assert content["record_values"]["kinds"] == ["offset"]
+
+
 def test_late_triggers_alone_are_no_gap_and_hold_out_records_have_theirs(tmp_path):
     held = made([(0.0027, 1, 0), (0, 1, 0)], first=20)
     held = [replace(item, name=f"h{item.name}", use="hold-out") for item in held]

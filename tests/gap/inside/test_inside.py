@@ -25,8 +25,15 @@ from hystbench.gap.inside.hypotheses import (
     with_one_fewer,
 )
 from hystbench.gap.inside.laws import evened, how_it_moves, laws_for, with_law
-from hystbench.gap.inside.named_inside import chosen, named_inside, re_tuning
+from hystbench.gap.inside.named_inside import (
+    Inside,
+    betters,
+    chosen,
+    named_inside,
+    re_tuning,
+)
 from hystbench.gap.inside.one_coordinate import free_masses, one_coordinate
+from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.records.free_mass import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
 from hystbench.gap.records.scored_samples import ScoredSamples
@@ -536,3 +543,19 @@ def test_a_host_of_a_given_base_tells_how_much_fitting_it_anew_takes():
     )
     assert "takes 94 % of the gap" in re_tuning(alone, fitted, 0.0)
     assert re_tuning(alone, alone, 0.0) == ""
+
+
+@pytest.mark.parametrize(
+    ("after", "pays"), [(10.9, False), (11.0, False), (11.9, True)]
+)
+def test_an_effect_that_makes_up_for_what_its_host_lacks_is_not_missing(after, pays):
+    """The base's gain is 11 of 12: a host with an effect must come nearer."""
+    u = np.sin(2 * np.pi * 1.3 * TIME)
+    given = (record("run", u, 12.0 * u, ("V", "mm")),)
+    sample = ScoredSamples.of(given)
+    base, found = (
+        ModelState((Gain(value=value),), given, sample) for value in (11.0, after)
+    )
+    model = Model("rig", *(Channel("in", "V"), Channel("out", "mm")), base.chain)
+    inside = Inside(model, base, Named(found, ()), "")
+    assert betters(inside, base, 0.01) == pays

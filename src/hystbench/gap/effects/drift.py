@@ -59,8 +59,13 @@ def degree(record: Record, order: int) -> int:
 def path(
     record: Record, given: Values, order: int, at: SomeSamples = EVERY
 ) -> FloatArray:
-    """Give a ramp, and for a path Legendre polynomials beside it, shape (n, k)."""
+    """Give a ramp, and for a path Legendre polynomials beside it, shape (n, k).
+
+    Of order zero it is a constant: an offset of the record's own, and no drift.
+    """
     ramp = record.time[at, None]
+    if order == 0:
+        return np.ones_like(ramp)
     if order == 1:
         return ramp
     x = np.linspace(-1.0, 1.0, len(record))[at]

@@ -212,6 +212,16 @@ def apart_inside(
     return found
 
 
+def betters(inside: Inside, start: ModelState, floor_rms: float) -> bool:
+    """Tell whether effects inside lower the base's score by what one has to gain.
+
+    A model of one coordinate may lack what a base of higher order has: an effect that
+    makes up for that is not missing in the base.
+    """
+    score = Score.plain(start.sample, floor_rms**2)
+    return score_of(start, score) - score_of(inside.named.state, score) >= PAYS
+
+
 def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> bool:
     """Tell whether effects inside do better than those in a chain.
 

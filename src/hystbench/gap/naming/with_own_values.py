@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.gap.cache import records_digest
+from hystbench.gap.effects.drift import Drift, path
+from hystbench.gap.effects.variant import Beside
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.own_values import KINDS, NONE, OwnValues, own_values
@@ -17,7 +19,7 @@ from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.progress import Say
-from hystbench.gap.thresholds import ABOVE_NOISE, PAYS, UNNAMED_SHARE
+from hystbench.gap.thresholds import ABOVE_NOISE, PARAMETER, PAYS, UNNAMED_SHARE
 from hystbench.record import Record
 
 
@@ -39,7 +41,8 @@ def named_apart(
     effect has to lower it, all numbers charged; of names that are themselves new in
     every record, such as a drift, it only has to be the better one. And no more may be
     left than noise, or than may stay unnamed: numbers of one record stand in for any
-    law that its rate or its amplitude brings out.
+    law that its rate or its amplitude brings out. Nor may the base be further off
+    without them.
 
     Parameters
     ----------
@@ -63,11 +66,13 @@ def named_apart(
     """
     found = (start, named, NONE)
     square = floor_rms**2
-    paths = {one.effect for one, values in named.state.beside if not values}
+    paths = any(not values for _, values in named.state.beside)
     if not paths and named.state.power(square) <= unnamed_share * start.power(square):
         return found
     score = make_score(start, floor_rms, forms=False)
-    least = score_of(named.state, score) - (0.0 if paths else PAYS)
+    # A path is charged half a number in each record at the least, an offset a whole one.
+    half = PARAMETER * len(start.records) / 2
+    least = score_of(named.state, score) + (half if paths else -PAYS)
     if least <= score.least(start.freedom + 1):
         return found  # noise alone, and what is their own charged, scores no less
     kinds = kinds_of(start)
@@ -77,8 +82,7 @@ def named_apart(
     models = [(state, kinds) for state in states]
     if paths:
         # A path follows an offset, so that it may stand for that of each record.
-        level, _ = finished(without(named.state, paths), score)
-        models.append((level, ("offset",)))
+        models.append((beside_offsets(named.state, start, score), ("offset",)))
     likely = _likely(start, models, score, least)
     # Beside more than that they cannot be told from what the simulator does wrong.
     most = max(ABOVE_NOISE * square, unnamed_share * start.power(square))
@@ -91,12 +95,21 @@ def named_apart(
         again = add_effects(apart, floor_rms, say, unnamed_share)
         value = score_of(again.state, score) + own.charge
         if value >= least:
+            likely = []
+            if own.kinds == ("offset",):
+                told = beside_offsets(again.state, start, score)
+                likely = _likely(start, [(told, own.kinds)], score, least)
+            if any(item[0] < least for item in likely):
+                continue
             say("that scores no better: they have none of their own")
             break
         if again.state.power(square) > most:
             say("too much is left beside that: it is not told")
             return start, named, NONE
         share = apart.share(start, square, start.power(square))
+        if share <= 0:
+            say("without them the base is further off: they stand for something else")
+            break
         same = _names(again) == _names(found[1])
         found, least = (apart, again, replace(own, share=share)), value
         if same:
@@ -120,6 +133,19 @@ def without(state: ModelState, effects: Collection[str]) -> ModelState:
         if state.added[number].effect in effects and removable(state, number):
             state = without_effect(state, number)
     return state
+
+
+def beside_offsets(state: ModelState, start: ModelState, score: Score) -> ModelState:
+    """Fit a model's laws together with a constant in each record; leave that out again.
+
+    A slow law and an offset look alike: one after the other, each takes what is the
+    other's. Paths stand for the offsets, so they go.
+    """
+    paths = {one.effect for one, values in state.beside if not values}
+    laws = on_records(without(state, paths), start.records)
+    level = Beside(Drift.name, 0, path), {}
+    fitted, _ = finished(replace(laws, beside=(*laws.beside, level)).settled(), score)
+    return replace(fitted, beside=fitted.beside[:-1])
 
 
 ROUNDS = 3
