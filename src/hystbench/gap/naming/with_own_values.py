@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench.gap.cache import records_digest
 from hystbench.gap.effects.drift import Drift, path
-from hystbench.gap.effects.variant import Beside
+from hystbench.gap.effects.variant import Beside, Values
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.own_values import KINDS, NONE, OwnValues, own_values
@@ -143,7 +143,7 @@ def beside_offsets(state: ModelState, start: ModelState, score: Score) -> ModelS
     """
     paths = {one.effect for one, values in state.beside if not values}
     laws = on_records(without(state, paths), start.records)
-    level = Beside(Drift.name, 0, path), {}
+    level: tuple[Beside, Values] = Beside(Drift.name, 0, path), {}
     fitted, _ = finished(replace(laws, beside=(*laws.beside, level)).settled(), score)
     return replace(fitted, beside=fitted.beside[:-1])
 
