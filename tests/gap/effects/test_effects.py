@@ -5,6 +5,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
@@ -659,3 +660,19 @@ def test_a_slew_limit_may_be_as_slow_as_the_record():
     """What a step within a sample is divided by says nothing of the drive."""
     slowest, _ = slew_limit_beside_steps().ends("rate")
     assert slowest <= 8.0 / 1.0
+
+
+@pytest.mark.parametrize("largest", [0.5, 2.0, 8.0])
+def test_the_algebraic_law_follows_langevins(largest):
+    """So it needs no form of its own: a thousandth of what it bends would be named."""
+    z = np.linspace(-largest, largest, 1000)
+    langevin = 1 / np.tanh(3 * z) - 1 / (3 * z)
+
+    def left(numbers):
+        level, sharpness, gain = numbers
+        curve = block("saturation", level=level, sharpness=sharpness)
+        return gain * curve.simulate(z, z, 1.0) - langevin
+
+    found = least_squares(left, [1.0, 2.0, 1.0], bounds=([0.1, 1, 0.5], [4, 20, 2]))
+    bent = langevin - z * (langevin @ z) / (z @ z)
+    assert np.mean(found.fun**2) < 1e-3 * np.mean(bent**2)

@@ -107,3 +107,17 @@ def test_a_law_is_found_under_its_name(form):
     assert first.gain > PAYS, told
     gap = state.power(NOISE**2)
     assert first.state.share(state, NOISE**2, gap) > 0.95, told
+
+
+def test_friction_that_bends_late_is_found_with_its_scale():
+    """As of a seal: at three fifths of the fastest velocity of the records."""
+    gain = block("gain", value=12.0)
+    fastest = state_of((gain,), records()).simulation.fastest()
+    late = block("friction", coulomb=3.0, velocity_scale=0.6 * fastest)
+    state = state_of((gain,), measured((gain, late), NOISE, given=records()))
+    known = [effects()[item] for item in ("friction", "drive-lag")]
+    first = rank(state, make_score(state, NOISE), known, folds=False)[0]
+    assert (first.effect, first.declined) == ("friction", "")
+    (found,) = [x for x in first.state.chain if x.name == "friction"]
+    assert found.velocity_scale == pytest.approx(0.6 * fastest, rel=0.1)
+    assert found.coulomb == pytest.approx(3.0, rel=0.1)

@@ -17,6 +17,8 @@ HOLDS = 1e-7
 so little."""
 SOON = 1e-3
 """The same where it gives way along a curve."""
+VISCOUS = 2.0
+"""Of the fastest velocity: the tangent of a half bends by 8 % of a straight line."""
 
 
 class Friction(Effect):
@@ -30,14 +32,13 @@ class Friction(Effect):
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer it behind the mechanics, by the velocity at which it saturates."""
         end = simulation.behind_mechanics
+        fastest = simulation.fastest()
         yield self.inserted(
             simulation,
             end,
-            grids={
-                "velocity_scale": logarithmic(
-                    1e-4 * simulation.fastest(), simulation.fastest() / 5, 2
-                )
-            },
+            grids={"velocity_scale": logarithmic(1e-4 * fastest, fastest / 5, 2)},
+            # A seal's friction may bend as late as that; beyond it is viscous.
+            limits={"velocity_scale": (1e-4 * fastest, VISCOUS * fastest)},
             refused={"velocity_scale": "either"},
             unit={"coulomb": 1e-3 * simulation.largest(end)},
         )

@@ -70,7 +70,7 @@ def named_apart(
     if not paths and named.state.power(square) <= unnamed_share * start.power(square):
         return found
     score = make_score(start, floor_rms, forms=False)
-    # A path is charged half a number in each record at the least, an offset a whole one.
+    # A path is charged half a number in each record or more, an offset a whole one.
     half = PARAMETER * len(start.records) / 2
     least = score_of(named.state, score) + (half if paths else -PAYS)
     if least <= score.least(start.freedom + 1):
