@@ -9,14 +9,16 @@ from hystbench.gap.holdout.outcome import (
     first_figure,
     withdrawal,
     without_names,
+    worse_than_a_constant,
 )
-from hystbench.gap.records.evidence import load_evidence
+from hystbench.gap.records.evidence import Evidence, load_evidence
 from hystbench.gap.report.words import verdict_sentence
 from hystbench.gap.run import DECISION, decide_in, show_in
 from hystbench.gap.schema import SCHEMA
 from hystbench.model import Model, load_model
 from hystbench.schema import check_against_schema
 from tests.gap.closing import close_gap
+from tests.gap.made import record
 from tests.gap.tiny import BASE, write_tiny
 
 
@@ -74,6 +76,18 @@ def test_the_first_figure_says_of_what_it_is_a_share():
     assert "46.0 % to 54.0 %" in first_figure(content(explained=[0.46, 0.54]))
     assert "%" not in first_figure(content(explained=None))
     assert "none of the gap's power" in first_figure(content(explained=-0.001))
+
+
+def test_a_base_that_a_constant_beats_on_hold_out_records_is_told():
+    """The fit records' mean is 3; on the hold-out record it leaves 1."""
+    u = np.zeros(4)
+    fit = record(u, [2.0, 4.0, 2.0, 4.0], name="a")
+    held = record(u, [4.0, 2.0, 4.0, 2.0], name="b", use="hold-out")
+    evidence = Evidence("rig", (fit,), (held,))
+    (told,) = worse_than_a_constant(1.5, evidence)
+    assert "leaves 1.5 um rms, and a constant" in told
+    assert " 1 um" in told
+    assert worse_than_a_constant(0.9, evidence) == []
 
 
 @pytest.fixture(scope="module")

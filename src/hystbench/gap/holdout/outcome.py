@@ -11,6 +11,8 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
+
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.fitting.on_records import run_base
@@ -48,7 +50,10 @@ def outcome(
         **decided,
         "withdrawn": None,
         **shown.content,
-        "warnings": list(evidence.warnings),
+        "warnings": [
+            *evidence.warnings,
+            *worse_than_a_constant(shown.content["gap"]["before"], evidence),
+        ],
     }
     taken = withdrawal(content)
     if taken is not None:
@@ -67,6 +72,33 @@ def outcome(
         content = with_built_in(content, built_in, _alone(built_in, fitted, evidence))
     content = with_device(content, evidence.device_kind, evidence.quantities)
     return replace(shown, content=content)
+
+
+def worse_than_a_constant(before: float, evidence: Evidence) -> list[str]:
+    """Say that the mean output of the fit records does better than the base.
+
+    Parameters
+    ----------
+    before : float
+        RMS residual of the base on the hold-out records.
+    evidence : Evidence
+
+    Returns
+    -------
+    list of str
+        One warning, or none.
+    """
+    mean = np.mean(np.concatenate([record.y for record in evidence.fit]))
+    outputs = np.concatenate([record.y for record in evidence.hold_out])
+    still = float(np.sqrt(np.mean((outputs - mean) ** 2)))
+    if before <= still:
+        return []
+    unit = evidence.fit[0].output.unit
+    return [
+        f"on the hold-out records the base leaves {before:.3g} {unit} rms, and a "
+        f"constant, the mean output of the fit records, {still:.3g} {unit}: it is no "
+        "model of this device"
+    ]
 
 
 def _alone(built_in: BuiltIn, fitted: FitResult, evidence: Evidence) -> float:
