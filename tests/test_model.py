@@ -338,3 +338,39 @@ def test_a_tolerance_of_what_is_not_free_is_refused():
             free=("gain.value",),
             tolerances={"gain.offset": 0.1},
         )
+
+
+#: A file as the first version wrote it, before blocks held how their input moves.
+EARLY = """
+name: early
+input: {name: current, unit: A}
+output: {name: displacement, unit: um}
+free: [gain.value, resonance#2.damping_ratio]
+chain:
+  - drive-lag: {time_constant_s: 0.002}
+  - gpi:
+      envelope: [1.2878, 0.36, 0.6025, -0.6671, 0.3223, 1.2233, 0.1104, -0.0248]
+      thresholds: [0.0, 0.05, 0.1]
+      weights: [1.0, 0.5, 0.25]
+  - gain: {value: 10, offset: 1}
+  - asymmetry: {coefficient: 0.02}
+  - resonance: {frequency_hz: 65, damping_ratio: 0.03, participation: 0.1}
+  - resonance: {frequency_hz: 300, damping_ratio: 0.05, participation: 0.2}
+  - creep: {magnitudes: [0.05, 0.03], time_constants_s: [0.2, 2.0]}
+  - transfer-function: {numerator: [1.0e+3, 4.0e+5], denominator: [1.0, 1.2e+3, 4.0e+5]}
+  - calibration-error: {gain: 1.05, offset: 0.1}
+  - sensor-noise: {rms: 0.05}
+provenance:
+  gain.value: {source: published, note: Printed in the data sheet.}
+"""
+#: Of these samples, what that version simulated (its first commit with kernels).
+THEN = {1: 0.29767569, 57: 6.88818629, 123: -2.44326096, 399: -4.31972286}
+
+
+def test_a_model_file_of_the_first_version_means_what_it_meant(tmp_path):
+    (tmp_path / "early.yaml").write_text(EARLY)
+    model = load_model(tmp_path / "early.yaml")
+    u = 2 * np.sin(2 * np.pi * 20 * np.arange(400) / 4000)
+    y = model.simulate(u, 1 / 4000)
+    np.testing.assert_allclose(y[list(THEN)], list(THEN.values()), rtol=1e-7)
+    assert model.free == ("gain.value", "resonance#2.damping_ratio")
