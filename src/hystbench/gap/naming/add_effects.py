@@ -11,6 +11,7 @@ from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import above_floor, make_score, score_of
 from hystbench.gap.fitting.refit import finished, ready
+from hystbench.gap.fitting.scan import scanned
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.forecast_calls import foretell, foretell_rest
@@ -245,7 +246,7 @@ def advance(
     state = progress.state
     if taken:
         assert first.state is not None  # noqa: S101  (for the type checker)
-        state = to_the_end(first.state, floor)
+        state = to_the_end(scanned(first.state, floor_rms), floor)
         if len(state.added) > 1:
             rounds = (*progress.rounds, one)
             state, looks = reconsidered(state, rounds, floor_rms, say)
