@@ -235,7 +235,7 @@ def test_what_cannot_be_undone_is_one_line(block, why):
             ("butterfly", {"coefficient": 5.0, "threshold": 0.1}),
             "rise or fall throughout",
         ),
-        (rate("excess-field", "linear"), "which runs away"),
+        (rate("excess-field", "linear"), "which diverges"),
     ],
 )
 def test_what_hysteresis_cannot_be_undone_is_one_line(block, why):

@@ -256,6 +256,6 @@ def test_a_motion_that_runs_away_is_refused_in_one_line(size):
     model = model_of(
         ("mechanism", {}), ("stiffness", {"quadratic": 0.0, "cubic": -1e5})
     )
-    with pytest.raises(InputError, match=r"^reference: .*runs away") as told:
+    with pytest.raises(InputError, match=r"^reference: .*diverges") as told:
         feedforward(model, sine(20, size), DT)
     assert "\n" not in str(told.value)

@@ -140,7 +140,7 @@ def field(by: RateDependentHysteresis, sampling: Sampling) -> Step:
     if by.form == "excess-field":
         raise CannotBe(
             "the field that is lost follows the rate of the one that is sought, which "
-            "runs away; with 'form: acting-field' it does not"
+            "diverges; with 'form: acting-field' it does not"
         )
     smooth = by.holding == "band-limited"
     points = sampling.curve_points if smooth else 2

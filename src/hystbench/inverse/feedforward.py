@@ -135,12 +135,12 @@ def feedforward(
     found = _corrected(model, start, response, x, reference, dt, band)
     if not np.isfinite(found.left):
         raise InputError(
-            "reference: the model's output runs away with the input that it would "
+            "reference: the model's output diverges with the input that it would "
             "take; expected a smaller or slower reference"
         )
     if found.clipped and limits == Limits():
         raise InputError(
-            f"reference: the input runs away at {found.clipped} of {len(reference)} "
+            f"reference: the input diverges at {found.clipped} of {len(reference)} "
             f"samples, as '{found.exact}' does not reach what is asked of it; expected "
             "a smaller or slower reference, or --limit-low and --limit-high"
         )

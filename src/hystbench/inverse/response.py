@@ -93,7 +93,7 @@ def best_linear(
     settled = [map_(np.tile(scale * u, 2))[count:] for u in draws]
     if not np.isfinite(settled).all():
         raise InputError(
-            f"reference: at a stroke of {size:g} the model's output runs away; "
+            f"reference: at a stroke of {size:g} the model's output diverges; "
             "expected a smaller reference"
         )
     outputs = np.fft.rfft(np.array(settled))

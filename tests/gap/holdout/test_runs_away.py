@@ -112,7 +112,7 @@ def test_the_record_is_named_and_counts_as_nothing_closed(written):
     (away,) = content["runs_away"]
     assert away["record"] == "far"
     assert 0 < away["from_s"] < COUNT * DT
-    told = "rig with stiffness-hardening runs away on far from"
+    told = "rig with stiffness-hardening diverges on far from"
     assert away["sentence"].startswith(told)
     gap = content["gap"]
     assert gap["after"] == gap["before"] == content["withdrawn"]["before"]

@@ -88,7 +88,7 @@ def test_records_that_a_model_runs_away_on_and_those_that_refuse_it_are_told_apa
     ]
     found = shortfall(content(fit=0.9, held=0.0) | {"runs_away": away})
     assert (
-        "the model runs away on a and c; the model cannot be run on b"
+        "the model diverges on a and c; the model cannot be run on b"
         in (found["sentence"])
     )
 

@@ -621,7 +621,7 @@ def test_an_experiment_that_was_not_computed_is_not_called_needless(tmp_path, wh
 @pytest.mark.usefixtures("unrendered")
 def test_a_model_that_runs_away_is_said_to_and_drawn_without_it(tmp_path):
     """Its record has no rms after and no curve; the others keep theirs."""
-    told = "rig with creep runs away on held-2 from 0.3 s on."
+    told = "rig with creep diverges on held-2 from 0.3 s on."
     gap = json.loads(json.dumps(GAP))
     gap["gap"] |= {"after": None, "explained": 0.0}
     del gap["gap"]["after_interval"], gap["gap"]["interval"]

@@ -245,7 +245,7 @@ class Score:
         columns, charge = columns / scale, np.diag(stiffness / scale**2)
         power = columns.T @ columns / len(columns)
         if not np.isfinite(power).all():
-            raise InputError("a number that may be re-tuned lets the model run away")
+            raise InputError("a number that may be re-tuned makes the model diverge")
         values, vectors = np.linalg.eigh(power + charge)
         kept = values > APART * values.max(initial=0.0)
         turned = vectors[:, kept] / np.sqrt(values[kept])

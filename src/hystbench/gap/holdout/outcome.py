@@ -321,7 +321,7 @@ def _widens(content: Mapping[str, Any]) -> list[str]:
 
 def _runs_away(content: Mapping[str, Any]) -> list[str]:
     found = []
-    for what, refused in (("runs away", False), ("cannot be run", True)):
+    for what, refused in (("diverges", False), ("cannot be run", True)):
         names = [
             item["record"]
             for item in content.get("runs_away", [])

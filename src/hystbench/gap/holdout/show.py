@@ -173,7 +173,7 @@ class RunsAway(NamedTuple):
     def mapping(self) -> dict[str, Any]:
         """Give what gap.json holds under ``runs_away``."""
         what = (
-            f"runs away on {self.record} from {self.from_s:g} s on: there its output "
+            f"diverges on {self.record} from {self.from_s:g} s on: there its output "
             "is not bounded"
         )
         if self.refused is not None:

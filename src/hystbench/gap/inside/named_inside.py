@@ -130,8 +130,9 @@ def named_inside(
     left = (float(np.sqrt(max(x.power(floor_rms**2), 0.0))) for x in (start, alone))
     before, after = (f"{rms:.3g} {base.output.unit}" for rms in left)
     sentence = (
-        f"{host.words}{further_words(alone)}, with effects inside (rms of the fit "
-        f"records above the floor: {before} of the base, {after} of what stands for it)"
+        f"{host.words}{further_words(alone)}, and effects act inside it (without them "
+        f"it leaves {after} rms of the fit records above the noise floor, the base "
+        f"{before})"
     )
     if not identified:
         sentence += re_tuning(alone, fitted, floor_rms**2)

@@ -115,8 +115,8 @@ class Unnamed:
     def reason(self, share: float = UNNAMED_SHARE) -> str:
         """Say why no name stands."""
         much = (
-            f"{_percent(self.structured)} of the gap's power follows known signals in "
-            "a way that no number of the named effects accounts for"
+            f"{_percent(self.structured)} of the gap's power follows known signals, "
+            "and no parameter values of the named effects explain it"
         )
         return f"{much}: {SORTS[self.sort(share)]}"
 
