@@ -33,6 +33,26 @@ def test_a_csv_file_becomes_a_table_of_what_is_asked_for(folder):
     )
 
 
+def test_a_block_of_another_page_is_repeated(folder):
+    """README tells numbers of the contest, which is not run with the rest."""
+    (folder / "other.md").write_text(
+        "<!-- from a.md -->\nnot this\n<!-- end -->\n"
+        "<!-- from results/gone.csv; columns: a -->\n\n| a |\n\n<!-- end -->\n"
+    )
+    line = "<!-- from other.md; block: results/gone.csv -->"
+    _, page = fill(folder, f"{line}\nold\n<!-- end -->\n")
+    assert page == f"{line}\n\n| a |\n\n<!-- end -->\n"
+
+
+def test_readme_repeats_what_a_page_got_in_the_same_call(folder):
+    (folder / "docs").mkdir()
+    block = "<!-- from {} -->\nold\n<!-- end -->\n"
+    (folder / "docs" / "own.md").write_text(block.format("t.md"))
+    (folder / "README.md").write_text(block.format("docs/own.md; block: t.md"))
+    assert run_hystbench("docs", cwd=folder).returncode == 0
+    assert "new text" in (folder / "README.md").read_text()
+
+
 def test_a_picture_is_copied(folder):
     text = "<!-- picture p.png -->\n![loops](images/p.png)\n"
     assert fill(folder, text)[1] == text
@@ -45,6 +65,7 @@ def test_a_picture_is_copied(folder):
         ("<!-- from gone.md -->", "no file gone.md"),
         ("<!-- from t.csv; columns: aa -->", "no column 'aa'; did you mean 'a'?"),
         ("<!-- from t.csv; row: a = 1 -->", "did you mean 'rows'?"),
+        ("<!-- from page.md; block: t.cvs -->", "no block 't.cvs'"),
     ],
 )
 def test_what_is_missing_is_told_and_the_page_kept(folder, line, expected):

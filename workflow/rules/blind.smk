@@ -88,6 +88,7 @@ rule blind_summary:
         tables=[
             f"{BLIND}/{name}.csv"
             for name in (
+                "in-words",
                 "contest",
                 "reach",
                 "further",

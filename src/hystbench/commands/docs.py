@@ -16,10 +16,12 @@ Page = Annotated[Path, click.Path(exists=True, dir_okay=False, path_type=Path)]
 
 #: What stands between the two lines is what the named file holds.
 BLOCK = re.compile(
-    r"(?P<open><!-- from (?P<source>[^\s;]+)(?P<choice>[^>]*?) -->\n).*?"
-    r"(?P<close><!-- end -->)",
+    r"(?P<open><!-- from (?P<source>[^\s;]+)(?P<choice>[^>]*?) -->\n)"
+    r"(?P<content>.*?)(?P<close><!-- end -->)",
     re.DOTALL,
 )
+#: Which block of another page is repeated.
+BLOCK_OF = re.compile(r"; block: (?P<file>\S+)")
 #: A picture in docs/ that is a copy of one in results/.
 PICTURE = re.compile(
     r"<!-- picture (?P<source>\S+) -->\n!\[[^\]]*\]\((?P<copy>[^)]+)\)"
@@ -45,13 +47,16 @@ def docs(pages: tuple[Page, ...] = ()) -> None:
 
     A block ``<!-- from FILE -->`` to ``<!-- end -->`` gets the text of FILE. Of a CSV
     file it gets a table, of some columns and rows where it says so:
-    ``<!-- from FILE; columns: a, b; rows: c = value -->``. The picture below
+    ``<!-- from FILE; columns: a, b; rows: c = value -->``. ``<!-- from PAGE; block:
+    FILE -->`` repeats the block of another page, where FILE is not made with the rest.
+    The picture below
     ``<!-- picture FILE -->`` gets a copy of FILE. Numbers in the pages come from
     results in this way only. A page of which a source is missing or wrong is left as
     it is, the others are filled.
     """
     left = False
-    for page in pages or [Path("README.md"), *sorted(Path("docs").glob("*.md"))]:
+    # README.md repeats blocks of the others.
+    for page in pages or [*sorted(Path("docs").glob("*.md")), Path("README.md")]:
         try:
             if not pages and _is_of_records_elsewhere(page):
                 click.echo(f"{page}: left as it is: its records are not shipped")
@@ -99,9 +104,21 @@ def _filled(page: Path, found: re.Match[str]) -> str:
     source = Path(found["source"])
     if source.suffix == ".csv":
         content = _table(page, source, found["choice"])
+    elif key := BLOCK_OF.fullmatch(found["choice"]):
+        content = _repeated(page, source, key["file"])
     else:
         content = source.read_text(encoding="utf-8").strip()
     return f"{found['open']}\n{content}\n\n{found['close']}"
+
+
+def _repeated(page: Path, source: Path, file: str) -> str:
+    """Give what stands in the block of another page that is filled from a file."""
+    blocks = {
+        found["source"]: found["content"].strip()
+        for found in BLOCK.finditer(source.read_text(encoding="utf-8"))
+    }
+    refuse_unknown(file, blocks, f"{page}: from {source}: no block {file!r}")
+    return blocks[file]
 
 
 def _table(page: Path, source: Path, choice: str) -> str:

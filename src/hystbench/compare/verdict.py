@@ -74,7 +74,7 @@ def sentences(summary: Mapping[str, Any]) -> list[str]:
 def first_result(summary: Mapping[str, Any]) -> str:
     """Write the README's table of what was found as Markdown, failures among it."""
     lines = [line.split(" | ") for line in _paragraphs("first.txt.j2", summary)]
-    return _grid(lines, ("question", "found", "more"), "pipe") + "\n"
+    return _grid(lines, ("of the paper", "found"), "pipe") + "\n"
 
 
 def rows(summary: Mapping[str, Any]) -> list[tuple[str, ...]]:

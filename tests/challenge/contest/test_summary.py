@@ -301,6 +301,19 @@ def test_what_carries_to_the_transfer_set(tmp_path):
     assert told["top1 GPI 20 dB"]["within 5 points"] == "no"
 
 
+def test_right_answers_in_plain_words_failures_among_them(tmp_path):
+    single, none = truth(effect()), truth(kind="none")
+    home = [row(single, RESONANCE)] * 3 + [row(single, CREEP)]
+    home += [row(none, RESONANCE)] + [row(none, NOTHING)] * 3
+    away = [row(single, RESONANCE), row(single, CREEP)]
+    write_score(frame(home), frame(away), "s", ABOUT, tmp_path)
+    told = [tuple(line.values()) for line in table(tmp_path / "in-words.csv")]
+    assert told == [
+        ("one effect 20 dB above the noise, base exact", "75 %", "50 %"),
+        ("nothing", "75 %", ""),  # one false alarm of four
+    ]
+
+
 def test_the_shares_of_an_effect_stand_at_each_ratio():
     hard, single = truth(effect(), family="preisach"), truth(effect())
     rows = [row(single, RESONANCE), row(single, CREEP)]

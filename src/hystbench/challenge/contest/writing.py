@@ -51,6 +51,7 @@ def write_score(
     carried = list(_carried(own, transfer))
     asked = [*reach(own, transfer), *_off(carried)]
     found: dict[str, Iterable[Sequence[Any]]] = {
+        "in-words.csv": _in_words(own, transfer),
         "contest.csv": _held(own, transfer, about),
         "reach.csv": asked,
         "further.csv": further(own),
@@ -112,6 +113,31 @@ def _carried(
             share = here.figure != "seconds_per_case"
             within = abs(apart) <= FIVE_POINTS if share else None
             yield here.figure, here.reached, there.reached, apart, within
+
+
+def _in_words(
+    cases: pd.DataFrame, transfer: pd.DataFrame
+) -> Iterator[tuple[str, str, str]]:
+    """Tell in plain words how often the answer was right, failures among it."""
+    here, there = (
+        {item.figure: item.reached for item in reach(judged, NOTHING)}
+        for judged in (cases, transfer)
+    )
+    for row in table("in_words"):
+        figure, wrong = row["figure"], row.get("wrong", False)
+        if here[figure] is not None:
+            yield (
+                row["words"],
+                _rightly(here[figure], wrong),
+                _rightly(there[figure], wrong),
+            )
+
+
+def _rightly(share: float | None, wrong: bool) -> str:
+    """Give a share of right answers in percent; nothing where there are no cases."""
+    if share is None:
+        return ""
+    return f"{100 * (1 - share if wrong else share):.0f} %"
 
 
 def _off(carried: Sequence[tuple[Any, ...]]) -> Iterator[Asked]:
