@@ -33,11 +33,11 @@ class BoucWenForce(Force, name="bouc-wen-force", law="hysteretic"):
 
     stiffness: float = number("U/Q", "where the force is zero", 0.0, HUGE)
     beta: float = number(
-        "1/Q", "half of what unloading is stiffer than loading, a force", 0.0, HUGE
+        "1/Q", "half of (unloading - loading stiffness), per force", 0.0, HUGE
     )
     gamma: float = number(
         "1/Q",
-        "softens loading and unloading alike, a force; stiffens both below zero",
+        "lowers both stiffnesses, per force; raises them where negative",
         -HUGE,
         HUGE,
     )

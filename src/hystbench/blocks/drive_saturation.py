@@ -16,7 +16,7 @@ class DriveSaturation(Block, name="drive-saturation", place="drive", curve="clip
        Press, 2021: saturation, rate limits and dead zones of actuators.
     """
 
-    limit: float = number("U", "largest current either way", TINY, HUGE)
+    limit: float = number("U", "largest magnitude of its output", TINY, HUGE)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Clip the current."""

@@ -26,8 +26,8 @@ PAYS = 40.0
 FURTHER = 100.0
 """A further effect, which must also take more of the gap than may stay unnamed."""
 CERTAIN = 200.0
-"""Beyond doubt: what bends to much, beside a law of fewer numbers; on records held
-back, an effect whose size is not known."""
+"""Beyond doubt: what bends to much, beside a law of fewer numbers; on folds, an
+effect whose size is not known."""
 SCALE = 4.0
 """One name is e times likelier than another: by less they cannot be told apart."""
 UNKNOWN = 0.5

@@ -257,7 +257,7 @@ def with_roles(
     if given.hold_out:
         for name in given.hold_out:
             refuse_unknown(name, names, f"--hold-out: no record {name!r}")
-        held, why = given.hold_out, "the records held out are those asked for"
+        held, why = given.hold_out, "the hold-out records are those asked for"
         if set(names) <= set(held):
             raise InputError("--hold-out: all records; expected at least one to fit")
     else:

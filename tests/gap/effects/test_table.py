@@ -3,18 +3,31 @@
 from hystbench.blocks import registry
 from hystbench.files import markdown_table
 from hystbench.gap.effects import effects
+from hystbench.gap.effects.effect import Effect
+from hystbench.gap.effects.law import Passed
 from tests.conftest import ROOT
 
 
+def places(effect):
+    """Give where an effect is tried: in a chain; before, inside or behind a host."""
+    inside = any(
+        getattr(type(effect), name) is not getattr(Effect, name)
+        for name in ("in_mechanism", "stored")
+    )
+    around = [law.place for law in effect.around(Passed(1.0, 1.0, 1e-3))]
+    found = [effect.place, *(["inside"] if inside else []), *around]
+    return ", ".join(dict.fromkeys(found))
+
+
 def table_of_effects():
-    """Give each effect with where it is tried first, what it is, and its blocks."""
+    """Give each effect with where it is tried, what it is, and its blocks."""
     rows = []
     for name, effect in effects().items():
         known = [x for x in dict.fromkeys((name, *effect.laws)) if x in registry()]
         blocks = ", ".join(f"`{block}`" for block in known)
         said = type(effect).__doc__.splitlines()[0].rstrip(".")
-        rows.append([f"`{name}`", effect.place, said, blocks])
-    return markdown_table(["effect", "place", "what is tried", "blocks"], rows)
+        rows.append([f"`{name}`", places(effect), said, blocks])
+    return markdown_table(["effect", "places", "what is tried", "blocks"], rows)
 
 
 def test_the_page_on_the_gap_holds_the_table():

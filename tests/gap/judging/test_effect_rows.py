@@ -120,7 +120,7 @@ def told_by_rows(content, effect):
     """Confidence and ties of an effect, from the numbers in gap.json and no other.
 
     The last ranking that has it taken counts, and what was refitted there: what was not
-    may score better than records held back let the others. A rival is e times less
+    may score better than folds let the others. A rival is e times less
     likely for every four of score (2 % are kept for what is not in the vocabulary), and
     what is left of the gap lowers all by its share. A tie is less than four
     apart. What scores better than a wrong shape that was added is needed beside it, and

@@ -202,7 +202,7 @@ def test_a_linear_base_may_saturate_behind_what_moves(share):
 def test_one_that_was_not_judged_on_records_held_back_is_never_first(monkeypatch):
     """Behind those that get worse there may be one that was out of reach before."""
     judges = {name: getattr(module, name) for name in ("exactly", "on_folds")}
-    # The lag loses on records held back; simulated exactly the next two do.
+    # The lag loses on folds; simulated exactly the next two do.
     loses = [("on_folds", "sensor-lag")]
     loses += [("exactly", x) for x in ("rate-dependent-hysteresis", "eddy-diffusion")]
 

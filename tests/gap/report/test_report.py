@@ -375,7 +375,7 @@ def test_a_reason_to_decline_is_said_once_and_what_ranks_is_said(page):
     assert page.said.count("u does not reverse") == 1
     assert page.said.count("drive-lag") == 2  # a row of each round
     assert "ranked by the score on all fit records" in page.said
-    assert "judged anew on records held back from the fit" in page.said
+    assert "judged anew on folds, parts of the fit records" in page.said
 
 
 def test_pictures_of_where_the_gap_is_have_their_words(page):

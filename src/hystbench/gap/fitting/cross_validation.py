@@ -20,7 +20,7 @@ ROUNDS = 1
 """Of least squares on a fold: the fit to all records is near."""
 
 RUNS_AWAY = -1e6
-"""What a model gains, at worst, that has no bounded output on records held back."""
+"""What a model gains, at worst, that has no bounded output on folds."""
 
 Used = tuple[NDArray[np.bool_], ...]
 """Of each record's scored samples, those that count."""

@@ -220,7 +220,7 @@ def of_many_modes(start: ModelState) -> bool:
     """Tell whether a base has more poles than a force can have bought it.
 
     Friction in one coordinate buys a linear model an order or two, not further modes
-    that records held back ask for.
+    that folds ask for.
     """
     return any(
         isinstance(block, TransferFunction) and len(block.denominator) > HIGHEST + 1

@@ -226,13 +226,13 @@ def betters(inside: Inside, start: ModelState, floor_rms: float) -> bool:
 def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> bool:
     """Tell whether effects inside do better than those in a chain.
 
-    They have to lower the score of records held back by as much as any effect. Both
+    They have to lower the score on folds by as much as any effect. Both
     models are refitted without those records.
     """
     state, chain = inside.named.state, named.state
     score = Score.plain(state.sample, floor_rms**2)
     gain = gain_held_back(chain, state, score) - gain_held_back(chain, chain, score)
-    say(f"inside: gain {gain:.1f} on records held back")
+    say(f"inside: gain {gain:.1f} on folds")
     return gain >= PAYS
 
 

@@ -58,7 +58,7 @@ def further_modes_of(base: ModelState) -> list[float]:
     """Give the frequencies, in rad/s, at which a base swings beside one coordinate.
 
     It has two poles of one coordinate; those of a further mode were asked for by
-    records held back, as those that only imitate friction are not.
+    folds, as those that only imitate friction are not.
     """
     poles = [
         pole

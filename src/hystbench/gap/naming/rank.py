@@ -60,7 +60,7 @@ def rank(
     known : sequence of Effect, optional
         All that are offered by default.
     folds : bool
-        Whether finalists that pay are judged anew on records held back.
+        Whether finalists that pay are judged anew on folds.
     needs : float
         What an effect has to gain to be taken. One that gains too little of it on its
         grid for a search and a refit to make up for is as good as it will be.
@@ -416,7 +416,7 @@ def above_noise_of_its_own(
 def first_on_folds(
     candidates: Sequence[Candidate], before: ModelState, score: Score
 ) -> list[Candidate]:
-    """Judge candidates on records held back, best first, while one may be the first.
+    """Judge candidates on folds, best first, while one may be the first.
 
     A candidate can only lose there. So one that scores worse than the best judged so
     far, beyond doubt, need not be judged.

@@ -33,16 +33,16 @@ class Candidate:
     ----------
     effect, place, form : str
     score : float
-        Of the model with it; raised by what records held back take off its gain.
+        Of the model with it; raised by what folds take off its gain.
     gain : float
         By how much it lowers the score: of a finalist that pays the less of what all
-        records tell and what records held back do.
+        records tell and what folds do.
     state : ModelState, optional
         With the effect, jointly refitted; finalists have it.
     declined : str
         Why it could not be judged, if so.
     held_back : float, optional
-        What a finalist that pays gains on records held back.
+        What a finalist that pays gains on folds.
     variants : tuple of TriedVariant
         Every place and form of it that could be scored, best first.
     """

@@ -45,7 +45,7 @@ def make_folds(
 ) -> tuple[Fold, ...]:
     """Divide the fit records into folds.
 
-    Three records or more: whole records are held back, in at most five groups.
+    Three records or more: a fold is a group of whole records, one of at most five.
     Records are dealt to the groups in the order of their rate, so that a fold asks
     for rates between those it was fitted to and not for all of the fastest ones.
     Fewer records: each is cut into four contiguous blocks, of whole periods where it
