@@ -199,7 +199,7 @@ def test_the_first_result_has_numbers_and_links():
     answers = {
         "within a factor of 2": "7 of 8",
         "in the paper's order": "9 of 12",
-        "diverge below the bound": "3 of 52",
+        "fail below the bound": "3 of 52",
         "the GPO filter is first": "13 of 13",
         "with a constant tap": "10 of 13",
         "a zero error of +7 mA instead of -6 mA": "4 of 13",
