@@ -155,8 +155,8 @@ def re_tuning(alone: ModelState, fitted: ModelState, floor: float) -> str:
     if share <= LOOSE:
         return ""
     return (
-        f"; its own numbers are fitted anew, and that alone takes {100 * share:.0f} % "
-        "of the gap's power: look whether they may differ so much"
+        f"; its own parameters are refitted, and that alone takes {100 * share:.0f} % "
+        "of the gap's power: check whether they can be so far off"
     )
 
 
