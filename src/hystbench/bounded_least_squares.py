@@ -6,6 +6,10 @@ import numpy as np
 
 from hystbench.record import FloatArray
 
+STEPS = 40
+"""Most steps of a descent."""
+LEAST_GAIN = 1e-4
+"""Share of the sum of squares; a descent ends when two steps in a row win less."""
 _TINY = float(np.finfo(np.float64).tiny)
 
 
@@ -59,13 +63,8 @@ def minimize(
     point: FloatArray,
     lower: FloatArray,
     upper: FloatArray,
-    steps: int = 40,
-    least_gain: float = 1e-4,
 ) -> tuple[FloatArray, float]:
     """Go down a sum of squares from a point, with forward differences.
-
-    It ends after so many steps, or when two in a row have each won less than the
-    least gain, a share of the sum.
 
     Parameters
     ----------
@@ -73,10 +72,6 @@ def minimize(
         Error, shape (n,), at a point, shape (p,).
     point, lower, upper : ndarray, shape (p,)
         Where to start, and the bounds.
-    steps : int
-        Most steps.
-    least_gain : float
-        Share of the sum.
 
     Returns
     -------
@@ -87,7 +82,7 @@ def minimize(
     """
     now = error(point)
     damping, small_gains = 1e-2, 0
-    for _ in range(steps):
+    for _ in range(STEPS):
         columns = []
         for k in range(len(point)):
             moved = point.copy()
@@ -104,7 +99,7 @@ def minimize(
         else:
             break
         point, now, damping = trial, after, max(damping * 0.2, 1e-9)
-        small = float(after @ after) > (1 - least_gain) * cost
+        small = float(after @ after) > (1 - LEAST_GAIN) * cost
         small_gains = small_gains + 1 if small else 0
         if small_gains == 2:
             break

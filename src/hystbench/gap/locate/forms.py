@@ -227,10 +227,10 @@ def narrowest(axis: FloatArray, weights: FloatArray) -> tuple[float, float]:
     return float(axis[order[starts[first]]]), float(axis[order[end]])
 
 
-def narrowest_bins(held: FloatArray, hold: float = HOLD) -> tuple[int, int]:
+def narrowest_bins(held: FloatArray) -> tuple[int, int]:
     """Give the first and the last of the fewest neighbours that hold most."""
     sums = np.concatenate([[0.0], np.cumsum(held)])
-    wanted = (hold - 1e-12) * sums[-1]
+    wanted = (HOLD - 1e-12) * sums[-1]
 
     def most(count: int) -> float:
         return float(np.max(sums[count:] - sums[:-count]))
