@@ -22,7 +22,7 @@ MOST_RATIO = 64
 Rows = NDArray[np.float64]  # shape (2, n): input and output
 
 
-class Piece(NamedTuple):
+class CommonPiece(NamedTuple):
     """Samples that stand in a row in two records.
 
     Parameters
@@ -63,7 +63,7 @@ class Written:
         return self.rows[:, start::step], self.steps[:, start::step]
 
 
-def common_piece(one: Written, two: Written) -> Piece | None:
+def common_piece(one: Written, two: Written) -> CommonPiece | None:
     """Find a piece that two records share: half of the shorter one or more.
 
     Input and output must both be equal, each up to the last digit that is written in
@@ -72,7 +72,7 @@ def common_piece(one: Written, two: Written) -> Piece | None:
 
     Returns
     -------
-    Piece or None
+    CommonPiece or None
         As seen from the first record.
     """
     ratio = one.dt / two.dt
@@ -93,12 +93,12 @@ def common_piece(one: Written, two: Written) -> Piece | None:
     return None
 
 
-def _turned(piece: Piece) -> Piece:
+def _turned(piece: CommonPiece) -> CommonPiece:
     """Give the same piece, seen from the other record."""
     return piece._replace(first=piece.other_first, other_first=piece.first)
 
 
-def _shared(one: Rows, two: Rows, one_step: Rows, two_step: Rows) -> Piece | None:
+def _shared(one: Rows, two: Rows, one_step: Rows, two_step: Rows) -> CommonPiece | None:
     """Find half or more of the shorter of two runs of samples in the other."""
     if one.shape[1] > two.shape[1]:
         found = _shared(two, one, two_step, one_step)
@@ -124,7 +124,7 @@ def _shared(one: Rows, two: Rows, one_step: Rows, two_step: Rows) -> Piece | Non
                 exact = np.array_equal(
                     one[:, start:stop], two[:, start + away : stop + away]
                 )
-                return Piece(stop - start, start, start + away, exact)
+                return CommonPiece(stop - start, start, start + away, exact)
     return None
 
 

@@ -9,7 +9,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from hystbench.copies import Piece, Written, common_piece
+from hystbench.copies import CommonPiece, Written, common_piece
 from hystbench.dataset import Dataset
 from hystbench.errors import InputError
 from hystbench.record import Record
@@ -73,7 +73,9 @@ def doubts(
     return tuple(found)
 
 
-def _refuse_copy(dataset: Dataset, one: Record, two: Record, piece: Piece) -> None:
+def _refuse_copy(
+    dataset: Dataset, one: Record, two: Record, piece: CommonPiece
+) -> None:
     if one.use == "fit":
         one, two = two, one
         piece = piece._replace(first=piece.other_first, other_first=piece.first)
@@ -83,14 +85,14 @@ def _refuse_copy(dataset: Dataset, one: Record, two: Record, piece: Piece) -> No
     )
 
 
-def _copy(dataset: Dataset, one: Record, two: Record, piece: Piece) -> str:
+def _copy(dataset: Dataset, one: Record, two: Record, piece: CommonPiece) -> str:
     return (
         f"{_said(dataset, one, two, piece)}; it counts twice; leave one out, or where "
         "both are meant say 'meant: [copy]' of one of them in dataset.yaml"
     )
 
 
-def _said(dataset: Dataset, one: Record, two: Record, piece: Piece) -> str:
+def _said(dataset: Dataset, one: Record, two: Record, piece: CommonPiece) -> str:
     files = dataset.record_files
     # One row is the header; a record of some 'rows' begins further down.
     begins = [dataset.entry(item.name).get("rows", (1,))[0] for item in (one, two)]

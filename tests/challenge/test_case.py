@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from hystbench.challenge.case import make_case
 from hystbench.challenge.excitation import CAMPAIGNS, PERIOD
-from hystbench.challenge.plant.actuator import Actuator, Mode
+from hystbench.challenge.plant.actuator import Actuator, KnownMode
 from hystbench.challenge.plant.effects import APART, IN_ACTUATOR, UNLISTED, VOCABULARY
 from hystbench.challenge.plant.hysteresis import draw as draw_loop
 from hystbench.challenge.plant.kind import Range, draw
@@ -221,7 +221,7 @@ SHOWN = [
 def test_every_effect_shows(family, name, spread, excitations):
     random = np.random.default_rng(8)
     loop = draw_loop(family, random)
-    mode = Mode(120.0, 0.03, 0.2)
+    mode = KnownMode(120.0, 0.03, 0.2)
     for form in IN_ACTUATOR[name].forms:
         if (form == "growing-thresholds") != (family == "gpi") and (
             name == "rate-dependent-hysteresis"

@@ -14,7 +14,7 @@ from hystbench.challenge.plant.hysteresis import (
     Duhem,
     Everett,
     GeneralizedPlays,
-    JilesAtherton,
+    JilesAthertonLoop,
     draw,
     swing,
 )
@@ -29,7 +29,7 @@ PLANE = Everett(
     knee=1.0,
     points=81,
 )
-ROD = JilesAtherton(
+ROD = JilesAthertonLoop(
     bias=0.9, shape=0.5, coupling=0.2, pinning=0.05, reversible=0.3, strain=100.0
 )
 inputs = st.lists(st.floats(-0.9, 0.9), min_size=1, max_size=30)

@@ -5,7 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hystbench.challenge.plant.machine import Part, Tank, decimated, fill, move, resist
+from hystbench.challenge.plant.machine import (
+    MovingPart,
+    Tank,
+    decimated,
+    fill,
+    move,
+    resist,
+)
 
 DT = 1e-4
 
@@ -26,7 +33,7 @@ def test_a_linear_part_has_the_frequency_response_of_its_equation(frequency):
     m, c, k = 2.0, 8.0, 2.0 * (2 * np.pi * 10) ** 2
     time = np.arange(0, 12.0, DT)
     w = 2 * np.pi * frequency
-    motion = move(Part(m, c, k), np.sin(w * time), DT)
+    motion = move(MovingPart(m, c, k), np.sin(w * time), DT)
     late = time >= 10.0  # transients have died out by exp(-2 * 10)
     design = np.exp(1j * w * time[late])
     exact = 1 / (k - m * w**2 + 1j * c * w)
@@ -41,21 +48,21 @@ def test_a_linear_part_has_the_frequency_response_of_its_equation(frequency):
 
 
 def test_coulomb_friction_takes_four_times_its_force_over_stiffness_a_cycle():
-    part = Part(1.0, 0.0, 400.0, coulomb=8.0)  # 4 F / k = 0.08 a cycle
+    part = MovingPart(1.0, 0.0, 400.0, coulomb=8.0)  # 4 F / k = 0.08 a cycle
     found = turns(free_decay(part, 4.0, q=1.0))
     expected = [(-1) ** i * (1.0 - 0.04 * i) for i in range(20)]
     assert found[:20] == pytest.approx(expected, abs=2e-4)
 
 
 def test_a_part_that_friction_holds_stands_still():
-    part = Part(1.0, 0.0, 400.0, coulomb=8.0)
+    part = MovingPart(1.0, 0.0, 400.0, coulomb=8.0)
     q = free_decay(part, 2.0, q=0.019)  # the spring pulls with 7.6
     assert (q == q[0]).all()
 
 
 def test_stribeck_holds_with_the_static_force_and_slides_with_less():
     # 400 q is between the sliding force 4 and the static one 8
-    part = Part(1.0, 0.0, 400.0, coulomb=4.0, surplus=4.0, stribeck_speed=1e-3)
+    part = MovingPart(1.0, 0.0, 400.0, coulomb=4.0, surplus=4.0, stribeck_speed=1e-3)
     held = free_decay(part, 0.1, q=0.0199)
     assert (held == held[0]).all()
     # begun beyond, it slides as if the friction were 4: to 2 * 4 / 400 - q
@@ -64,7 +71,7 @@ def test_stribeck_holds_with_the_static_force_and_slides_with_less():
 
 
 def test_presliding_is_a_spring_until_it_slips():
-    part = Part(1.0, 40.0, 0.0, coulomb=5.0, presliding=0.01)
+    part = MovingPart(1.0, 40.0, 0.0, coulomb=5.0, presliding=0.01)
     ends = [
         move(part, np.full(60000, force), DT).position[-1] for force in (2.0, 4.0, 6.0)
     ]
@@ -94,7 +101,7 @@ def test_presliding_is_a_spring_until_it_slips():
     ],
 )
 def test_a_spring_of_any_law_keeps_its_energy(more, stored):
-    part = Part(1.0, 0.0, 400.0, **more)
+    part = MovingPart(1.0, 0.0, 400.0, **more)
     q = move(part, np.zeros(20000), DT, (0.0, 10.0)).position
     for end in (q.max(), q.min()):
         assert 200.0 * end**2 + stored(end) == pytest.approx(50.0, rel=1e-3)
@@ -104,7 +111,7 @@ def test_a_pendulum_swings_with_the_period_of_its_elliptic_integral():
     # Released from rest at 2 rad: a period of 4 K(sin 1) / w.
     from scipy.special import ellipk
 
-    part = Part(1.0, 0.0, 100.0, pendulum=100.0)
+    part = MovingPart(1.0, 0.0, 100.0, pendulum=100.0)
     q = free_decay(part, 3.0, q=2.0)
     crossings = np.flatnonzero((q[1:] < 0) & (q[:-1] >= 0))
     period = np.mean(np.diff(crossings)) * DT
@@ -112,7 +119,7 @@ def test_a_pendulum_swings_with_the_period_of_its_elliptic_integral():
 
 
 def test_drag_brakes_a_free_mass_by_one_over_time():
-    v = move(Part(2.0, drag=3.0), np.zeros(20000), DT, (0.0, 5.0)).velocity
+    v = move(MovingPart(2.0, drag=3.0), np.zeros(20000), DT, (0.0, 5.0)).velocity
     time = np.arange(20000) * DT
     assert v == pytest.approx(5.0 / (1 + 3.0 / 2.0 * 5.0 * time), rel=3e-4)
 
@@ -123,7 +130,7 @@ def test_bouc_wen_takes_the_energy_of_its_exponentials(reach):
     # Of sharpness 1 and slope 1 on the way back both branches are exponentials,
     # z = 1 - (1 + z1) exp(-(x + X) / y), z1 = tanh(X / y), so that a closed loop
     # takes 4 F (X - y tanh(X / y)).
-    part = Part(0.0, remembered=3.0, yield_distance=0.5)
+    part = MovingPart(0.0, remembered=3.0, yield_distance=0.5)
     x = reach * np.sin(2 * np.pi * np.arange(0, 4, 1e-5))
     force = resist(part, x, 1e-5)
     last = slice(-100001, None)
@@ -135,7 +142,7 @@ def test_bouc_wen_takes_the_energy_of_its_exponentials(reach):
 def test_a_slider_behind_a_clearance_takes_the_area_of_its_loop():
     # After a turn the spring unloads over slip - clearance, nothing over twice the
     # clearance, and loads again: a loop of K (slip - clearance) to either side.
-    part = Part(0.0, slider_stiffness=10.0, slip=0.3, clearance=0.1)
+    part = MovingPart(0.0, slider_stiffness=10.0, slip=0.3, clearance=0.1)
     x = np.sin(2 * np.pi * np.arange(0, 4, 1e-5))
     force = resist(part, x, 1e-5)
     assert np.max(force) == pytest.approx(2.0, rel=1e-6)
@@ -161,7 +168,7 @@ def test_a_slider_behind_a_clearance_takes_the_area_of_its_loop():
 @settings(max_examples=30, deadline=None)
 def test_forces_only_take_energy_out(more, seed):
     force = np.cumsum(np.random.default_rng(seed).standard_normal(20000)) * 0.02
-    part = Part(1.0, 0.05, 20.0, **more)
+    part = MovingPart(1.0, 0.05, 20.0, **more)
     m = move(part, force, DT)
     given_in = np.cumsum(m.force * m.velocity) * DT
     held = 0.5 * m.velocity**2 + 10.0 * m.position**2
@@ -169,7 +176,7 @@ def test_forces_only_take_energy_out(more, seed):
 
 
 def test_a_controlled_mass_follows_its_reference_as_its_transfer_function_says():
-    part, kp, kd = Part(2.0, 1.0), 800.0, 60.0
+    part, kp, kd = MovingPart(2.0, 1.0), 800.0, 60.0
     time = np.arange(0, 6.0, DT)
     w = 2 * np.pi * 1.5
     m = move(part, np.sin(w * time), DT, gains=(kp, kd))
@@ -183,7 +190,7 @@ def test_a_controlled_mass_follows_its_reference_as_its_transfer_function_says()
 
 
 def test_an_impedance_answers_as_its_equation():
-    part = Part(0.5, 2.0, 30.0, coulomb=1.5)
+    part = MovingPart(0.5, 2.0, 30.0, coulomb=1.5)
     time = np.arange(0, 1.0, DT)
     w = 2 * np.pi * 3.0
     force = resist(part, np.sin(w * time), DT)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.special import iv
 
 from hystbench.challenge.plant import drive, material, mechanics, sensor, unlisted
-from hystbench.challenge.plant.kind import Run
+from hystbench.challenge.plant.kind import PlantRun
 
 DT = 1.0 / 16000.0
 TIME = np.arange(16000) * DT
@@ -15,7 +15,7 @@ TIME = np.arange(16000) * DT
 
 def run(u=None, time=TIME, dt=DT, seed=0):
     u = np.zeros_like(time) if u is None else u
-    return Run(time, u, dt, np.random.default_rng(seed))
+    return PlantRun(time, u, dt, np.random.default_rng(seed))
 
 
 def response(act, parameters, frequency):

@@ -12,7 +12,7 @@ from hystbench.gap import search as search_module
 from hystbench.gap.effects import effects
 from hystbench.gap.experiment import tell_apart
 from hystbench.gap.experiment.excitations import Limits
-from hystbench.gap.experiment.separation import Pair
+from hystbench.gap.experiment.separation import RivalPair
 from hystbench.gap.experiment.tell_apart import next_experiment
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.edit_chain import with_effect
@@ -218,10 +218,10 @@ def test_all_members_of_all_sets_are_told_apart_by_one_excitation(alike, monkeyp
     )
     assert not why
     assert list(experiment.pairs) == [
-        Pair("drive-lag", ("drive-lag", "sensor-lag")),
-        Pair("asymmetry", ("asymmetry", "saturation")),
-        Pair("asymmetry", ("asymmetry", "calibration-error")),
-        Pair("asymmetry", ("saturation", "calibration-error")),
+        RivalPair("drive-lag", ("drive-lag", "sensor-lag")),
+        RivalPair("asymmetry", ("asymmetry", "saturation")),
+        RivalPair("asymmetry", ("asymmetry", "calibration-error")),
+        RivalPair("asymmetry", ("saturation", "calibration-error")),
     ]
 
 

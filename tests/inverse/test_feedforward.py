@@ -9,7 +9,7 @@ import pytest
 from hystbench.blocks import registry
 from hystbench.errors import InputError
 from hystbench.inverse.bandwidth import bandwidth, holds_to
-from hystbench.inverse.feedforward import Limits, feedforward
+from hystbench.inverse.feedforward import InputRange, feedforward
 from hystbench.inverse.response import best_linear, without
 from hystbench.model import Model, load_model
 from hystbench.record import Channel
@@ -100,7 +100,7 @@ def test_plays_at_the_beginning_are_inverted_exactly():
 def test_an_inverse_never_leaves_the_limits_of_the_input():
     model = load_model(TWIN)
     reference = sine(40, 9.0)
-    found = feedforward(model, reference, DT, limits=Limits(-0.4, 0.3))
+    found = feedforward(model, reference, DT, limits=InputRange(-0.4, 0.3))
     assert found.u.min() >= -0.4
     assert found.u.max() <= 0.3
     assert found.clipped > 0
@@ -142,7 +142,7 @@ def test_within_the_band_a_filter_and_its_inverse_cancel():
 
 
 def test_the_bandwidth_ends_where_the_error_is_above_a_percent():
-    model, limits = load_model(TWIN), Limits(-0.632, 0.632)
+    model, limits = load_model(TWIN), InputRange(-0.632, 0.632)
     rows = bandwidth(
         model,
         15.0,

@@ -8,9 +8,9 @@ from hystbench.compare.beside import read_holdings, read_spreads
 from hystbench.compare.claims import CLAIMS
 from hystbench.compare.claims.claim import holds
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.twins.experiments import CONFIGURED, Experiment
+from hystbench.twins.experiments import CONFIGURED, TwinExperiment
 from hystbench.twins.judge import results_on_runs, write_twins
-from hystbench.twins.parts import Outcome
+from hystbench.twins.parts import TwinOutcome
 from tests.compare.made import published_runs
 
 BY_ID = {claim.id: claim for claim in CLAIMS}
@@ -21,7 +21,7 @@ HELD_OUT.append("multisine-random-0-100hz")
 def outcome(changes, name, family="gpi", experiment=CONFIGURED):
     """Runs as printed, but for some MSE."""
     twin = SimpleNamespace(name=name, family=family)
-    return Outcome(twin, experiment, ClaimEvidence(runs=published_runs(changes)))
+    return TwinOutcome(twin, experiment, ClaimEvidence(runs=published_runs(changes)))
 
 
 @pytest.mark.parametrize("claim", [c.id for c in CLAIMS if c.kind == "result"])
@@ -43,7 +43,7 @@ def test_only_results_that_need_runs_are_judged():
 
 def test_claims_are_counted_by_family_and_spreads_are_of_the_configured(tmp_path):
     chirp = ("chirp-1-100hz", "gpo")
-    other = Experiment(1, {}, 1.0, 1.0)
+    other = TwinExperiment(1, {}, 1.0, 1.0)
     outcomes = [
         outcome({}, "gma"),
         outcome({chirp: 9.0}, "gma", experiment=other),

@@ -8,9 +8,9 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.blocks.resonance import Resonance
-from hystbench.challenge.excitation import Excitation
-from hystbench.challenge.plant.actuator import Mode
-from hystbench.challenge.plant.hysteresis import GeneralizedPlays, Hysteresis
+from hystbench.challenge.excitation import RecordCommand
+from hystbench.challenge.plant.actuator import KnownMode
+from hystbench.challenge.plant.hysteresis import GeneralizedPlays, PlantLoop
 from hystbench.identification import identify
 from hystbench.model import Model
 from hystbench.record import Channel, FloatArray
@@ -23,21 +23,21 @@ QUASI_STATIC = ("slow-loop", "minor-loops", "triangle", "ringing", "biased-tones
 
 
 def base_model(
-    loop: Hysteresis,
-    mode: Mode | None,
-    records: tuple[Excitation, ...],
+    loop: PlantLoop,
+    mode: KnownMode | None,
+    records: tuple[RecordCommand, ...],
     linear: bool,
 ) -> Model:
     """Make the model that is handed over.
 
     Parameters
     ----------
-    loop : Hysteresis
+    loop : PlantLoop
         The plant's hysteresis. Plays are handed over as they are; of another family
         the best quasi-static GPI is identified from its slow loop and minor loops.
-    mode : Mode, optional
+    mode : KnownMode, optional
         The mode that the base knows.
-    records : tuple of Excitation
+    records : tuple of RecordCommand
     linear : bool
         Whether the base has a gain in the place of hysteresis.
     """
@@ -60,7 +60,7 @@ def base_model(
     return Model("base", INPUT, OUTPUT, tuple(chain))
 
 
-def quasi_static(records: tuple[Excitation, ...]) -> FloatArray:
+def quasi_static(records: tuple[RecordCommand, ...]) -> FloatArray:
     """Commands of the slow records, one after the other.
 
     A loop does not depend on the rate, so the way from the last sample of one to the
@@ -70,7 +70,7 @@ def quasi_static(records: tuple[Excitation, ...]) -> FloatArray:
     return np.concatenate(chosen)
 
 
-def slope(loop: Hysteresis, u: FloatArray) -> float:
+def slope(loop: PlantLoop, u: FloatArray) -> float:
     """Gain of the straight line nearest to a loop, in um/A."""
     y = loop.respond(u)
     return float(u @ y / (u @ u))

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from hystbench.challenge.base import INPUT, OUTPUT, base_model, quasi_static, slope
-from hystbench.challenge.excitation import CAMPAIGNS, Excitation
-from hystbench.challenge.plant.actuator import Actuator, Mode
+from hystbench.challenge.excitation import CAMPAIGNS, RecordCommand
+from hystbench.challenge.plant.actuator import Actuator, KnownMode
 from hystbench.challenge.plant.effects import IN_ACTUATOR
-from hystbench.challenge.plant.hysteresis import Hysteresis, draw
+from hystbench.challenge.plant.hysteresis import PlantLoop, draw
 from hystbench.challenge.plant.kind import HiddenEffect
 from hystbench.challenge.plant.kind import draw as draw_effect
 from hystbench.challenge.spec import CaseSpec
@@ -59,16 +59,16 @@ class Case:
 class Plant:
     """All that the seed draws of a plant before any effect."""
 
-    loop: Hysteresis
-    hidden_loop: Hysteresis
+    loop: PlantLoop
+    hidden_loop: PlantLoop
     gain: float
-    mode: Mode | None
+    mode: KnownMode | None
     seed: int
 
     def actuator(self, effects: tuple[HiddenEffect, ...]) -> Actuator:
         """Build it with some of its effects."""
         names = [effect.kind.name for effect in effects]
-        loop: Hysteresis | float = self.loop
+        loop: PlantLoop | float = self.loop
         if self.gain:
             loop = self.loop if "hysteresis" in names else self.gain
         elif "hysteresis-shape" in names:
@@ -147,15 +147,17 @@ class Readings:
     Parameters
     ----------
     actuator : Actuator
-    excitations : tuple of Excitation
+    excitations : tuple of RecordCommand
         All records; a record's number is its place here.
     """
 
-    def __init__(self, actuator: Actuator, excitations: tuple[Excitation, ...]) -> None:
+    def __init__(
+        self, actuator: Actuator, excitations: tuple[RecordCommand, ...]
+    ) -> None:
         self.actuator, self.excitations = actuator, excitations
         self._read: dict[str, FloatArray] = {}
 
-    def raw(self, item: Excitation) -> FloatArray:
+    def raw(self, item: RecordCommand) -> FloatArray:
         """Reading before the converter, computed once."""
         if item.name not in self._read:
             number = self.excitations.index(item)
@@ -164,26 +166,28 @@ class Readings:
             )
         return self._read[item.name]
 
-    def of(self, chosen: tuple[Excitation, ...]) -> list[FloatArray]:
+    def of(self, chosen: tuple[RecordCommand, ...]) -> list[FloatArray]:
         """Readings as they are written down, but for noise."""
         return [
             self.actuator.convert(self.raw(item), item.dt, self.excitations.index(item))
             for item in chosen
         ]
 
-    def minus(self, less: Readings, chosen: tuple[Excitation, ...]) -> list[FloatArray]:
+    def minus(
+        self, less: Readings, chosen: tuple[RecordCommand, ...]
+    ) -> list[FloatArray]:
         """Difference to another plant's readings."""
         return _minus(self.of(chosen), less.of(chosen))
 
 
 def _draw(
-    spec: CaseSpec, excitations: tuple[Excitation, ...]
+    spec: CaseSpec, excitations: tuple[RecordCommand, ...]
 ) -> tuple[Plant, tuple[HiddenEffect, ...]]:
     random = spec.random(PLANT)
     loop = draw(spec.family, random)
     # both are drawn in any case, so that the mode does not hang on the effects
     known = random.uniform() < 0.5
-    mode = Mode(
+    mode = KnownMode(
         frequency_hz=float(np.exp(random.uniform(*np.log([70.0, 320.0])))),
         damping_ratio=float(np.exp(random.uniform(*np.log([0.015, 0.06])))),
         participation=float(random.uniform(0.05, 0.3)),
@@ -191,7 +195,7 @@ def _draw(
     has_mode = known or "stiffness-hardening" in spec.effects
     random = spec.random(EFFECTS)
     effects = []
-    hidden: Hysteresis = loop
+    hidden: PlantLoop = loop
     gain = 0.0
     for name in spec.effects:
         kind = IN_ACTUATOR[name]
@@ -224,10 +228,10 @@ def _forms(name: str, spec: CaseSpec) -> tuple[str, ...]:
 
 def _other_loop(
     form: str,
-    loop: Hysteresis,
-    excitations: tuple[Excitation, ...],
+    loop: PlantLoop,
+    excitations: tuple[RecordCommand, ...],
     random: np.random.Generator,
-) -> Hysteresis:
+) -> PlantLoop:
     """Draw a loop of another shape and of the same mean gain."""
     other = draw("gpi" if form == "other-gpi" else form, random)
     u = quasi_static(excitations)
@@ -239,7 +243,7 @@ def _resized(
     plant: Plant,
     effect: HiddenEffect,
     bare: Readings,
-    fit: tuple[Excitation, ...],
+    fit: tuple[RecordCommand, ...],
     size: float,
 ) -> HiddenEffect:
     """Change the size of an effect that drowns, or drowns the rest."""
@@ -300,7 +304,7 @@ def effect_told(effect: HiddenEffect, **own: Any) -> dict[str, Any]:
 
 
 def _hold_out(
-    full: Readings, bare: Readings, chosen: tuple[Excitation, ...], model: Model
+    full: Readings, bare: Readings, chosen: tuple[RecordCommand, ...], model: Model
 ) -> dict[str, float]:
     """Gap on the hold-out records: all of it, and what the effects explain."""
     base = _simulated(model, chosen)
@@ -311,7 +315,7 @@ def _hold_out(
     }
 
 
-def _simulated(model: Model, chosen: tuple[Excitation, ...]) -> list[FloatArray]:
+def _simulated(model: Model, chosen: tuple[RecordCommand, ...]) -> list[FloatArray]:
     return [model.simulate(item.sampled(), item.dt) for item in chosen]
 
 

@@ -30,7 +30,7 @@ EDGE_SECONDS, EDGE_SAMPLES = 0.02, 12
 
 
 @dataclass(frozen=True)
-class Excitation:
+class RecordCommand:
     """One record's command.
 
     Parameters
@@ -177,15 +177,15 @@ def _levels(random: np.random.Generator, count: int, largest: float) -> list[flo
     return [float(value) for value in sizes * signs]
 
 
-def _of(use: Use) -> Callable[..., Excitation]:
+def _of(use: Use) -> Callable[..., RecordCommand]:
     """Give what makes commands of one use: name, rate, samples, function, period."""
-    return lambda name, *about: Excitation(name, use, *about)
+    return lambda name, *about: RecordCommand(name, use, *about)
 
 
 fit, held_out = _of("fit"), _of("hold-out")
 
 
-def standard(random: np.random.Generator) -> tuple[Excitation, ...]:
+def standard(random: np.random.Generator) -> tuple[RecordCommand, ...]:
     """Eight records to fit and four held out, 70,000 samples in all."""
     low = int(random.choice([8, 10, 16, 20]))
     high = int(random.choice([80, 100, 125]))
@@ -222,7 +222,7 @@ def standard(random: np.random.Generator) -> tuple[Excitation, ...]:
     )
 
 
-def other(random: np.random.Generator) -> tuple[Excitation, ...]:
+def other(random: np.random.Generator) -> tuple[RecordCommand, ...]:
     """Seven records to fit and three held out, of another laboratory."""
     uniform, tones = random.uniform, partial(multisine, random, 2)
     levels = partial(_levels, random)

@@ -6,13 +6,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from hystbench.challenge.excitation import FAST, Excitation
+from hystbench.challenge.excitation import FAST, RecordCommand
 from hystbench.challenge.machine_records import filling, machine_records
 from hystbench.challenge.plant.kind import HiddenEffect, Reach
 from hystbench.challenge.plant.machine import (
     FINE,
-    Motion,
-    Part,
+    MovingPart,
+    PartMotion,
     Tank,
     decimated,
     fill,
@@ -49,7 +49,7 @@ class Machine:
     family : str
     rate_hz : float
         Sampling rate.
-    part : Part or None
+    part : MovingPart or None
         None of tanks.
     tanks : tuple of Tank
     output : str
@@ -58,17 +58,17 @@ class Machine:
         Of the records' unit: newtons, millimetres or, for tanks, volts.
     gains : tuple of float
         Of a controller, the records being its reference; zeros for none.
-    records : tuple of Excitation
+    records : tuple of RecordCommand
     """
 
     family: str
     rate_hz: float
-    part: Part | None
+    part: MovingPart | None
     tanks: tuple[Tank, ...]
     output: str
     size: float
     gains: tuple[float, float]
-    records: tuple[Excitation, ...]
+    records: tuple[RecordCommand, ...]
 
     @property
     def channels(self) -> tuple[Channel, Channel]:
@@ -84,13 +84,13 @@ class Machine:
         """Step of the fine grid in seconds."""
         return 1.0 / (self.rate_hz * FINE)
 
-    def command(self, item: Excitation) -> FloatArray:
+    def command(self, item: RecordCommand) -> FloatArray:
         """Compute a record's command on the fine grid, in its unit."""
         return self.size * _on_fine_grid(item)
 
     def run(
-        self, item: Excitation, hidden: Sequence[HiddenEffect], reach: Reach
-    ) -> Motion:
+        self, item: RecordCommand, hidden: Sequence[HiddenEffect], reach: Reach
+    ) -> PartMotion:
         """Give force and motion under a record, on the fine grid."""
         command = self.command(item)
         for effect in hidden:
@@ -99,7 +99,7 @@ class Machine:
         part = self.with_forces(hidden, reach)
         return move(part, command, self.dt, gains=self.gains)
 
-    def with_forces(self, hidden: Sequence[HiddenEffect], reach: Reach) -> Part:
+    def with_forces(self, hidden: Sequence[HiddenEffect], reach: Reach) -> MovingPart:
         """Give the part with what is hidden inside it."""
         assert self.part is not None  # noqa: S101  (for the type checker)
         part = self.part
@@ -113,7 +113,7 @@ class Machine:
         return [self._read(item, hidden, reach) for item in self.records]
 
     def _read(
-        self, item: Excitation, hidden: Sequence[HiddenEffect], reach: Reach
+        self, item: RecordCommand, hidden: Sequence[HiddenEffect], reach: Reach
     ) -> tuple[FloatArray, FloatArray]:
         if self.part is None:
             u = self.command(item)
@@ -134,7 +134,7 @@ class Machine:
 
 
 @lru_cache(maxsize=16)
-def _on_fine_grid(item: Excitation) -> FloatArray:
+def _on_fine_grid(item: RecordCommand) -> FloatArray:
     """Compute a record's command, which a case asks for many times."""
     count = (item.samples + TAIL) * FINE
     return item(np.arange(count) / (FAST * FINE))
@@ -179,7 +179,7 @@ def reach_of(machine: Machine) -> Reach:
         if machine.output == "force":
             q = machine.command(item)
             f = resist(machine.part, q, machine.dt)
-            motion = Motion(f, q, np.gradient(q, machine.dt), q)
+            motion = PartMotion(f, q, np.gradient(q, machine.dt), q)
             output.append(f)
         else:
             motion = machine.run(item, (), nothing)
@@ -231,7 +231,7 @@ def draw_machine(
     records = machine_records(random, middle)
     stiffness = between(0.5, 50.0)
     mass = stiffness / w**2
-    part = Part(mass, 2.0 * between(0.03, 0.3) * mass * w, stiffness)
+    part = MovingPart(mass, 2.0 * between(0.03, 0.3) * mass * w, stiffness)
     if family == "impedance":
         # stiff more than heavy: force is not all inertia
         part = replace(part, mass=mass * between(0.02, 0.2))
@@ -312,7 +312,9 @@ def _simulated(machine: Machine, values: FloatArray, u: FloatArray) -> FloatArra
     if machine.part is None:
         tanks = tuple(Tank(float(value), 1.0) for value in values)
         return decimated(fill(tanks, u, dt, (0.0,) * len(tanks)), COARSE)
-    part = Part(1.0, float(values[0]), float(values[1]) if len(values) > 1 else 0.0)
+    part = MovingPart(
+        1.0, float(values[0]), float(values[1]) if len(values) > 1 else 0.0
+    )
     return decimated(getattr(move(part, u, dt), machine.output), COARSE)
 
 
@@ -330,7 +332,7 @@ def _linear_impedance(machine: Machine, signals: InputsAndOutputs) -> InputsAndO
     columns = []
     for u, _ in signals:
         fine = _between(u)
-        parts = [Part(1.0), Part(0.0, 1.0), Part(0.0, 0.0, 1.0)]
+        parts = [MovingPart(1.0), MovingPart(0.0, 1.0), MovingPart(0.0, 0.0, 1.0)]
         forces = [resist(p, fine, machine.dt * FINE / COARSE) for p in parts]
         moved = [decimated(force, COARSE)[: len(u)] for force in forces]
         columns.append(np.stack([*moved, np.ones(len(u))], axis=1))

@@ -10,8 +10,8 @@ import numpy as np
 
 from hystbench.challenge.excitation import (
     FAST,
-    Excitation,
     Function,
+    RecordCommand,
     add,
     chirp,
     fit,
@@ -48,7 +48,7 @@ def _steps(
 
 def machine_records(
     random: np.random.Generator, middle: float
-) -> tuple[Excitation, ...]:
+) -> tuple[RecordCommand, ...]:
     """Four records to fit and two held out, of levels up to about one.
 
     Parameters
@@ -71,7 +71,7 @@ def machine_records(
     )
 
 
-def filling(random: np.random.Generator, middle: float) -> tuple[Excitation, ...]:
+def filling(random: np.random.Generator, middle: float) -> tuple[RecordCommand, ...]:
     """Inflows of a tank, none of them below zero, in the same order."""
 
     def raised(function: Function, most: float) -> Function:

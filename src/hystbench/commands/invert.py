@@ -14,7 +14,7 @@ from hystbench.export import python
 from hystbench.export.inverse import describe_inverse
 from hystbench.files import write_columns, write_csv
 from hystbench.inverse.bandwidth import HOLDS, Invert, bandwidth, holds_to
-from hystbench.inverse.feedforward import BAND_SHARE, Limits, feedforward
+from hystbench.inverse.feedforward import BAND_SHARE, InputRange, feedforward
 from hystbench.model import Model, load_model
 from hystbench.record import FloatArray, column_name
 from hystbench.signature import In, InputHigh, InputLow, Out, command
@@ -55,7 +55,7 @@ def invert(
             raise InputError(f"{name}: {value:g}; expected a number above 0")
     system = load_model(model)
     asked = options.asked_limits(limit_low, limit_high, None)
-    limits = Limits(**asked)
+    limits = InputRange(**asked)
     if sampled:
         if band is not None and reference is not None:
             raise InputError("--band: expected none beside --sampled and --reference")
@@ -86,7 +86,7 @@ def _follow(
     model: Path,
     file: Path,
     band: float | None,
-    limits: Limits,
+    limits: InputRange,
     sampled: bool,
     out: Path,
 ) -> None:
@@ -120,7 +120,7 @@ def _follow(
         click.echo(f"{clipped} samples stand at a limit of the input")
 
 
-def _by_code(system: Model, model: Path, dt: float, limits: Limits) -> Invert:
+def _by_code(system: Model, model: Path, dt: float, limits: InputRange) -> Invert:
     """Feed the exported inverse."""
     with options.refused_of(model):
         described = describe_inverse(system, Sampling(dt), limits)

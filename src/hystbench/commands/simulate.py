@@ -19,7 +19,7 @@ from hystbench.signature import In, Out, command
 from hystbench.units import check_same_unit
 
 
-class Task(NamedTuple):
+class SimulationTask(NamedTuple):
     """What is to be simulated, and the record if anything was measured."""
 
     dt: float
@@ -79,7 +79,7 @@ def simulate(
     )
 
 
-def _read(record: Path, dataset: Path | None, expected: Channel) -> Task:
+def _read(record: Path, dataset: Path | None, expected: Channel) -> SimulationTask:
     if record.suffix != ".npz":
         return _read_file(record, dataset, expected)
     if dataset is not None:
@@ -87,16 +87,16 @@ def _read(record: Path, dataset: Path | None, expected: Channel) -> Task:
     if _names(record) >= {"name", "dt", "u", "unit"}:
         signal = load_signal(record)
         given = Channel("input", signal.unit)
-        return Task(signal.dt, signal.u, given)
+        return SimulationTask(signal.dt, signal.u, given)
     found = load_record(record)
-    return Task(found.dt, found.u, found.input, record=found)
+    return SimulationTask(found.dt, found.u, found.input, record=found)
 
 
-def _read_file(record: Path, dataset: Path | None, expected: Channel) -> Task:
+def _read_file(record: Path, dataset: Path | None, expected: Channel) -> SimulationTask:
     beside = record.parent / "dataset.yaml"
     if dataset is None and not beside.is_file():
         dt, u = read_input(record, column_name(expected.name, expected.unit))
-        return Task(dt, u, expected)
+        return SimulationTask(dt, u, expected)
     about = load_dataset(dataset or beside)
     names = [
         name
@@ -113,7 +113,7 @@ def _read_file(record: Path, dataset: Path | None, expected: Channel) -> Task:
         found = about.read(names[0])
         hold = cast(Hold, about.about["input"].get("hold", "band-limited"))
         own = found.dt, found.u, found.input
-        return Task(*own, hold, found, about.simulated_column)
+        return SimulationTask(*own, hold, found, about.simulated_column)
     files = [file.name for file in about.record_files.values()]
     raise InputError(
         f"{about.path}: records: {record} is none of them; "

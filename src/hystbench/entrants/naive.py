@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hystbench.entrants.task import Answer, Given, Named, noise_rms
-from hystbench.plain_fits import Fitted, Task, effects, fit
+from hystbench.entrants.task import Answer, Given, NamedEffect, noise_rms
+from hystbench.plain_fits import EffectFit, Task, effects, fit
 from hystbench.record import FloatArray, Record
 
 MOST = 4
@@ -22,8 +22,8 @@ MOST = 4
 class Taken(NamedTuple):
     """An effect that was named, and its fit to what was left then."""
 
-    named: Named
-    fitted: Fitted
+    named: NamedEffect
+    fitted: EffectFit
 
 
 def answer(given: Given) -> Answer:
@@ -61,10 +61,10 @@ def best(task: Task, noise: float, known: set[str]) -> Taken | None:
     # differences of the criterion as log-odds, as is usually done
     weights = np.exp(-0.5 * (np.array([score for score, _ in scored]) - least))
     ties = tuple(name for score, name in scored[1:] if score - least < np.log(samples))
-    return Taken(Named(name, float(weights[0] / weights.sum()), ties), chosen)
+    return Taken(NamedEffect(name, float(weights[0] / weights.sum()), ties), chosen)
 
 
-def without(task: Task, found: Fitted) -> Task:
+def without(task: Task, found: EffectFit) -> Task:
     """Take what an effect explains off the records."""
     ends = np.cumsum([len(record) for record in task.records])[:-1]
     parts = np.split(task.measured - (found.output - task.base), ends)
@@ -74,7 +74,7 @@ def without(task: Task, found: Fitted) -> Task:
     return Task(task.model, records)
 
 
-def criterion(found: Fitted, task: Task, noise: float) -> float:
+def criterion(found: EffectFit, task: Task, noise: float) -> float:
     """Squared error over the noise's power, plus the log of samples a parameter."""
     samples = len(task.measured)
     return samples * found.mean_square / noise**2 + found.freedom * float(

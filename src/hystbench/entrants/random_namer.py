@@ -4,7 +4,7 @@ import hashlib
 
 import numpy as np
 
-from hystbench.entrants.task import Answer, Given, Named
+from hystbench.entrants.task import Answer, Given, NamedEffect
 from hystbench.plain_fits import effects
 
 
@@ -17,5 +17,5 @@ def answer(given: Given) -> Answer:
     chosen = names[int(random.integers(len(names)))]
     if chosen is None:
         return Answer(given.base, "no-gap", "Drawn.")
-    named = [Named(chosen, 1.0 / len(names))]
+    named = [NamedEffect(chosen, 1.0 / len(names))]
     return Answer(given.base, "named", "Drawn.", named)

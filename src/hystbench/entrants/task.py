@@ -41,7 +41,7 @@ class Given:
 
 
 @dataclass(frozen=True)
-class Named:
+class NamedEffect:
     """An effect that a rival names."""
 
     name: str
@@ -59,14 +59,14 @@ class Answer:
         The model that is to close the gap, for the hold-out records.
     verdict : {"named", "no-gap", "unnamed"}
     reason : str
-    named : sequence of Named
+    named : sequence of NamedEffect
         In their order.
     """
 
     predict: Predict
     verdict: str = "unnamed"
     reason: str = "Nothing is named."
-    named: Sequence[Named] = ()
+    named: Sequence[NamedEffect] = ()
 
 
 def read(dataset: Path, model: Path) -> Given:

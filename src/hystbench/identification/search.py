@@ -18,7 +18,7 @@ TINY = float(np.finfo(np.float64).tiny)
 
 
 @dataclass(frozen=True)
-class Found:
+class FeasiblePoint:
     """A feasible point and its J over the whole record."""
 
     point: FloatArray
@@ -70,10 +70,10 @@ class Search:
         self.amplitude = max(abs(self.low), abs(self.high))
         self.max_iterations, self.progress = max_iterations, progress
         self.history: list[float] = []
-        self._best: Found | None = None
+        self._best: FeasiblePoint | None = None
 
     @property
-    def best(self) -> Found:
+    def best(self) -> FeasiblePoint:
         """The point of least J so far."""
         if self._best is None:
             raise RuntimeError("no point yet: descend from one first")
@@ -178,4 +178,4 @@ class Search:
         if thinned < whole:
             fit = self._fit(replace(self.record, lead=samples.lead), fit.point)
         if self._best is None or fit.cost < self._best.cost:
-            self._best = Found(fit.point, start, fit.cost)
+            self._best = FeasiblePoint(fit.point, start, fit.cost)

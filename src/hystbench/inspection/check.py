@@ -17,7 +17,7 @@ from hystbench.gap.records.scored_samples import Compared, rms
 from hystbench.inspection.base import loop_of_plays
 from hystbench.inspection.facts import Facts, facts_of, late
 from hystbench.inspection.flat import flats
-from hystbench.inspection.visible import Seen, seen_effects
+from hystbench.inspection.visible import SmallestSeen, seen_effects
 from hystbench.inspection.writing import entry_text
 from hystbench.model import Model
 from hystbench.record import Record
@@ -70,7 +70,7 @@ class Check:
     left : float
         Rms of what it leaves on the fit records, in the output's unit.
     findings : tuple of Finding
-    effects : tuple of Seen
+    effects : tuple of SmallestSeen
         None where they were not simulated.
     """
 
@@ -81,15 +81,15 @@ class Check:
     base: Model
     left: float
     findings: tuple[Finding, ...]
-    effects: tuple[Seen, ...]
+    effects: tuple[SmallestSeen, ...]
 
     @property
-    def revealed(self) -> tuple[Seen, ...]:
+    def revealed(self) -> tuple[SmallestSeen, ...]:
         """Effects that show before they are a tenth of the output."""
         return tuple(item for item in self.effects if item.revealed)
 
     @property
-    def hidden(self) -> tuple[Seen, ...]:
+    def hidden(self) -> tuple[SmallestSeen, ...]:
         """The others."""
         return tuple(item for item in self.effects if not item.revealed)
 

@@ -60,7 +60,7 @@ class Flags:
 
 
 @dataclass(frozen=True)
-class Part:
+class RecordColumns:
     """One record to be: a group of columns of one length in a file.
 
     Parameters
@@ -95,7 +95,7 @@ class ChosenColumns:
     notes: list[str] = field(default_factory=list)
 
 
-def parts_of(table: Table) -> list[Part]:
+def parts_of(table: Table) -> list[RecordColumns]:
     """Give the parts of a file that may be records.
 
     Columns of one group and one length belong together, with those of that length at
@@ -134,11 +134,11 @@ def _runs(columns: Sequence[Column]) -> dict[str, dict[str, Column]]:
 
 def _part(
     table: Table, group: str, columns: Sequence[Column], named: Mapping[str, Column]
-) -> Part:
+) -> RecordColumns:
     """Make a part of the columns of the most common length."""
     length = Counter(len(column.values) for column in columns).most_common(1)[0][0]
     names = {id(column): name for name, column in named.items()}
-    return Part(
+    return RecordColumns(
         table,
         group,
         {
@@ -149,7 +149,7 @@ def _part(
     )
 
 
-def signals_of(parts: Sequence[Part], given: Flags, ask: Ask) -> ChosenColumns:
+def signals_of(parts: Sequence[RecordColumns], given: Flags, ask: Ask) -> ChosenColumns:
     """Find which columns are time, input and output, of most parts."""
     common = _common(parts)
     first = next(part for part in parts if set(common) <= set(part.columns))
@@ -196,7 +196,7 @@ def signals_of(parts: Sequence[Part], given: Flags, ask: Ask) -> ChosenColumns:
     )
 
 
-def _common(parts: Sequence[Part]) -> list[str]:
+def _common(parts: Sequence[RecordColumns]) -> list[str]:
     """Give the names of columns that most parts share, in the order of the first."""
     sets = Counter(tuple(part.columns) for part in parts)
     names = max(sets, key=lambda names: (sets[names], -len(names)))
@@ -218,7 +218,7 @@ def _asked(given: Flags) -> list[str]:
 
 
 def _time(
-    part: Part, told: Mapping[str, tuple[str, str | None]], given: Flags
+    part: RecordColumns, told: Mapping[str, tuple[str, str | None]], given: Flags
 ) -> str | None:
     """Name the column of time: the one asked for, or one that is called so."""
     if given.time is not None:
@@ -247,7 +247,7 @@ def _rises(values: FloatArray) -> bool:
 
 
 def _channels(
-    part: Part,
+    part: RecordColumns,
     names: Sequence[str],
     told: Mapping[str, tuple[str, str | None]],
     given: Flags,
@@ -287,7 +287,7 @@ def _finite(column: Column) -> FloatArray:
     return values if len(values) else np.zeros(1)
 
 
-def fits(part: Part, signals: ChosenColumns) -> bool:
+def fits(part: RecordColumns, signals: ChosenColumns) -> bool:
     """Tell whether a part has the columns."""
     wanted = {signals.input, signals.output}
     if signals.time is not None:

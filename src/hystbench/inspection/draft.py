@@ -14,7 +14,7 @@ from hystbench.inspection.columns import (
     LEAST,
     Ask,
     Flags,
-    Part,
+    RecordColumns,
     fits,
     parts_of,
     signals_of,
@@ -74,7 +74,7 @@ def draft(files: Sequence[Path], place: Path, given: Flags, ask: Ask) -> Draft:
     if given.sampling_frequency is not None:
         checked_frequency(given.sampling_frequency)
     notes: list[str] = []
-    parts: list[Part] = []
+    parts: list[RecordColumns] = []
     for file in files:
         table = read_table(file)
         notes += [f"{file.name}: {note}" for note in table.notes]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from hystbench.dataset import RECORD_NAME
 from hystbench.errors import InputError, refuse_unknown
 from hystbench.inspection.clocks import Ticks, ticks_of
-from hystbench.inspection.columns import LEAST, Ask, ChosenColumns, Flags, Part
+from hystbench.inspection.columns import LEAST, Ask, ChosenColumns, Flags, RecordColumns
 from hystbench.inspection.excitation import excitation_of
 from hystbench.inspection.missing import cannot_be_bridged, runs
 from hystbench.inspection.names import split_unit
@@ -32,13 +32,13 @@ Entry = dict[str, Any]
 
 
 def content_of(
-    parts: Sequence[Part],
+    parts: Sequence[RecordColumns],
     signals: ChosenColumns,
     given: Flags,
     place: Path,
     ask: Ask,
     notes: list[str],
-) -> tuple[dict[str, Any], list[Entry], list[Part]]:
+) -> tuple[dict[str, Any], list[Entry], list[RecordColumns]]:
     """Give dataset.yaml but for roles and periods; notes are added to.
 
     Returns
@@ -47,14 +47,14 @@ def content_of(
         All but the records.
     entries : list of dict
         Of the records.
-    owners : list of Part
+    owners : list of RecordColumns
         The part that each entry is of.
     """
     about: dict[str, Any] = {"name": given.name or _name_of(place)}
     if given.device is not None:
         about["device"] = {"kind": given.device}
     entries: list[Entry] = []
-    owners: list[Part] = []
+    owners: list[RecordColumns] = []
     clocks: list[Ticks] = []
     for part in parts:
         if signals.time is not None:
@@ -106,7 +106,7 @@ def content_of(
     return about, entries, owners
 
 
-def _from(place: Path, part: Part) -> str:
+def _from(place: Path, part: RecordColumns) -> str:
     """Give the path of a part's file from where dataset.yaml is to stand."""
     file = part.table.path
     # Of folders that are links the real ones count: '..' leads out of those.
@@ -116,7 +116,7 @@ def _from(place: Path, part: Part) -> str:
 
 def _frequency(
     about: dict[str, Any],
-    parts: Sequence[Part],
+    parts: Sequence[RecordColumns],
     signals: ChosenColumns,
     given: Flags,
     ask: Ask,
@@ -157,7 +157,7 @@ def checked_frequency(told: str | float) -> float:
     return value
 
 
-def missing_in(part: Part, signals: ChosenColumns) -> NDArray[np.bool_]:
+def missing_in(part: RecordColumns, signals: ChosenColumns) -> NDArray[np.bool_]:
     """Tell of each sample whether time, input or output has no number."""
     columns = [part.columns[signals.input], part.columns[signals.output]]
     if signals.time is not None:
@@ -168,7 +168,7 @@ def missing_in(part: Part, signals: ChosenColumns) -> NDArray[np.bool_]:
 
 
 def _without_missing(
-    part: Part,
+    part: RecordColumns,
     signals: ChosenColumns,
     entry: dict[str, Any],
     given: Flags,

@@ -23,7 +23,7 @@ IN_BAND = 0.99
 
 
 @dataclass(frozen=True)
-class Excitation:
+class InputSummary:
     """An input in a few numbers.
 
     Parameters
@@ -58,7 +58,7 @@ class Excitation:
         return 2 * self.rate / self.span
 
 
-def excitation_of(u: FloatArray, dt: float) -> Excitation:
+def excitation_of(u: FloatArray, dt: float) -> InputSummary:
     """Describe an input.
 
     Parameters
@@ -72,7 +72,7 @@ def excitation_of(u: FloatArray, dt: float) -> Excitation:
     edges = ((1 - IN_BAND) / 2 * total[-1], (1 + IN_BAND) / 2 * total[-1])
     low, high = np.searchsorted(total, edges) / (len(u) * dt)
     slopes = np.diff(u) / dt
-    return Excitation(
+    return InputSummary(
         _kind(u, power),
         max(float(low), 1 / (len(u) * dt)),
         max(float(high), 1 / (len(u) * dt)),

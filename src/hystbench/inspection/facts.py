@@ -11,7 +11,7 @@ from hystbench.errors import InputError
 from hystbench.formats import read_table
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.records.usable import REAL, check_usable
-from hystbench.inspection.excitation import Excitation, excitation_of
+from hystbench.inspection.excitation import InputSummary, excitation_of
 from hystbench.inspection.missing import cannot_be_bridged
 from hystbench.periods import find_period
 from hystbench.record import FloatArray, Record, Use
@@ -49,7 +49,7 @@ class Facts:
         Samples, as the dataset says or as it was found.
     declared : bool
         Whether the dataset says it.
-    excitation : Excitation
+    excitation : InputSummary
     low, high : float
         Range of the output.
     stuck : str
@@ -72,7 +72,7 @@ class Facts:
     jitter: float | None
     period: int | None
     declared: bool
-    excitation: Excitation
+    excitation: InputSummary
     low: float
     high: float
     stuck: str

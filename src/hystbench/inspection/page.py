@@ -9,10 +9,10 @@ from hystbench.gap.report.pictures import EmbeddedPicture, draw
 from hystbench.inspection import pictures, words
 from hystbench.inspection.check import Check
 from hystbench.inspection.facts import Facts
-from hystbench.inspection.visible import TENTH, Seen
+from hystbench.inspection.visible import TENTH, SmallestSeen
 from hystbench.report.layout import page_environment
 from hystbench.report.markup import one_micro
-from hystbench.report.table import Cell, Column, Table, number, table_of
+from hystbench.report.table import Cell, PageColumn, PageTable, number, table_of
 
 
 def page(found: Check) -> str:
@@ -39,30 +39,30 @@ def page(found: Check) -> str:
     return one_micro(made)
 
 
-def _records(found: Check) -> Table:
+def _records(found: Check) -> PageTable:
     record = found.records[0]
-    shown: dict[Column, Callable[[Facts], Cell | str]] = {
-        Column("record"): attrgetter("name"),
-        Column("use"): attrgetter("use"),
-        Column("samples", True): lambda x: number(x.samples, str(x.samples)),
-        Column("rate (Hz)", True): lambda x: number(1 / x.dt, f"{1 / x.dt:.6g}"),
-        Column("jitter (%)", True): lambda x: number(x.jitter, _jitter(x)),
-        Column("input"): attrgetter("excitation.kind"),
-        Column("period (samples)", True): lambda x: number(
+    shown: dict[PageColumn, Callable[[Facts], Cell | str]] = {
+        PageColumn("record"): attrgetter("name"),
+        PageColumn("use"): attrgetter("use"),
+        PageColumn("samples", True): lambda x: number(x.samples, str(x.samples)),
+        PageColumn("rate (Hz)", True): lambda x: number(1 / x.dt, f"{1 / x.dt:.6g}"),
+        PageColumn("jitter (%)", True): lambda x: number(x.jitter, _jitter(x)),
+        PageColumn("input"): attrgetter("excitation.kind"),
+        PageColumn("period (samples)", True): lambda x: number(
             x.period, str(x.period or "none")
         ),
-        Column("periods", True): lambda x: number(x.periods, f"{x.periods:.3g}"),
-        Column("band"): words.band,
-        Column(f"input ({unit_text(record.input.unit)})"): lambda x: (
+        PageColumn("periods", True): lambda x: number(x.periods, f"{x.periods:.3g}"),
+        PageColumn("band"): words.band,
+        PageColumn(f"input ({unit_text(record.input.unit)})"): lambda x: (
             f"{x.excitation.low:.3g} to {x.excitation.high:.3g}"
         ),
-        Column(f"output ({unit_text(record.output.unit)})"): lambda x: (
+        PageColumn(f"output ({unit_text(record.output.unit)})"): lambda x: (
             f"{x.low:.3g} to {x.high:.3g}"
         ),
-        Column("delay (ms)", True): lambda x: number(
+        PageColumn("delay (ms)", True): lambda x: number(
             x.delay_s, f"{1e3 * x.delay_s:.3g} ± {1e3 * x.delay_error_s:.2g}"
         ),
-        Column("missing", True): lambda x: number(x.missing, str(x.missing)),
+        PageColumn("missing", True): lambda x: number(x.missing, str(x.missing)),
     }
     return table_of(
         "records",
@@ -120,17 +120,17 @@ def _chart(found: Check) -> EmbeddedPicture | None:
     )
 
 
-def _revealed(found: Check) -> Table:
+def _revealed(found: Check) -> PageTable:
     record = found.records[0]
     units = record.input.unit, record.output.unit
-    shown: dict[Column, Callable[[Seen], Cell | str]] = {
-        Column("effect"): attrgetter("effect"),
-        Column("seen from", True): lambda x: number(
+    shown: dict[PageColumn, Callable[[SmallestSeen], Cell | str]] = {
+        PageColumn("effect"): attrgetter("effect"),
+        PageColumn("seen from", True): lambda x: number(
             x.seen_from, words.percent(x.seen_from)
         ),
-        Column("that is"): lambda x: words.strength(x, *units),
-        Column("in the form"): lambda x: x.form.replace("_", " "),
-        Column("can be mistaken for"): lambda x: words.mistaken(x) or "nothing",
+        PageColumn("that is"): lambda x: words.strength(x, *units),
+        PageColumn("in the form"): lambda x: x.form.replace("_", " "),
+        PageColumn("can be mistaken for"): lambda x: words.mistaken(x) or "nothing",
     }
     return table_of(
         "revealed",
@@ -142,11 +142,14 @@ def _revealed(found: Check) -> Table:
     )
 
 
-def _hidden(found: Check) -> Table:
+def _hidden(found: Check) -> PageTable:
     return table_of(
         "hidden",
         f"Not revealed: {len(found.hidden)} of {len(found.effects)} effects.",
         found.hidden,
-        {Column("effect"): attrgetter("effect"), Column("why"): attrgetter("why")},
+        {
+            PageColumn("effect"): attrgetter("effect"),
+            PageColumn("why"): attrgetter("why"),
+        },
         cards=True,
     )

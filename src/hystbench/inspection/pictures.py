@@ -9,7 +9,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from hystbench.figures.style import BLUE, GREY, VERMILION, axis_label
 from hystbench.inspection.check import Check
-from hystbench.inspection.visible import TENTH, Seen
+from hystbench.inspection.visible import TENTH, SmallestSeen
 
 LOOPS = 8
 """Records whose loops are drawn."""
@@ -70,7 +70,7 @@ def bands(axes: Sequence[Axes], found: Check) -> None:
     _legend(ax)
 
 
-def strengths(axes: Sequence[Axes], effects: Sequence[Seen]) -> None:
+def strengths(axes: Sequence[Axes], effects: Sequence[SmallestSeen]) -> None:
     """Draw from which strength on each effect is seen, and told from every other."""
     (ax,) = axes
     shown = [item for item in effects if math.isfinite(item.seen_from)]

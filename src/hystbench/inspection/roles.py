@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping
 
-from hystbench.inspection.excitation import Excitation
+from hystbench.inspection.excitation import InputSummary
 
 
-def propose(inputs: Mapping[str, Excitation]) -> tuple[tuple[str, ...], str]:
+def propose(inputs: Mapping[str, InputSummary]) -> tuple[tuple[str, ...], str]:
     """Propose the records to hold out.
 
     Where there are several kinds of input, one kind is held out: that with the fewest
@@ -16,7 +16,7 @@ def propose(inputs: Mapping[str, Excitation]) -> tuple[tuple[str, ...], str]:
 
     Parameters
     ----------
-    inputs : mapping of str to Excitation
+    inputs : mapping of str to InputSummary
         Two records or more.
 
     Returns
@@ -53,7 +53,7 @@ def propose(inputs: Mapping[str, Excitation]) -> tuple[tuple[str, ...], str]:
     )
 
 
-def _beyond(inputs: Mapping[str, Excitation], names: list[str]) -> tuple[bool, float]:
+def _beyond(inputs: Mapping[str, InputSummary], names: list[str]) -> tuple[bool, float]:
     """Tell whether records reach beyond the range of the others, and their band."""
     own = [inputs[name] for name in names]
     rest = [item for name, item in inputs.items() if name not in names]

@@ -10,7 +10,7 @@ from textwrap import wrap
 
 from hystbench.inspection.check import Check, Finding
 from hystbench.inspection.facts import Facts
-from hystbench.inspection.visible import Seen
+from hystbench.inspection.visible import SmallestSeen
 from hystbench.inspection.words import (
     EVEN,
     FLOORS,
@@ -193,7 +193,7 @@ def _effects(found: Check) -> dict[str, list[str]]:
     return {key: part if len(part) > 1 else [] for key, part in told.items()}
 
 
-def _hidden(effects: Sequence[Seen]) -> list[str]:
+def _hidden(effects: Sequence[SmallestSeen]) -> list[str]:
     reasons = dict.fromkeys(item.why for item in effects)
     return [
         line

@@ -32,7 +32,7 @@ TAKEN = 0.99
 
 
 @dataclass(frozen=True)
-class Seen:
+class SmallestSeen:
     """How strong an effect must be on these records.
 
     Parameters
@@ -80,7 +80,7 @@ class Seen:
 
 def seen_effects(
     base: Model, records: Sequence[Record], floor: float, hold: str = "band-limited"
-) -> tuple[Seen, ...]:
+) -> tuple[SmallestSeen, ...]:
     """Find how strong each effect must be to be seen and told on records.
 
     Parameters
@@ -95,7 +95,7 @@ def seen_effects(
 
     Returns
     -------
-    tuple of Seen
+    tuple of SmallestSeen
         All effects of the vocabulary, by what it takes to see them.
 
     Raises
@@ -122,7 +122,9 @@ def seen_effects(
         found.append(judge.seen(mine, rest))
     for name, why in declined.items():
         found.append(
-            Seen(name, "", np.inf, np.nan, "", "", "", 0.0, (), f"not tried: {why}")
+            SmallestSeen(
+                name, "", np.inf, np.nan, "", "", "", 0.0, (), f"not tried: {why}"
+            )
         )
     return tuple(sorted(found, key=lambda item: (item.seen_from, item.effect)))
 
@@ -226,7 +228,9 @@ class _Judge:
         start = -0.5 * np.log(powers.max())
         return float(np.exp(brentq(lacks, start - 30, start + 30)))
 
-    def seen(self, mine: Sequence[_Measured], rest: Sequence[_Measured]) -> Seen:
+    def seen(
+        self, mine: Sequence[_Measured], rest: Sequence[_Measured]
+    ) -> SmallestSeen:
         """Give what it takes to see an effect, in the form in which it shows first."""
         found = [*_scaled(mine), *_graded(mine)]
         first = min(found, key=lambda each: each.share, default=None)
@@ -234,7 +238,7 @@ class _Judge:
         share = float("inf") if first is None else first.share
         shape = item.shape
         number, unit = _number(shape)
-        return Seen(
+        return SmallestSeen(
             shape.effect,
             shape.place,
             share,

@@ -6,7 +6,7 @@ from hystbench.figures.style import unit_text
 from hystbench.gap.fitting.parameter_units import written
 from hystbench.inspection.check import Check
 from hystbench.inspection.facts import Facts
-from hystbench.inspection.visible import Seen
+from hystbench.inspection.visible import SmallestSeen
 
 FLOORS = {
     "repeats": "measured by repeats",
@@ -25,7 +25,7 @@ def percent(share: float) -> str:
     return "never" if math.isinf(share) else f"{100 * share:.2g} %"
 
 
-def strength(item: Seen, of_input: str, of_output: str) -> str:
+def strength(item: SmallestSeen, of_input: str, of_output: str) -> str:
     """Write the number at which an effect is seen first, with its unit."""
     if math.isnan(item.value):
         return ""
@@ -39,7 +39,7 @@ def quantity(value: float, unit: str) -> str:
     return f"{value:.3g} {unit_text(unit)}".removesuffix(" -").strip()
 
 
-def mistaken(item: Seen) -> str:
+def mistaken(item: SmallestSeen) -> str:
     """Say what an effect may be mistaken for until it is how large."""
     near = item.rivals[:NAMED]
     if not near:

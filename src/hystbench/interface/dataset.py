@@ -22,7 +22,7 @@ DRAWN = 8
 
 
 @dataclass(frozen=True, repr=False)
-class Dataset(files.Dataset):
+class ShownDataset(files.Dataset):
     """Measured records: what dataset.yaml says, and the samples once they are asked.
 
     ``dataset["name"]`` gives a record, ``for record in dataset`` each of them.
@@ -103,7 +103,7 @@ class Dataset(files.Dataset):
         return drawn(lambda axes: pictures.records(axes, shown), len(shown), 3, 1.9)
 
 
-def load_dataset(path: str | Path) -> Dataset:
+def load_dataset(path: str | Path) -> ShownDataset:
     """Read and check a dataset.yaml (its header and files; samples when asked).
 
     Parameters
@@ -113,7 +113,7 @@ def load_dataset(path: str | Path) -> Dataset:
 
     Returns
     -------
-    Dataset
+    ShownDataset
 
     Raises
     ------
@@ -121,7 +121,7 @@ def load_dataset(path: str | Path) -> Dataset:
         If the file, a key or a record's file is missing or wrong.
     """
     found = files.load_dataset(path)
-    return Dataset(**vars(found))
+    return ShownDataset(**vars(found))
 
 
 def _frame(record: Record) -> pd.DataFrame:

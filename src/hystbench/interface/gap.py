@@ -29,7 +29,7 @@ TABLES: tuple[Table, ...] = ("records", "effects", "ranking")
 
 
 @dataclass(frozen=True, repr=False)
-class Effect:
+class ShownEffect:
     """An effect that the search named.
 
     Parameters
@@ -103,10 +103,10 @@ class Gap:
         return verdict_sentence(with_optional(self.content))
 
     @property
-    def effects(self) -> tuple[Effect, ...]:
+    def effects(self) -> tuple[ShownEffect, ...]:
         """What was named; what a user put in is none of it."""
         return tuple(
-            Effect(
+            ShownEffect(
                 item["name"],
                 item["place"],
                 item["confidence"],

@@ -25,7 +25,7 @@ BAND_SHARE = 0.1
 """Band of the inverse as a share of the sampling rate, where nobody says another."""
 
 
-class Limits(NamedTuple):
+class InputRange(NamedTuple):
     """Lowest and highest input of the actuator."""
 
     low: float = -FAR
@@ -66,7 +66,7 @@ def feedforward(
     reference: FloatArray,
     dt: float,
     band_hz: float | None = None,
-    limits: Limits = Limits(),  # noqa: B008 - cannot be changed
+    limits: InputRange = InputRange(),  # noqa: B008 - cannot be changed
 ) -> Feedforward:
     """Find the input that makes a model's output follow a reference.
 
@@ -85,7 +85,7 @@ def feedforward(
         Sampling interval in seconds.
     band_hz : float, optional
         Up to this frequency errors are corrected; a tenth of the sampling rate else.
-    limits : Limits
+    limits : InputRange
         Those of the input.
 
     Returns
@@ -122,7 +122,7 @@ def feedforward(
                 "as the response of an integrator to a reference never ends"
             )
     start = Start.of(model, limits)
-    anywhere = Start.of(model, Limits())
+    anywhere = Start.of(model, InputRange())
     response = best_linear(
         lambda x: model.simulate(anywhere.to_input(x)[0], dt),
         stroke,
@@ -138,7 +138,7 @@ def feedforward(
             "reference: the model's output diverges with the input that it would "
             "take; expected a smaller or slower reference"
         )
-    if found.clipped and limits == Limits():
+    if found.clipped and limits == InputRange():
         raise InputError(
             f"reference: the input diverges at {found.clipped} of {len(reference)} "
             f"samples, as '{found.exact}' does not reach what is asked of it; expected "
@@ -161,7 +161,7 @@ class Start:
     scale, shift : float
         The straight line before the plays; what else is before or around them counts
         as nothing here, and is left to the iteration.
-    limits : Limits
+    limits : InputRange
         Those of the input.
     """
 
@@ -169,10 +169,10 @@ class Start:
     plays: Plays | None
     scale: float
     shift: float
-    limits: Limits
+    limits: InputRange
 
     @classmethod
-    def of(cls, model: Model, limits: Limits) -> Start:
+    def of(cls, model: Model, limits: InputRange) -> Start:
         """Look for the first plays in the chain."""
         scale, shift = 1.0, 0.0
         for block in model.chain:

@@ -7,6 +7,6 @@ see whether an effect fits data within their noise.
 """
 
 from hystbench.plain_fits.fit import effects, fit, within_noise
-from hystbench.plain_fits.task import Fitted, Task
+from hystbench.plain_fits.task import EffectFit, Task
 
-__all__ = ["Fitted", "Task", "effects", "fit", "within_noise"]
+__all__ = ["EffectFit", "Task", "effects", "fit", "within_noise"]

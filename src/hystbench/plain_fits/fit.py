@@ -10,7 +10,7 @@ from hystbench.model import Model
 from hystbench.operators import play
 from hystbench.plain_fits.search import search
 from hystbench.plain_fits.table import PLACES, next_to, place_of, searched_of
-from hystbench.plain_fits.task import Fitted, Task
+from hystbench.plain_fits.task import EffectFit, Task
 from hystbench.record import FloatArray, Record
 
 #: Plays that stand for hysteresis of any shape.
@@ -19,7 +19,7 @@ PLAYS = 10
 MAINS = np.concatenate([np.linspace(49.8, 50.2, 17), np.linspace(59.8, 60.2, 17)])
 
 
-def fit(task: Task, effect: str) -> Fitted | None:
+def fit(task: Task, effect: str) -> EffectFit | None:
     """Fit one effect; None where it makes no sense in the chain.
 
     Parameters
@@ -86,7 +86,7 @@ def _leaves(task: Task, name: str) -> float:
     return np.inf if found is None else found.mean_square
 
 
-def _fit_plays(task: Task, effect: str) -> Fitted | None:
+def _fit_plays(task: Task, effect: str) -> EffectFit | None:
     """Add plays of the input, and their squares, where the hysteresis is."""
     if (effect == "hysteresis") != (task.hysteresis is None):
         return None
@@ -108,7 +108,7 @@ def _fit_plays(task: Task, effect: str) -> Fitted | None:
     design = np.concatenate([columns(record) for record in task.records])
     missing = task.measured - task.base
     weights = np.linalg.lstsq(design, missing)[0]
-    return Fitted(
+    return EffectFit(
         effect,
         task.base + design @ weights,
         float(np.mean((missing - design @ weights) ** 2)),
@@ -125,7 +125,7 @@ def _fit_beside(
     effect: str,
     value: float,
     columns: Callable[[Record, float], FloatArray],
-) -> Fitted:
+) -> EffectFit:
     """Add to each record a signal of its own that the input does not explain."""
     parts, freedom, start = [], 0, 0
     for record in task.records:
@@ -136,7 +136,7 @@ def _fit_beside(
         freedom += design.shape[1]
         start = stop
     output = task.base + np.concatenate(parts)
-    return Fitted(
+    return EffectFit(
         effect,
         output,
         float(np.mean((output - task.measured) ** 2)),

@@ -11,7 +11,7 @@ from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.model import Model
 from hystbench.plain_fits.table import PROPORTIONAL_TO, Searched
-from hystbench.plain_fits.task import Fitted, Task
+from hystbench.plain_fits.task import EffectFit, Task
 from hystbench.record import FloatArray
 
 #: Evaluations of a search from one start, Jacobians not counted.
@@ -47,7 +47,7 @@ def search(
     place: int,
     searched: Mapping[str, Searched],
     form: str = "",
-) -> Fitted:
+) -> EffectFit:
     """Fit the parameters of an effect's block to all records at once.
 
     Parameters
@@ -104,7 +104,7 @@ def search(
     chosen = values(best.x)
     chain = _chain(task, effect, place, chosen, form)
     model = Model("fitted", task.model.input, task.model.output, chain)
-    return Fitted(
+    return EffectFit(
         effect,
         residual(best.x) + task.measured,
         2.0 * float(best.cost) / len(task.measured),

@@ -12,7 +12,7 @@ from hystbench.record import FloatArray, Record
 
 
 @dataclass(frozen=True)
-class Fitted:
+class EffectFit:
     """An effect fitted to records.
 
     Parameters

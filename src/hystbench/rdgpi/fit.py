@@ -103,7 +103,7 @@ def identify_rdgpi(
     tried: list[tuple[float, RateDependentGPI]] = []
     for point in points:
         for kind in kinds:
-            fit = _Fit.of(records, order, kind)
+            fit = _ThinnedRecords.of(records, order, kind)
             # steep weights can overflow: such a point has no finite cost
             with np.errstate(over="ignore", invalid="ignore"):
                 best, cost = minimize(fit.error, point, _LOWER, _UPPER)
@@ -121,7 +121,7 @@ def identify_rdgpi(
 
 
 @dataclass(frozen=True)
-class _Fit:
+class _ThinnedRecords:
     """Thinned records one after another, with the largest input and rate as units."""
 
     order: int
@@ -135,7 +135,7 @@ class _Fit:
     target: FloatArray
 
     @classmethod
-    def of(cls, records: Sequence[Record], order: int, start: Start) -> _Fit:
+    def of(cls, records: Sequence[Record], order: int, start: Start) -> _ThinnedRecords:
         """Thin records and find the units."""
         paths, leads, outputs = [], [], []
         for record in records:

@@ -25,7 +25,7 @@ class Link:
 
 
 @dataclass(frozen=True)
-class Picture:
+class PagePicture:
     """A picture with its caption.
 
     Parameters
@@ -59,7 +59,7 @@ class Picture:
 
 def embedded(
     path: Path, alt: str, caption: Markup, files: tuple[Link, ...] = ()
-) -> Picture:
+) -> PagePicture:
     """Take an SVG file of matplotlib into a page.
 
     Raises
@@ -74,7 +74,7 @@ def embedded(
     if len(size) < 2:
         raise InputError(f"{path}: expected an SVG picture with a size in points")
     text = base64.b64encode(content).decode("ascii")
-    return Picture(
+    return PagePicture(
         name=path.stem,
         source=f"data:image/svg+xml;base64,{text}",
         alt=alt,

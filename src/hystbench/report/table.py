@@ -33,7 +33,7 @@ class Cell:
 
 
 @dataclass(frozen=True)
-class Column:
+class PageColumn:
     """A column: its title, whether it holds numbers, and what it stands under."""
 
     title: str
@@ -72,7 +72,7 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Table:
+class PageTable:
     """A table with its caption.
 
     Parameters
@@ -81,7 +81,7 @@ class Table:
         Name of the element, by which it can be linked.
     caption : str
         Text or ``Markup``.
-    columns : sequence of Column
+    columns : sequence of PageColumn
     bodies : sequence of Body
     files : tuple of Link
         Where it can be had as a file.
@@ -97,7 +97,7 @@ class Table:
 
     name: str
     caption: str
-    columns: Sequence[Column]
+    columns: Sequence[PageColumn]
     bodies: Sequence[Body]
     files: tuple[Link, ...] = ()
     filtered: tuple[str, ...] = ()
@@ -152,9 +152,9 @@ def table_of(
     name: str,
     caption: str,
     items: Iterable[Item],
-    shown: Mapping[Column, Callable[[Item], Cell | str]],
+    shown: Mapping[PageColumn, Callable[[Item], Cell | str]],
     **about: Any,
-) -> Table:
+) -> PageTable:
     """Make a table with a row an item.
 
     Parameters
@@ -164,10 +164,10 @@ def table_of(
     shown : mapping
         Each column, and what it shows of an item: text or a cell.
     **about
-        What else a :class:`Table` is told.
+        What else a :class:`PageTable` is told.
     """
     rows = [
         [cell if isinstance(cell, Cell) else words(cell) for cell in cells]
         for cells in ([show(item) for show in shown.values()] for item in items)
     ]
-    return Table(name, caption, list(shown), [Body(rows)], **about)
+    return PageTable(name, caption, list(shown), [Body(rows)], **about)

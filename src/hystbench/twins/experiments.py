@@ -19,7 +19,7 @@ from hystbench.twins.runs import Settings
 
 
 @dataclass(frozen=True)
-class Experiment:
+class TwinExperiment:
     """What is changed in an experiment.
 
     Parameters
@@ -45,11 +45,11 @@ class Experiment:
         }
 
 
-CONFIGURED = Experiment(0, dict.fromkeys(FILTERS, 1.0), 1.0, 1.0)
+CONFIGURED = TwinExperiment(0, dict.fromkeys(FILTERS, 1.0), 1.0, 1.0)
 """The experiment of config.yaml."""
 
 
-def experiments(design: Settings, place: int) -> list[Experiment]:
+def experiments(design: Settings, place: int) -> list[TwinExperiment]:
     """Draw the other experiments of a twin.
 
     Parameters
@@ -64,7 +64,7 @@ def experiments(design: Settings, place: int) -> list[Experiment]:
         rng = np.random.default_rng([place, number])
         drawn = rng.choice(design["step_factors"], len(FILTERS))
         found.append(
-            Experiment(
+            TwinExperiment(
                 seed=place * design["members"] + number,
                 steps=dict(zip(FILTERS, map(float, drawn), strict=True)),
                 zero=float(rng.choice(design["zero_factors"])),

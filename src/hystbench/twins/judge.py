@@ -9,7 +9,7 @@ from hystbench.compare.claims.claim import Claim, holds
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import names_of, or_empty, write_fields
 from hystbench.twins.experiments import CONFIGURED
-from hystbench.twins.parts import Outcome
+from hystbench.twins.parts import TwinOutcome
 
 WORDS = {True: "yes", False: "no", None: "not testable"}
 
@@ -26,12 +26,12 @@ def results_on_runs(evidence: ClaimEvidence) -> tuple[Claim, ...]:
     )
 
 
-def write_twins(outcomes: Iterable[Outcome], errors: Path, claims: Path) -> None:
+def write_twins(outcomes: Iterable[TwinOutcome], errors: Path, claims: Path) -> None:
     """Write the errors on each twin as configured, and the claims in each experiment.
 
     Parameters
     ----------
-    outcomes : iterable of Outcome
+    outcomes : iterable of TwinOutcome
         The first is the first twin as configured: it tells which claims are judged.
     errors, claims : Path
         Files to write.

@@ -19,7 +19,7 @@ from hystbench.order_errors import OrderError, filters_by_order, order_errors
 from hystbench.record import Record
 from hystbench.twins.experiments import (
     CONFIGURED,
-    Experiment,
+    TwinExperiment,
     experiments,
     within_margin,
 )
@@ -38,11 +38,11 @@ Part = dict[str, dict[str, Any]]
 
 
 @dataclass(frozen=True)
-class Outcome:
+class TwinOutcome:
     """What was found on one twin in one experiment."""
 
     twin: Twin
-    experiment: Experiment
+    experiment: TwinExperiment
     evidence: ClaimEvidence
 
 
@@ -100,7 +100,7 @@ def run(twins: Sequence[Twin], settings: Settings, fitted: Part) -> Part:
 
 
 def records_of(
-    twin: Twin, experiment: Experiment, settings: Settings
+    twin: Twin, experiment: TwinExperiment, settings: Settings
 ) -> dict[str, Record]:
     """Measure the signals that are asked for on a twin in an experiment."""
     asked = {name: settings["signals"][name] for name in settings["asked"]}
@@ -111,7 +111,7 @@ def records_of(
 
 def join(
     twin: Twin, place: int, settings: Settings, parts: Sequence[Part]
-) -> list[Outcome]:
+) -> list[TwinOutcome]:
     """Put the parts of one twin together: as configured, then each other experiment.
 
     What was fitted, and Figure 7, are as configured: no experiment changes them.
@@ -155,7 +155,7 @@ def join(
                 for signal, source, error in each["envelope_errors"]
             },
         )
-        found.append(Outcome(twin, experiment, evidence))
+        found.append(TwinOutcome(twin, experiment, evidence))
     return found
 
 

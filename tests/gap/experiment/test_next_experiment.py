@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hystbench.blocks import registry
 from hystbench.errors import InputError
 from hystbench.gap.experiment.excitations import Limits, candidates
-from hystbench.gap.experiment.separation import Pair, Rival, separation
+from hystbench.gap.experiment.separation import Rival, RivalPair, separation
 from hystbench.gap.experiment.tell_apart import CLEAR, Experiment, next_experiment
 from hystbench.gap.schema import EXPERIMENT
 from hystbench.model import Model
@@ -259,7 +259,7 @@ def test_one_excitation_is_best_over_the_pairs_of_all_sets(both):
     ]
     best = merits.index(max(merits))
     assert found.excitation is items[best]
-    pairs = Pair("lag", ("lag", "mode")), Pair("creep", ("creep", "mode"))
+    pairs = RivalPair("lag", ("lag", "mode")), RivalPair("creep", ("creep", "mode"))
     assert list(found.pairs) == list(pairs)
     for k, pair in enumerate(pairs):
         assert found.pairs[pair] == pytest.approx(sizes[best][k])
@@ -339,7 +339,7 @@ SIZES = st.floats(0, 9)
     st.booleans(),
 )
 def test_the_sentence_says_what_the_numbers_say(rows, left_out):
-    pairs = [Pair(of, (f"{of}{k}", f"b{k}")) for k, (of, *_) in enumerate(rows)]
+    pairs = [RivalPair(of, (f"{of}{k}", f"b{k}")) for k, (of, *_) in enumerate(rows)]
     here = {pair: row[1] for pair, row in zip(pairs, rows, strict=True)}
     now = {pair: row[2] for pair, row in zip(pairs, rows, strict=True)}
     most = {pair: max(row[1], row[3]) for pair, row in zip(pairs, rows, strict=True)}
@@ -376,7 +376,7 @@ def test_the_sentence_says_what_the_numbers_say(rows, left_out):
 
 
 def test_a_large_set_is_told_in_a_sentence_that_ends():
-    pairs = [Pair("a", names) for names in combinations("abcdefg", 2)]
+    pairs = [RivalPair("a", names) for names in combinations("abcdefg", 2)]
     none = dict.fromkeys(pairs, 0.5)
     item = candidates(LIMITS, "A")[0]
     said = Experiment(item, none, none, none).sentence

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from hystbench.blocks import registry
 from hystbench.errors import InputError
 from hystbench.gap.experiment.separation import (
-    Pair,
     Rival,
-    Run,
+    RivalPair,
+    RivalRun,
     separation,
     separations,
 )
@@ -35,7 +35,7 @@ class Shape:
 
 
 def run(output, *tangents):
-    return Run(output, np.array(tangents).T.reshape(len(output), -1))
+    return RivalRun(output, np.array(tangents).T.reshape(len(output), -1))
 
 
 def test_a_gain_and_an_offset_separate_nothing():
@@ -100,12 +100,12 @@ def test_a_pair_is_refitted_along_its_own_tangents_and_no_other():
     plain = {"a": Rival(Shape(lambda u: u)), "b": Rival(Shape(lambda u: u + u**3))}
     third = Shape(lambda u: u + u**2)
     cubes = (Shape(lambda u: u + u**2 + u**3),)
-    alone = separations({"a": plain}, u, DT, 0.1)[Pair("a", ("a", "b"))]
+    alone = separations({"a": plain}, u, DT, 0.1)[RivalPair("a", ("a", "b"))]
     beside = separations({"a": plain | {"c": Rival(third, cubes)}}, u, DT, 0.1)
     assert alone > 0.5
-    assert beside[Pair("a", ("a", "b"))] == pytest.approx(alone)
+    assert beside[RivalPair("a", ("a", "b"))] == pytest.approx(alone)
     own = plain | {"b": Rival(plain["b"].model, (Shape(lambda u: u + 2 * u**3),))}
-    assert separations({"a": own}, u, DT, 0.1)[Pair("a", ("a", "b"))] < 1e-6
+    assert separations({"a": own}, u, DT, 0.1)[RivalPair("a", ("a", "b"))] < 1e-6
 
 
 @pytest.mark.parametrize("in_tangent", [False, True])
@@ -118,7 +118,7 @@ def test_a_model_that_runs_away_has_no_pair_and_the_others_keep_theirs(in_tangen
         lost = Rival(Shape(np.square), (Shape(away),))
     stays = {"a": Rival(Shape(lambda u: u)), "b": Rival(Shape(lambda u: u + u**2))}
     found = separations({"a": stays | {"lost": lost}}, sine(3), DT, 0.1)
-    assert list(found) == [Pair("a", ("a", "b"))]
+    assert list(found) == [RivalPair("a", ("a", "b"))]
 
 
 def test_tangents_are_the_slopes_of_the_output():

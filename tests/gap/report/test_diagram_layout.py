@@ -10,7 +10,7 @@ from hystbench.gap.report.diagram_layout import (
     RADIUS,
     Box,
     Line,
-    Sum,
+    Summation,
     layout,
     text_width,
 )
@@ -99,7 +99,7 @@ def test_a_chain_stands_from_left_to_right_with_an_arrow_into_each_box():
 def test_a_force_is_fed_back_below_its_mechanism_and_subtracted():
     diagram = drawn(Stage(Part("mechanism"), fed_back=(Part("friction"),)))
     core, force = (named(diagram, name) for name in ("mechanism", "friction"))
-    (total,) = of(diagram, Sum)
+    (total,) = of(diagram, Summation)
     assert force.y + force.height < core.y
     assert total.minus
     assert total.x < core.x
@@ -122,7 +122,7 @@ def test_a_force_is_fed_back_below_its_mechanism_and_subtracted():
 def test_a_branch_beside_stands_above_and_is_added_behind():
     diagram = drawn(Stage(Part("impedance"), beside=(Stage(Part("friction")),)))
     core, force = (named(diagram, name) for name in ("impedance", "friction"))
-    (total,) = of(diagram, Sum)
+    (total,) = of(diagram, Summation)
     assert not total.minus
     assert total.x > core.x + core.width
     assert force.y > core.y + core.height
@@ -132,7 +132,7 @@ def test_a_branch_beside_stands_above_and_is_added_behind():
 def test_two_forces_are_summed_on_their_way_back():
     forces = (Part("friction"), Part("stop"))
     diagram = drawn(Stage(Part("mechanism"), fed_back=forces))
-    assert sorted(item.minus for item in of(diagram, Sum)) == [False, True]
+    assert sorted(item.minus for item in of(diagram, Summation)) == [False, True]
     assert apart(*(named(diagram, part.words) for part in forces))
 
 
@@ -145,7 +145,7 @@ def test_other_modes_are_beside_the_loop_of_a_force():
             beside=(Stage(Part("other modes")),),
         )
     )
-    loop, total = sorted(of(diagram, Sum), key=lambda item: item.x)
+    loop, total = sorted(of(diagram, Summation), key=lambda item: item.x)
     assert loop.minus
     assert not total.minus
     core = named(diagram, "mechanism")
@@ -169,14 +169,14 @@ def test_numbers_of_a_store_stand_in_it_and_what_is_spilt_joins_its_outflow():
     store = named(diagram, "store")
     assert within(named(diagram, "outflow"), store)
     assert named(diagram, "overflow").y > store.y + store.height
-    (total,) = of(diagram, Sum)
+    (total,) = of(diagram, Summation)
     assert total.x > store.x + store.width
     assert at(total.x, total.y + RADIUS) in ends(diagram)
 
 
 def test_what_is_spilt_and_not_caught_goes_nowhere():
     diagram = drawn(Stage(Part("store"), spilt=Part("overflow")))
-    assert of(diagram, Sum) == []
+    assert of(diagram, Summation) == []
 
 
 def test_many_blocks_stand_in_rows_that_a_line_joins():
@@ -246,4 +246,4 @@ def test_a_mechanism_beside_has_the_loop_of_its_own_force():
     assert friction.y < core.y < stop.y < beside.y
     every = (core, beside, friction, stop)
     assert all(apart(*pair) for pair in combinations(every, 2))
-    assert sorted(item.minus for item in of(diagram, Sum)) == [False, True, True]
+    assert sorted(item.minus for item in of(diagram, Summation)) == [False, True, True]

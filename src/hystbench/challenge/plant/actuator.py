@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from hystbench.challenge.plant import mechanics
-from hystbench.challenge.plant.hysteresis import Hysteresis, middle
+from hystbench.challenge.plant.hysteresis import PlantLoop, middle
 from hystbench.challenge.plant.interpolation import cubic
-from hystbench.challenge.plant.kind import HiddenEffect, Run, Stage
+from hystbench.challenge.plant.kind import HiddenEffect, PlantRun, Stage
 from hystbench.record import FloatArray
 
 #: Least steps of the fine grid a sample, and least steps a second.
@@ -41,7 +41,7 @@ def _grid(excitation: Command, count: int, dt: float) -> tuple[FloatArray, Float
 
 
 @dataclass(frozen=True)
-class Mode:
+class KnownMode:
     """A linear mode that the base model knows.
 
     Parameters
@@ -60,17 +60,17 @@ class Actuator:
 
     Parameters
     ----------
-    loop : Hysteresis or float
+    loop : PlantLoop or float
         The hysteresis, or the gain of a material without any in um/A.
-    mode : Mode, optional
+    mode : KnownMode, optional
         The known mode.
     effects : tuple of HiddenEffect
     seed : int
         Seed of what is new in every record.
     """
 
-    loop: Hysteresis | float
-    mode: Mode | None
+    loop: PlantLoop | float
+    mode: KnownMode | None
     effects: tuple[HiddenEffect, ...]
     seed: int
 
@@ -128,7 +128,7 @@ class Actuator:
             if effect.stage == stage:
                 key = zlib.crc32(effect.kind.name.encode())
                 random = np.random.default_rng([self.seed, place.record, key])
-                run = Run(place.time, place.u, place.dt, random)
+                run = PlantRun(place.time, place.u, place.dt, random)
                 signal = effect.act(signal, run)
         return signal
 

@@ -22,7 +22,7 @@ LARGEST_CURRENT = 0.6
 PUBLISHED = (1.2878, 0.36, 0.6025, -0.6671, 0.3223, 1.2233, 0.1104, -0.0248)
 
 
-class Hysteresis(Protocol):
+class PlantLoop(Protocol):
     """A quasi-static loop."""
 
     @property
@@ -32,7 +32,7 @@ class Hysteresis(Protocol):
     def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
         """Compute the displacement in um for a current that starts at rest."""
 
-    def scaled(self, factor: float) -> Hysteresis:
+    def scaled(self, factor: float) -> PlantLoop:
         """Multiply the displacement."""
 
 
@@ -156,7 +156,7 @@ def _everett_table(plane: Everett) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class JilesAtherton:
+class JilesAthertonLoop:
     """Equation of Jiles and Atherton about a bias, strain as magnetization squared.
 
     It starts on the bias, demagnetized there by cycles that shrink.
@@ -192,7 +192,7 @@ class JilesAtherton:
         kernels.call("hc_jiles_atherton", len(field), *constants, field, state, m)
         return np.asarray(self.strain * (m**2 - start**2))
 
-    def scaled(self, factor: float) -> JilesAtherton:
+    def scaled(self, factor: float) -> JilesAthertonLoop:
         """Multiply the strain."""
         return replace(self, strain=self.strain * factor)
 
@@ -272,10 +272,10 @@ def draw_everett(random: np.random.Generator) -> Everett:
     )
 
 
-def draw_jiles_atherton(random: np.random.Generator) -> JilesAtherton:
+def draw_jiles_atherton(random: np.random.Generator) -> JilesAthertonLoop:
     """Draw a biased magnetostrictive rod."""
     shape = random.uniform(0.4, 0.6)
-    return JilesAtherton(
+    return JilesAthertonLoop(
         bias=shape * random.uniform(1.6, 2.2),
         shape=shape,
         coupling=shape * random.uniform(0.1, 0.8),
@@ -296,7 +296,7 @@ def draw_duhem(random: np.random.Generator) -> Duhem:
     )
 
 
-DRAWS: dict[str, Callable[[np.random.Generator], Hysteresis]] = {
+DRAWS: dict[str, Callable[[np.random.Generator], PlantLoop]] = {
     "gpi": draw_plays,
     "preisach": draw_everett,
     "jiles-atherton": draw_jiles_atherton,
@@ -306,23 +306,23 @@ KEPT = ("duhem",)
 """Families that no set but the transfer set holds."""
 
 
-def _cycle(hysteresis: Hysteresis, bias: float) -> FloatArray:
+def _cycle(hysteresis: PlantLoop, bias: float) -> FloatArray:
     """Displacement over the largest current, the second time around."""
     angle = np.linspace(0.0, 4.0 * np.pi, 4001)
     return hysteresis.respond(bias + LARGEST_CURRENT * np.sin(angle))[2001:]
 
 
-def swing(hysteresis: Hysteresis) -> float:
+def swing(hysteresis: PlantLoop) -> float:
     """Peak-to-peak displacement in um over the largest current."""
     return float(np.ptp(_cycle(hysteresis, 0.0)))
 
 
-def middle(hysteresis: Hysteresis, bias: float) -> float:
+def middle(hysteresis: PlantLoop, bias: float) -> float:
     """Mean displacement in um over the largest current about a bias."""
     return float(np.mean(_cycle(hysteresis, bias)))
 
 
-def draw(family: str, random: np.random.Generator) -> Hysteresis:
+def draw(family: str, random: np.random.Generator) -> PlantLoop:
     """Draw a loop of a family whose full swing is 30 to 55 um."""
     loop = DRAWS[family](random)
     return loop.scaled(random.uniform(30.0, 55.0) / swing(loop))

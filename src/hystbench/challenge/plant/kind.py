@@ -51,7 +51,7 @@ RESIZINGS = 6
 
 
 @dataclass(frozen=True)
-class Run:
+class PlantRun:
     """What an effect may see of one record beside its own input.
 
     Parameters
@@ -128,13 +128,13 @@ class Reach:
     stiffness: float
 
 
-Act = Callable[[FloatArray, Run, Parameters], FloatArray]
+Act = Callable[[FloatArray, PlantRun, Parameters], FloatArray]
 Numbers = dict[str, float]
 Inside = Callable[[Parameters, Reach], Numbers]
 Curve = Callable[[FloatArray, Parameters, Reach], FloatArray]
 
 
-def nothing(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def nothing(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Leave the signal: the hysteresis itself is another, or a machine is."""
     return z
 
@@ -230,7 +230,7 @@ class HiddenEffect:
         """Where in the chain of an actuator it acts."""
         return self.law.stage or self.kind.stage
 
-    def act(self, signal: FloatArray, run: Run) -> FloatArray:
+    def act(self, signal: FloatArray, run: PlantRun) -> FloatArray:
         """Compute what the effect makes of a signal."""
         return self.law.act(signal, run, self.parameters)
 

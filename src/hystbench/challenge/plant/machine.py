@@ -18,7 +18,7 @@ FINE = 32
 
 
 @dataclass(frozen=True)
-class Part:
+class MovingPart:
     """A moving part: ``m q'' + c q' + k q + forces = u``.
 
     Parameters
@@ -77,7 +77,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Motion:
+class PartMotion:
     """What a part did, on the fine grid: a force and the motion under it."""
 
     force: FloatArray
@@ -87,17 +87,17 @@ class Motion:
 
 
 def move(
-    part: Part,
+    part: MovingPart,
     drive: FloatArray,
     dt: float,
     begun: tuple[float, float] = (0.0, 0.0),
     gains: tuple[float, float] = (0.0, 0.0),
-) -> Motion:
+) -> PartMotion:
     """Move a part by a force, or along a reference.
 
     Parameters
     ----------
-    part : Part
+    part : MovingPart
     drive : ndarray, shape (n,)
         The force; with gains the position that is wanted.
     dt : float
@@ -111,10 +111,10 @@ def move(
     n = len(drive)
     out = [np.empty(n) for _ in range(4)]
     kernels.call("hc_mass", n, dt, *begun, *gains, part.numbers, drive, *out)
-    return Motion(*out)
+    return PartMotion(*out)
 
 
-def resist(part: Part, position: FloatArray, dt: float) -> FloatArray:
+def resist(part: MovingPart, position: FloatArray, dt: float) -> FloatArray:
     """Compute the force that a prescribed motion of a part takes."""
     return kernels.run("hc_impedance", dt, part.numbers, over=position)
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.challenge import kernels
-from hystbench.challenge.plant.kind import Parameters, Run
+from hystbench.challenge.plant.kind import Parameters, PlantRun
 from hystbench.record import FloatArray
 
 
@@ -17,7 +17,7 @@ def oscillate(
     return kernels.run("hc_oscillator", dt, omega, damping_ratio, alpha, over=z)
 
 
-def mode(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def mode(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Add a mode that carries a part of the displacement, of whatever stiffness."""
     alpha = p.get("coefficient", 0.0)
     x = oscillate(z, run.dt, p["frequency_hz"], p["damping_ratio"], alpha)
@@ -25,25 +25,25 @@ def mode(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     return (1.0 - share) * z + share * x
 
 
-def coulomb(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def coulomb(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Add dry friction, smooth about rest by tanh."""
     speed = np.gradient(run.u, run.dt) / p["velocity_scale"]
     return z + p["coulomb"] * np.tanh(speed)
 
 
-def coulomb_algebraic(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def coulomb_algebraic(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Add dry friction, smooth about rest by ``x / sqrt(1 + x^2)``."""
     speed = np.gradient(run.u, run.dt) / p["velocity_scale"]
     return z + p["coulomb"] * speed / np.sqrt(1.0 + speed**2)
 
 
-def coulomb_arctangent(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def coulomb_arctangent(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Add dry friction, smooth about rest by the arctangent."""
     speed = np.gradient(run.u, run.dt) / p["velocity_scale"]
     return z + p["coulomb"] * (2.0 / np.pi) * np.arctan(speed)
 
 
-def joint(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def joint(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Carry the load by a pin in a slot."""
     return kernels.run("hc_joint", p["half_width"], over=z)
 
@@ -68,26 +68,26 @@ def _elements(p: Parameters) -> dict[str, list[float]]:
     }
 
 
-def creep(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def creep(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Creep by one Kelvin-Voigt element or by three."""
     told = _elements(p)
     return kelvin_voigt(z, run.dt, told["magnitudes"], told["time_constants_s"])
 
 
-def heat(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def heat(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Warm the rod by the current's square and lose it: ``tau T' = u^2 - T``."""
     warmth = kernels.run("hc_lag", run.dt, p["time_constant_s"], over=run.u**2)
     return z + p["coefficient"] * warmth
 
 
-def heat_of_the_coil(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def heat_of_the_coil(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Warm a coil by the current's square, and the rod by the coil."""
     times = p["coil"] * p["time_constant_s"], p["time_constant_s"]
     coil = kernels.run("hc_lag", run.dt, times[0], over=run.u**2)
     return z + p["coefficient"] * kernels.run("hc_lag", run.dt, times[1], over=coil)
 
 
-def fractional(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def fractional(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Relax over five decades at once, as ``s^-order`` does (Oustaloup's spread)."""
     times = np.logspace(-2.7, 2.3, 11)
     shares = times ** (p["order"] - 0.5)

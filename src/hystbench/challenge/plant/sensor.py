@@ -4,29 +4,29 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.challenge.plant.kind import Parameters, Run
+from hystbench.challenge.plant.kind import Parameters, PlantRun
 from hystbench.record import FloatArray
 
 #: Cosines of a drift path and the band they lie in, in Hz.
 PATH_COSINES, PATH_BAND = 12, (0.005, 0.25)
 
 
-def polynomial(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def polynomial(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Bend the scale by a square and a cube."""
     return z + p["quadratic"] * z**2 + p["cubic"] * z**3
 
 
-def gap_law(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def gap_law(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Read a gap by what goes with its inverse: ``z / (1 - z / gap)``."""
     return z / (1.0 - z / p["gap"])
 
 
-def sine(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def sine(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Read an angle's sine in the place of the angle: ``reach * sin(z / reach)``."""
     return np.asarray(p["reach"] * np.sin(z / p["reach"]))
 
 
-def mains(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def mains(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Pick up the mains and two harmonics, at a phase that is new in each record."""
     start = run.random.uniform(0.0, 2.0 * np.pi)
     angle = 2.0 * np.pi * p["frequency_hz"] * run.time + start
@@ -46,12 +46,12 @@ def mains_told(p: Parameters) -> dict[str, Any]:
     }
 
 
-def ramp(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def ramp(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Drift at one rate from each record's start."""
     return z + p["slope"] * run.time
 
 
-def path(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def path(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Drift along a smooth random path, new in each record, from zero."""
     low, high = np.log(PATH_BAND)
     frequency = np.exp(run.random.uniform(low, high, PATH_COSINES))
@@ -63,14 +63,14 @@ def path(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     return np.asarray(z + scale * (smooth - smooth[0]))
 
 
-def wave(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def wave(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Drift in a slow wave at a phase that is new in each record, from zero."""
     start = run.random.uniform(0.0, 2.0 * np.pi)
     angle = 2.0 * np.pi * p["frequency_hz"] * run.time + start
     return np.asarray(z + p["size"] * (np.sin(angle) - np.sin(start)))
 
 
-def calibration(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+def calibration(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Read with a wrong scale and zero."""
     return (1.0 + p["gain_error"]) * z + p["offset"]
 

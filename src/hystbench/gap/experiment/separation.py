@@ -19,7 +19,7 @@ CHANGE = 1e-3
 """Relative change of a parameter in a refit; of 0 an absolute one."""
 
 
-class Run(NamedTuple):
+class RivalRun(NamedTuple):
     """Output of a rival, shape (n,), and the directions of a refit, shape (n, m)."""
 
     output: FloatArray
@@ -64,7 +64,7 @@ class Rival:
                 found.append(model.with_values({name: new}))
         return cls(model, tuple(found))
 
-    def run(self, u: FloatArray, dt: float) -> Run | None:
+    def run(self, u: FloatArray, dt: float) -> RivalRun | None:
         """Simulate it and its neighbours; None where they do not run to the end.
 
         As where a simulator of somebody's own refuses an input.
@@ -77,14 +77,14 @@ class Rival:
         every = np.column_stack(outputs)
         if not np.isfinite(every).all():
             return None
-        return Run(every[:, 0], every[:, 1:] - every[:, :1])
+        return RivalRun(every[:, 0], every[:, 1:] - every[:, :1])
 
 
 Sets = Mapping[str, Mapping[str, Rival]]
 """Rivals by name, of each effect in whose place they are. A name may be in two sets."""
 
 
-class Pair(NamedTuple):
+class RivalPair(NamedTuple):
     """Two rivals of one set."""
 
     of: str
@@ -92,7 +92,7 @@ class Pair(NamedTuple):
     names: tuple[str, str]
 
 
-def separation(first: Run, second: Run, noise_floor: float) -> float:
+def separation(first: RivalRun, second: RivalRun, noise_floor: float) -> float:
     """RMS difference of two outputs that no refit takes away, in noise floors.
 
     The part of ``first - second`` orthogonal to an offset, to a gain (the mean of the
@@ -100,7 +100,7 @@ def separation(first: Run, second: Run, noise_floor: float) -> float:
 
     Parameters
     ----------
-    first, second : Run
+    first, second : RivalRun
     noise_floor : float
         RMS, in the outputs' unit.
     """
@@ -116,7 +116,7 @@ def separation(first: Run, second: Run, noise_floor: float) -> float:
 
 def separations(
     sets: Sets, u: FloatArray, dt: float, noise_floor: float
-) -> dict[Pair, float]:
+) -> dict[RivalPair, float]:
     """Give the separation of each pair within a set.
 
     What is in two sets needs no telling apart.
@@ -132,7 +132,7 @@ def separations(
 
     Returns
     -------
-    dict of Pair to float
+    dict of RivalPair to float
         In noise floors, without those of which one does not run to the end.
     """
     found = {}
@@ -141,5 +141,7 @@ def separations(
         for one, other in combinations(members, 2):
             first, second = runs[one], runs[other]
             if first is not None and second is not None:
-                found[Pair(of, (one, other))] = separation(first, second, noise_floor)
+                found[RivalPair(of, (one, other))] = separation(
+                    first, second, noise_floor
+                )
     return found

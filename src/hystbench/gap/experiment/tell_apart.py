@@ -13,7 +13,7 @@ from typing import Any
 
 from hystbench.errors import InputError
 from hystbench.gap.experiment.excitations import Excitation, Limits, candidates
-from hystbench.gap.experiment.separation import Pair, Rival, Sets, separations
+from hystbench.gap.experiment.separation import Rival, RivalPair, Sets, separations
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.add_effects import Named
@@ -42,20 +42,20 @@ class Experiment:
     Parameters
     ----------
     excitation : Excitation
-    pairs : dict of Pair to float
+    pairs : dict of RivalPair to float
         Separation of each pair of rivals, in noise floors.
-    existing : dict of Pair to float
+    existing : dict of RivalPair to float
         The same for the existing record that is best for the pair.
-    largest : dict of Pair to float
+    largest : dict of RivalPair to float
         The same for the excitation that is best for the pair.
     left_out : tuple of (str, str)
         Members of sets that no input brings out, each with the effect whose set it is.
     """
 
     excitation: Excitation
-    pairs: dict[Pair, float]
-    existing: dict[Pair, float]
-    largest: dict[Pair, float]
+    pairs: dict[RivalPair, float]
+    existing: dict[RivalPair, float]
+    largest: dict[RivalPair, float]
     left_out: tuple[tuple[str, str], ...] = ()
 
     @property
@@ -64,7 +64,7 @@ class Experiment:
         told = [pair for pair, size in self.pairs.items() if size >= TOLD]
         return " ".join([self._lead(told), *self._not_told(told)])
 
-    def _lead(self, told: Sequence[Pair]) -> str:
+    def _lead(self, told: Sequence[RivalPair]) -> str:
         lead, count = f"Try {self.excitation.words}", len(self.pairs)
         if not told:
             lead = f"The best feasible excitation is {self.excitation.words}"
@@ -88,7 +88,7 @@ class Experiment:
             f"records reaches {self.existing[shown]:.2g}."
         )
 
-    def _not_told(self, told: Sequence[Pair]) -> list[str]:
+    def _not_told(self, told: Sequence[RivalPair]) -> list[str]:
         """Say what the excitation does not tell, and who would."""
         rest = [pair for pair in self.pairs if pair not in told]
         known = [pair for pair in rest if self.existing[pair] >= TOLD]
@@ -108,12 +108,12 @@ class Experiment:
             found.append(f"{new_in_every_record(self.left_out)}.")
         return found
 
-    def _words(self, pair: Pair) -> str:
+    def _words(self, pair: RivalPair) -> str:
         several = len({each.of for each in self.pairs}) > 1
         place = f" in the place of {pair.of}" if several else ""
         return " from ".join(pair.names) + place
 
-    def _listed(self, pairs: Sequence[Pair]) -> str:
+    def _listed(self, pairs: Sequence[RivalPair]) -> str:
         shown = [self._words(pair) for pair in pairs[:SHOWN]]
         more = len(pairs) - len(shown)
         return ", ".join(shown) + (f" and {more} more" if more else "")
@@ -187,7 +187,9 @@ def next_experiment(
     InputError
         If no excitation keeps within the limits and lets every rival run.
     """
-    every = [Pair(of, x) for of, each in sets.items() for x in combinations(each, 2)]
+    every = [
+        RivalPair(of, x) for of, each in sets.items() for x in combinations(each, 2)
+    ]
     if excitations is None:
         limits = Limits.of(records) if limits is None else limits
         excitations = candidates(limits, records[0].input.unit)
@@ -210,7 +212,7 @@ def next_experiment(
     )
 
 
-def _merit(pairs: dict[Pair, float]) -> tuple[int, float, float]:
+def _merit(pairs: dict[RivalPair, float]) -> tuple[int, float, float]:
     """Rank by pairs told apart, then by how clearly, then by the hardest."""
     sizes = list(pairs.values())
     told = sum(size >= TOLD for size in sizes)

@@ -73,7 +73,7 @@ def frequency(samples: ViewSamples) -> View:
     return view_of("frequency", form, "frequency", ends, "Hz", told, drawn)
 
 
-def _bands(samples: ViewSamples, spectra: Spectra) -> list[list[list[FloatArray]]]:
+def _bands(samples: ViewSamples, spectra: BinSpectra) -> list[list[list[FloatArray]]]:
     """Give what passes each excited band, and the same a quarter of a period later."""
     lines = [
         (fft.rfft(item.simulated), fft.rfftfreq(len(item.record), item.record.dt))
@@ -105,7 +105,7 @@ def _power(
     return np.histogram(at, edges, weights=power)
 
 
-def _spectrum(samples: ViewSamples, spectra: Spectra) -> ViewPicture:
+def _spectrum(samples: ViewSamples, spectra: BinSpectra) -> ViewPicture:
     """Draw amplitude densities of simulation, residual, its linear part and floor."""
     # White noise of variance s^2 at a sampling interval dt has the density 2 s^2 dt.
     lengths = [len(item.record) for item in samples.compared]
@@ -126,7 +126,7 @@ def _spectrum(samples: ViewSamples, spectra: Spectra) -> ViewPicture:
     return ViewPicture("spectrum", words, (Panel(FREQUENCY, y, drawn),))
 
 
-def _response(spectra: Spectra) -> ViewPicture:
+def _response(spectra: BinSpectra) -> ViewPicture:
     """Draw measurement over simulation where the input has power.
 
     A harmonic that the simulation makes by itself has no response.
@@ -164,7 +164,7 @@ EXCITED = 1e-5
 
 
 @dataclass(frozen=True)
-class Spectra:
+class BinSpectra:
     """Spectra summed over the lines of all records in each bin.
 
     Parameters
@@ -204,7 +204,7 @@ class Spectra:
         return np.asarray(np.clip(np.abs(self.matrix[a, b]) ** 2 / both, 0.0, 1.0))
 
 
-def take_spectra(samples: ViewSamples) -> Spectra:
+def take_spectra(samples: ViewSamples) -> BinSpectra:
     """Average the spectra of each record by Welch's method, and add the records."""
     lines = [_lines(item) for item in samples.compared]
     frequencies = np.concatenate([frequency for frequency, _ in lines])
@@ -222,7 +222,7 @@ def take_spectra(samples: ViewSamples) -> Spectra:
     there = np.bincount(place, minlength=len(held)) > 0
     *matrix, noise = held[there].T
     found = np.array(matrix).reshape(3, 3, -1)
-    return Spectra(edges[:-1][there], edges[1:][there], found, noise.real)
+    return BinSpectra(edges[:-1][there], edges[1:][there], found, noise.real)
 
 
 def _lines(item: Compared) -> tuple[FloatArray, ComplexArray]:

@@ -22,7 +22,7 @@ from hystbench.gap.report.diagram_layout import (
     Box,
     Line,
     Shape,
-    Sum,
+    Summation,
     layout,
 )
 from hystbench.gap.report.parts import Stage, Whose, in_one_line, stages
@@ -92,7 +92,7 @@ def _paint(axes: Axes, shapes: Sequence[Shape]) -> None:
     for one in shapes:
         if isinstance(one, Line):
             _line(axes, one)
-        elif isinstance(one, Sum):
+        elif isinstance(one, Summation):
             _sum(axes, one)
 
 
@@ -137,7 +137,7 @@ def _line(axes: Axes, line: Line) -> None:
     )
 
 
-def _sum(axes: Axes, item: Sum) -> None:
+def _sum(axes: Axes, item: Summation) -> None:
     axes.add_patch(
         Circle(
             (item.x, item.y),

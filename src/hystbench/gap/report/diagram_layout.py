@@ -64,7 +64,7 @@ class Box(NamedTuple):
     whose: Whose | None = None
 
 
-class Sum(NamedTuple):
+class Summation(NamedTuple):
     """A circle where signals are summed.
 
     With ``minus`` what comes from below is subtracted.
@@ -82,7 +82,7 @@ class Line(NamedTuple):
     arrow: bool = False
 
 
-Shape = Box | Sum | Line
+Shape = Box | Summation | Line
 
 
 class Diagram(NamedTuple):
@@ -276,7 +276,7 @@ def _with_feedback(group: _Group, parts: Sequence[Part]) -> _Group:
     ways = (
         Line(((start + RADIUS, 0.0), (left, 0.0)), group.arrow),
         Line(((left + group.width, 0.0), (width, 0.0))),
-        Sum(start, 0.0, minus=True),
+        Summation(start, 0.0, minus=True),
     )
     return _Group(width, group.up, -reach, group.at(left) + ways + loop)
 
@@ -292,7 +292,7 @@ def _with_beside(group: _Group, stages: Sequence[Stage]) -> _Group:
         *group.at(left),
         Line(((0.0, 0.0), (left, 0.0)), group.arrow),
         Line(((left + group.width, 0.0), (end - RADIUS, 0.0)), arrow=True),
-        Sum(end, 0.0),
+        Summation(end, 0.0),
     )
     return _Group(end + RADIUS, reach, group.down, drawn + above, arrow=False)
 
@@ -333,7 +333,7 @@ def _branches(
         else:  # what comes from further out is added first
             ways.append(((far, middle), (total - onward * RADIUS, middle)))
             ways.append(((total, middle - up * RADIUS), head))
-            drawn.append(Sum(total, middle))
+            drawn.append(Summation(total, middle))
         drawn += group.at(x, middle)
         into, *on = ways
         drawn += [Line(into, group.arrow), *(Line(way, arrow=True) for way in on)]
@@ -361,7 +361,7 @@ def _with_spill(group: _Group, part: Part, caught: bool) -> _Group:
         drawn += [
             Line(((out, 0.0), (end - RADIUS, 0.0)), arrow=True),
             Line(((x + box.width, middle), (end, middle), (end, RADIUS)), arrow=True),
-            Sum(end, 0.0),
+            Summation(end, 0.0),
         ]
         end += RADIUS
     elif left:

@@ -9,7 +9,15 @@ from markupsafe import Markup
 from hystbench.report.markup import inline
 from hystbench.report.picture import Link
 from hystbench.report.reproduction.read import Row
-from hystbench.report.table import Body, Cell, Column, Table, number, table_of, words
+from hystbench.report.table import (
+    Body,
+    Cell,
+    PageColumn,
+    PageTable,
+    number,
+    table_of,
+    words,
+)
 
 #: How a verdict looks; one that is not listed looks as text.
 _SIGNS = {"reproduced": ("✓", "good"), "not reproduced": ("✗", "bad")}
@@ -24,7 +32,7 @@ BASES = ("held-out", "fitted", "constrained", "built-in", "")
 ALONE = "on_held_out"
 
 
-def counts_table(claims: Sequence[Row]) -> Table:
+def counts_table(claims: Sequence[Row]) -> PageTable:
     """Count verdicts by what they rest on, held-out first; nothing is added up."""
     verdicts = list(dict.fromkeys(row["verdict"] for row in claims))
     counted: dict[str, Counter[str]] = {}
@@ -38,29 +46,29 @@ def counts_table(claims: Sequence[Row]) -> Table:
         [words(shown), *(number(found[each]) for each in verdicts)]
         for shown, found in counted.items()
     ]
-    return Table(
+    return PageTable(
         "claims-counted",
         "Claims by what the twin knew of them before they were judged. Rows are not "
         "added up: only the held-out ones were open.",
-        [Column("basis"), *(Column(verdict, True) for verdict in verdicts)],
+        [PageColumn("basis"), *(PageColumn(verdict, True) for verdict in verdicts)],
         [Body(rows)],
     )
 
 
-def claims_table(claims: Sequence[Row], caption: str, file: Link) -> Table:
+def claims_table(claims: Sequence[Row], caption: str, file: Link) -> PageTable:
     """Show every claim with its verdict and the evidence for it."""
-    shown: dict[Column, Callable[[Row], Cell | str]] = {
-        Column("verdict"): lambda row: _verdict(row["verdict"]),
-        Column("basis"): lambda row: row["basis"] or "none",
-        Column("kind"): itemgetter("kind"),
-        Column("claim of the paper"): _claim,
-        Column("evidence"): itemgetter("evidence"),
-        Column("the paper's own numbers"): _borne_out,
-        Column("holds on twins"): lambda row: row.get("holds_on", ""),
+    shown: dict[PageColumn, Callable[[Row], Cell | str]] = {
+        PageColumn("verdict"): lambda row: _verdict(row["verdict"]),
+        PageColumn("basis"): lambda row: row["basis"] or "none",
+        PageColumn("kind"): itemgetter("kind"),
+        PageColumn("claim of the paper"): _claim,
+        PageColumn("evidence"): itemgetter("evidence"),
+        PageColumn("the paper's own numbers"): _borne_out,
+        PageColumn("holds on twins"): lambda row: row.get("holds_on", ""),
     }
     for key in claims[0] if claims else ():
         if key not in _PLACED:
-            shown[Column(key.replace("_", " "))] = itemgetter(key)
+            shown[PageColumn(key.replace("_", " "))] = itemgetter(key)
     return table_of(
         "claims",
         inline(caption),
@@ -101,16 +109,16 @@ def _borne_out(row: Row) -> str:
     return ": ".join(part for part in (said.get(bears, bears), evidence) if part)
 
 
-def audit_table(audit: Sequence[Row], caption: str, file: Link) -> Table:
+def audit_table(audit: Sequence[Row], caption: str, file: Link) -> PageTable:
     """Show where the paper's own numbers contradict each other, conflicts first."""
-    shown: dict[Column, Callable[[Row], Cell | str]] = {
-        Column(key): itemgetter(key) for key in ("where", "statement", "evidence")
+    shown: dict[PageColumn, Callable[[Row], Cell | str]] = {
+        PageColumn(key): itemgetter(key) for key in ("where", "statement", "evidence")
     }
     return table_of(
         "audit",
         inline(caption),
         sorted(audit, key=lambda row: row["kind"] != "conflict"),
-        {Column("kind"): _kind, **shown},
+        {PageColumn("kind"): _kind, **shown},
         files=(file,),
         filtered=("kind",),
         cards=True,

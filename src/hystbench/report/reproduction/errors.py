@@ -11,7 +11,15 @@ from hystbench.published import FILTERS, METRICS, MODELS, in_order
 from hystbench.report.markup import inline
 from hystbench.report.picture import Link
 from hystbench.report.reproduction.read import Row, Shown
-from hystbench.report.table import Body, Cell, Column, Table, number, table_of, words
+from hystbench.report.table import (
+    Body,
+    Cell,
+    PageColumn,
+    PageTable,
+    number,
+    table_of,
+    words,
+)
 
 #: What a half is called in a table.
 HALF_WORDS = {"held-out": "held out", "calibrated": "fitted"}
@@ -31,16 +39,16 @@ def within(cells: Iterable[ComparedCell]) -> int:
     return sum(cell.ran and cell.distance <= math.log10(FACTOR) for cell in cells)
 
 
-def headline_table(cells: Sequence[ComparedCell], half: str) -> Table:
+def headline_table(cells: Sequence[ComparedCell], half: str) -> PageTable:
     """Set ours beside the paper's: a row a signal of one half that was run."""
     half_cells = filter_cells(cells, half)
     by_key = {(cell.signal, cell.model): cell for cell in half_cells}
     signals = dict.fromkeys(cell.signal for cell in half_cells if cell.ran)
     models = [m for m in FILTERS if any(c.ran for c in half_cells if c.model == m)]
-    columns = [Column("signal")]
+    columns = [PageColumn("signal")]
     for model in models:
         group = look(model).label
-        columns += [Column("paper", True, group), Column("ours", True, group)]
+        columns += [PageColumn("paper", True, group), PageColumn("ours", True, group)]
     rows = []
     for signal in signals:
         row = [words(signal_title(signal))]
@@ -55,7 +63,7 @@ def headline_table(cells: Sequence[ComparedCell], half: str) -> Table:
         "calibrated": "Mean square error (µm²) on signals that the twin was fitted to; "
         "no held-out signal was run.",
     }[half]
-    return Table(
+    return PageTable(
         "beside-the-paper",
         about,
         columns,
@@ -75,7 +83,7 @@ def _ours(cell: ComparedCell) -> Cell:
     return number(cell.ours, shown, "" if within([cell]) else "bad")
 
 
-def nearness_table(cells: Sequence[ComparedCell]) -> Table:
+def nearness_table(cells: Sequence[ComparedCell]) -> PageTable:
     """Tell how near ours come, by half and model; halves are never added up."""
     titles = ("errors run", "within a factor of 2", "typical factor", "worst factor")
     bodies = []
@@ -88,11 +96,14 @@ def nearness_table(cells: Sequence[ComparedCell]) -> Table:
         parts |= {look(m).label: [c for c in chosen if c.model == m] for m in MODELS}
         rows = [_near(name, part) for name, part in parts.items() if part]
         bodies.append(Body(rows, heading))
-    return Table(
+    return PageTable(
         "nearness",
         "How near our errors (MSE) come to the paper's, by model. The filters' errors "
         "are one-step a priori with running weights, the RDGPI model's free-run.",
-        [Column("model"), *(Column(title, True) for title in (*titles, "diverged"))],
+        [
+            PageColumn("model"),
+            *(PageColumn(title, True) for title in (*titles, "diverged")),
+        ],
         bodies,
         note="The typical factor is the median over the errors, in either direction.",
     )
@@ -118,14 +129,14 @@ def _factor(log10_ratio: float | None) -> Cell:
     return number(10 ** abs(log10_ratio), f"{10 ** abs(log10_ratio):.2f}")
 
 
-def paper_table(shown: Shown, halves: Mapping[str, str]) -> Table:
+def paper_table(shown: Shown, halves: Mapping[str, str]) -> PageTable:
     """Show a table of the paper with ours beside it; MSE and RE stand apart."""
     given = [key for key in shown.rows[0] if key not in ("signal", "error", "note")]
-    columns = [Column("signal"), Column("twin")]
+    columns = [PageColumn("signal"), PageColumn("twin")]
     for key in given:
         model, _, whose = key.partition(" ")
         label = look(model).label if model in MODELS else model
-        columns.append(Column(whose or key, True, label if whose else ""))
+        columns.append(PageColumn(whose or key, True, label if whose else ""))
     bodies = []
     for metric in METRICS:
         name = METRIC_NAMES[metric]
@@ -149,7 +160,7 @@ def paper_table(shown: Shown, halves: Mapping[str, str]) -> Table:
     note = shown.rows[0].get("note", "")
     caption, _, legend = note.partition("†")
     stem = shown.file.href.rpartition(".")[0]
-    return Table(
+    return PageTable(
         shown.name,
         inline(caption.strip()),
         columns,
@@ -172,25 +183,25 @@ def _printed(text: str) -> Cell:
         return words(text, "bad" if text == "diverged" else "quiet")
 
 
-def all_cells(cells: Sequence[ComparedCell], caption: str, file: Link) -> Table:
+def all_cells(cells: Sequence[ComparedCell], caption: str, file: Link) -> PageTable:
     """Show every printed error with ours, the spread of equally good twins and all."""
     spread = "equally good twins"
-    shown: dict[Column, Callable[[ComparedCell], Cell | str]] = {
-        Column("twin"): lambda c: HALF_WORDS[c.half],
-        Column("signal"): lambda c: signal_title(c.signal),
-        Column("model"): lambda c: look(c.model).label,
-        Column("error"): lambda c: c.metric.upper(),
-        Column("paper", True): lambda c: number(float(c.published), c.published),
-        Column("ours", True): lambda c: number(
+    shown: dict[PageColumn, Callable[[ComparedCell], Cell | str]] = {
+        PageColumn("twin"): lambda c: HALF_WORDS[c.half],
+        PageColumn("signal"): lambda c: signal_title(c.signal),
+        PageColumn("model"): lambda c: look(c.model).label,
+        PageColumn("error"): lambda c: c.metric.upper(),
+        PageColumn("paper", True): lambda c: number(float(c.published), c.published),
+        PageColumn("ours", True): lambda c: number(
             c.ours, "none" if c.ours is None else ""
         ),
-        Column("ours / paper", True): lambda c: number(
+        PageColumn("ours / paper", True): lambda c: number(
             None if c.log10_ratio is None else 10**c.log10_ratio
         ),
-        Column("least", True, spread): lambda c: number(c.spread_low),
-        Column("most", True, spread): lambda c: number(c.spread_high),
-        Column("printed pair can be true"): lambda c: c.published_consistent,
-        Column("status"): lambda c: c.status,
+        PageColumn("least", True, spread): lambda c: number(c.spread_low),
+        PageColumn("most", True, spread): lambda c: number(c.spread_high),
+        PageColumn("printed pair can be true"): lambda c: c.published_consistent,
+        PageColumn("status"): lambda c: c.status,
     }
     return table_of(
         "cells",
@@ -203,18 +214,18 @@ def all_cells(cells: Sequence[ComparedCell], caption: str, file: Link) -> Table:
     )
 
 
-def off_table(off: Sequence[Row], caption: str, file: Link) -> Table:
+def off_table(off: Sequence[Row], caption: str, file: Link) -> PageTable:
     """Show the errors that are off by more than a factor of 2."""
-    shown: dict[Column, Callable[[Row], Cell | str]] = {
-        Column("twin"): lambda row: HALF_WORDS.get(row["half"], row["half"]),
-        Column("signal"): lambda row: signal_title(row["signal"]),
-        Column("model"): lambda row: look(row["model"]).label,
-        Column("paper", True): lambda row: number(
+    shown: dict[PageColumn, Callable[[Row], Cell | str]] = {
+        PageColumn("twin"): lambda row: HALF_WORDS.get(row["half"], row["half"]),
+        PageColumn("signal"): lambda row: signal_title(row["signal"]),
+        PageColumn("model"): lambda row: look(row["model"]).label,
+        PageColumn("paper", True): lambda row: number(
             float(row["published"]), row["published"]
         ),
-        Column("ours", True): lambda row: _error(row["ours"]),
-        Column("ours / paper", True): lambda row: _error(row["ratio"]),
-        Column("what is known"): lambda row: row["known"],
+        PageColumn("ours", True): lambda row: _error(row["ours"]),
+        PageColumn("ours / paper", True): lambda row: _error(row["ratio"]),
+        PageColumn("what is known"): lambda row: row["known"],
     }
     ordered = sorted(off, key=lambda row: row["half"] != "held-out")
     return table_of("off", inline(caption), ordered, shown, files=(file,), cards=True)
@@ -222,19 +233,19 @@ def off_table(off: Sequence[Row], caption: str, file: Link) -> Table:
 
 def measured_table(
     errors: Sequence[Row], caption: str, files: tuple[Link, ...]
-) -> Table:
+) -> PageTable:
     """Show the errors on a measured dataset: a row a record and model."""
-    shown: dict[Column, Callable[[Row], Cell | str]] = {
-        Column("record"): lambda row: row["signal"],
-        Column("model"): lambda row: look(row["model"]).label,
-        Column("error"): lambda row: row["error_kind"],
-        Column("RE", True): lambda row: _error(row["re"]),
-        Column("MSE", True): lambda row: _error(row["mse"]),
-        Column("unit"): lambda row: unit_text(row["unit"]),
-        Column("RE after the transient", True): lambda row: _error(
+    shown: dict[PageColumn, Callable[[Row], Cell | str]] = {
+        PageColumn("record"): lambda row: row["signal"],
+        PageColumn("model"): lambda row: look(row["model"]).label,
+        PageColumn("error"): lambda row: row["error_kind"],
+        PageColumn("RE", True): lambda row: _error(row["re"]),
+        PageColumn("MSE", True): lambda row: _error(row["mse"]),
+        PageColumn("unit"): lambda row: unit_text(row["unit"]),
+        PageColumn("RE after the transient", True): lambda row: _error(
             row.get("re_after_transient", "")
         ),
-        Column("status"): lambda row: row["status"],
+        PageColumn("status"): lambda row: row["status"],
     }
     filtered = ("record", "model")
     return table_of(
@@ -242,7 +253,7 @@ def measured_table(
     )
 
 
-def measured_headline(errors: Sequence[Row]) -> Table:
+def measured_headline(errors: Sequence[Row]) -> PageTable:
     """Set the relative errors of all models side by side, a row a record."""
     by_key = {(row["signal"], row["model"]): row["re"] for row in errors}
 
@@ -259,8 +270,8 @@ def measured_headline(errors: Sequence[Row]) -> Table:
         "Relative error of every model on every measured record. The filters' errors "
         "are one-step a priori, the RDGPI model's free-run: not the same task.",
         dict.fromkeys(row["signal"] for row in errors),
-        {Column("record"): str}
-        | {Column(look(model).label, True): shown(model) for model in models},
+        {PageColumn("record"): str}
+        | {PageColumn(look(model).label, True): shown(model) for model in models},
         dense=True,
     )
 

@@ -10,13 +10,13 @@ from hystbench.report.markup import inline, one_micro, paragraphs
 from hystbench.report.picture import Link
 from hystbench.report.reproduction import claims, errors, words
 from hystbench.report.reproduction.read import (
-    Content,
     Measured,
     Reproduction,
+    ReproductionContent,
     Row,
     Shown,
 )
-from hystbench.report.table import Cell, Column, Table, number, table_of
+from hystbench.report.table import Cell, PageColumn, PageTable, number, table_of
 
 TEMPLATE = "page.html.j2"
 #: The picture of the first screen.
@@ -25,7 +25,7 @@ HEADLINE = "headline"
 _HEADINGS = {"mse": "MSE", "re": "RE", "error_kind": "error"}
 
 
-def page(content: Content) -> str:
+def page(content: ReproductionContent) -> str:
     """Make the page, of the reproduction or of a measured dataset."""
     found = content.found
     figures = {figure.name: figure for figure in content.figures}
@@ -63,7 +63,7 @@ def _title(found: Reproduction | Measured) -> str:
     return "hystbench: a filter of generalized play operators, reproduced on a twin"
 
 
-def _twin(found: Reproduction, content: Content) -> dict[str, object]:
+def _twin(found: Reproduction, content: ReproductionContent) -> dict[str, object]:
     halves = {cell.signal: cell.half for cell in found.cells}
     held = [cell for cell in errors.filter_cells(found.cells, "held-out") if cell.ran]
 
@@ -86,7 +86,7 @@ def _twin(found: Reproduction, content: Content) -> dict[str, object]:
     }
 
 
-def _measured(found: Measured, content: Content) -> dict[str, object]:
+def _measured(found: Measured, content: ReproductionContent) -> dict[str, object]:
     stem = f"{content.compare}/tables/errors"
     files = (
         Link("CSV", f"{content.compare}/errors.csv"),
@@ -112,7 +112,7 @@ def _full(markdown: str) -> dict[str, list[Markup]]:
     return found
 
 
-def _as_it_is(shown: Shown) -> Table:
+def _as_it_is(shown: Shown) -> PageTable:
     """Show a CSV file; signals and models by their names, numbers as numbers."""
 
     def cell(key: str, row: Row) -> Cell | str:
@@ -126,7 +126,7 @@ def _as_it_is(shown: Shown) -> Table:
     keys = list(shown.rows[0]) if shown.rows else []
     numeric = {key for key in keys if all(_is_number(row[key]) for row in shown.rows)}
     columns = {
-        Column(_HEADINGS.get(key, key.replace("_", " ")), key in numeric): partial(
+        PageColumn(_HEADINGS.get(key, key.replace("_", " ")), key in numeric): partial(
             cell, key
         )
         for key in keys
@@ -143,7 +143,7 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def _files(content: Content) -> list[tuple[Link, str]]:
+def _files(content: ReproductionContent) -> list[tuple[Link, str]]:
     """List the files beside the page, and what each holds."""
     folder = content.compare
     if isinstance(content.found, Measured):

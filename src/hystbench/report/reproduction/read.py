@@ -14,7 +14,7 @@ from hystbench.errors import InputError
 from hystbench.files import read_json
 from hystbench.published.discrepancies import AuditRow
 from hystbench.report.markup import first_sentence, inline, paragraphs
-from hystbench.report.picture import Link, Picture, embedded
+from hystbench.report.picture import Link, PagePicture, embedded
 
 Row = dict[str, str]
 
@@ -57,11 +57,11 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class Content:
+class ReproductionContent:
     """All that is on the page."""
 
     found: Reproduction | Measured
-    figures: list[Picture]
+    figures: list[PagePicture]
     tables: list[Shown]
     captions: dict[str, str]
     compare: str
@@ -74,7 +74,7 @@ def read_content(
     tables: Sequence[Path],
     captions: Path,
     settings: Mapping[str, Any],
-) -> Content:
+) -> ReproductionContent:
     """Read what the page shows.
 
     Parameters
@@ -125,7 +125,7 @@ def read_content(
         rows = read_rows(compare / "errors.csv", measured.COLUMNS)
         found = Measured(settings["dataset"], rows)
         names = ["errors"]
-    return Content(
+    return ReproductionContent(
         found=found,
         figures=[_figure(path, base, told(path.stem)) for path in figures],
         tables=[shown(path, told(path.stem)) for path in tables],
@@ -134,7 +134,7 @@ def read_content(
     )
 
 
-def _figure(path: Path, base: Path, text: str) -> Picture:
+def _figure(path: Path, base: Path, text: str) -> PagePicture:
     files = (
         Link("SVG", _link(path, base).href),
         Link("PNG", _link(path.with_suffix(".png"), base).href),
