@@ -491,7 +491,7 @@ ROW = {
     "claim": "the edge lies below 20",
     "where": "Section 4",
     "kind": "result",
-    "measure": "filters.edges_and_bound",
+    "measure": "filters.step_sizes",
     "holds": ["edges < 20"],
     "says": "{edges} edges",
 }

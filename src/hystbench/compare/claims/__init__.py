@@ -1,7 +1,8 @@
 """The ledger: every checkable sentence of the paper, judged.
 
 The claims are the rows of ``claims.yaml``. A row names a measure, a function of one of
-the modules here, and the conditions on the numbers that it finds.
+the modules here, and the conditions on the numbers that it finds. A measure takes all
+numbers of what it measures, so that claims about the same share it.
 """
 
 import inspect

@@ -118,28 +118,21 @@ def least_anywhere(evidence: ClaimEvidence, of: str = "twin") -> Numbers:
     return {"beaten": 0, "told": f"{first['told']}; {second['told']}"}
 
 
-def advantage(evidence: ClaimEvidence, of: str = "twin") -> Numbers:
-    """Follow the next best filter's MSE over the GPO's along the sines."""
-    frequencies = sines(evidence)
-    errors = errors_on(list(frequencies), FILTERS, evidence, of)
-    ratios = list(errors.drop(columns="gpo").min(axis=1) / errors["gpo"])
-    hz = list(frequencies.values())
-    return {
-        "first": ratios[0],
-        "last": ratios[-1],
-        "low": hz[0],
-        "high": hz[-1],
-        "trend": rank_correlation(hz, ratios),
-    }
-
-
 def along_sines(
-    evidence: ClaimEvidence, model: str, metric: Metric, of: str = "twin"
+    evidence: ClaimEvidence,
+    model: str,
+    metric: Metric = "mse",
+    of: str = "twin",
+    *,
+    ahead: bool = False,
 ) -> Numbers:
-    """Follow an error from each sine to the next."""
+    """Follow an error from each sine to the next, or the next best filter's over it."""
     frequencies = sines(evidence)
-    errors = errors_on(list(frequencies), [model], evidence, of, metric)[model]
-    points = list(zip(frequencies.values(), errors, strict=True))
+    models = FILTERS if ahead else [model]
+    errors = errors_on(list(frequencies), models, evidence, of, metric)
+    own, hz = errors[model], list(frequencies.values())
+    values = errors.drop(columns=model).min(axis=1) / own if ahead else own
+    points = list(zip(hz, values, strict=True))
     steps = list(pairwise(points))
     ends = points[0], points[-1]
     not_rising = [step for step in steps if step[1][1] <= step[0][1]]
@@ -157,6 +150,7 @@ def along_sines(
         "before": before,
         "end": end,
         "after": after,
+        "trend": rank_correlation(hz, list(values)),
     }
 
 

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from statistics import median
 from typing import Any
 
-from hystbench.compare.beside import Edge
 from hystbench.compare.claims.claim import NotTestable, Numbers, lms_runs
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.order_errors import OrderError
@@ -28,15 +27,11 @@ def bound_and_eigenvalue(evidence: ClaimEvidence) -> Numbers:
     return {"ratio": ratios[nearest], "runs": len(ratios), "nearest": nearest}
 
 
-def _edges(evidence: ClaimEvidence) -> tuple[Edge, ...]:
-    if not evidence.edges:
+def step_sizes(evidence: ClaimEvidence) -> Numbers:
+    """Hold the edges of use against the bound and 1/max|H|^2; take times below them."""
+    edges = evidence.edges
+    if not edges:
         raise NotTestable("not run: a sweep of step sizes")
-    return evidence.edges
-
-
-def edges_and_bound(evidence: ClaimEvidence) -> Numbers:
-    """Hold the measured edges against the bound, and against 1/max|H|^2."""
-    edges = _edges(evidence)
     inside = [edge for edge in edges if edge.inside]
     ratios = [e.edge_over_power for e in edges if e.edge_over_power is not None]
     power = (
@@ -49,12 +44,6 @@ def edges_and_bound(evidence: ClaimEvidence) -> Numbers:
     told = ", ".join(
         f"{e.model} on {e.signal} at {e.edge:.3g} of {e.at_trace:.3g}" for e in deepest
     )
-    return {"inside": len(inside), "edges": len(edges), "told": told, "power": power}
-
-
-def speed_below_edge(evidence: ClaimEvidence) -> Numbers:
-    """Find an edge for each filter and signal, and a trend of the time below it."""
-    edges = _edges(evidence)
     trends = {}
     for model in FILTERS:
         own = [e.speed_trend for e in edges if e.model == model]
@@ -62,10 +51,13 @@ def speed_below_edge(evidence: ClaimEvidence) -> Numbers:
         if known:
             trends[model] = median(known)
     return {
-        "found": sum(edge.edge is not None for edge in edges),
+        "inside": len(inside),
         "edges": len(edges),
+        "told": told,
+        "power": power,
+        "found": sum(edge.edge is not None for edge in edges),
         "trend": max(trends.values(), default=-math.inf),
-        "told": ", ".join(f"{model} {trend:.2f}" for model, trend in trends.items()),
+        "trends": ", ".join(f"{model} {trend:.2f}" for model, trend in trends.items()),
     }
 
 
@@ -80,13 +72,19 @@ def orders(evidence: ClaimEvidence) -> Numbers:
     return {"orders": len(found), "told": told, "runs": len(runs)}
 
 
-def volterra_weights(evidence: ClaimEvidence) -> Numbers:
-    """Count the weights of the Volterra filter."""
+def volterra(evidence: ClaimEvidence) -> Numbers:
+    """Count the weights of the Volterra filter, and compare its two step sizes."""
     run = lms_runs(evidence, ("volterra",))[0]
     if run.order is None:
         raise NotTestable("the run of volterra does not tell its order")
-    wanted = run.order + 1 + (run.order + 1) ** 2
-    return {"weights": run.weight_count, "order": run.order, "wanted": wanted}
+    wanted, steps = run.order + 1 + (run.order + 1) ** 2, run.step_size
+    return {
+        "weights": run.weight_count,
+        "order": run.order,
+        "wanted": wanted,
+        "sizes": len(set(steps.values())),
+        "told": ", ".join(f"{name} {mu:g}" for name, mu in steps.items()),
+    }
 
 
 def other_weights(evidence: ClaimEvidence) -> Numbers:
@@ -100,13 +98,6 @@ def other_weights(evidence: ClaimEvidence) -> Numbers:
         "sizes": "; ".join(f"order {n} with {count} weights" for n, count in sizes),
         "wanted": f"order {order} with {order + 1} weights",
     }
-
-
-def volterra_step_sizes(evidence: ClaimEvidence) -> Numbers:
-    """Compare the two step sizes of the Volterra filter."""
-    steps = lms_runs(evidence, ("volterra",))[0].step_size
-    told = ", ".join(f"{name} {mu:g}" for name, mu in steps.items())
-    return {"sizes": len(set(steps.values())), "told": told}
 
 
 def about_the_knee(evidence: ClaimEvidence) -> Numbers:

@@ -25,41 +25,28 @@ def identified(evidence: ClaimEvidence) -> Mapping[str, Any]:
     return evidence.identification
 
 
-def objective(evidence: ClaimEvidence) -> Numbers:
-    """Follow J over the iterations to the end of Algorithm 1."""
+def algorithm(evidence: ClaimEvidence) -> Numbers:
+    """Measure what Algorithm 1 found: J over the iterations, thresholds, envelopes.
+
+    Envelopes are compared as curves, for many a_j make the same loop.
+    """
     found = identified(evidence)
-    sums, epsilon = found["J"], found["epsilon"]
+    sums, epsilon, r = found["J"], found["epsilon"], found["thresholds"]
+    steps = np.diff(r)
+    text = evidence.text
     return {
         "reached": found["reached"],
         "iterations": len(sums),
+        "epsilon": epsilon,
         "first": sums[0],
         "last": sums[-1],
-        "epsilon": epsilon,
         "limit": max(sums[0], epsilon),
-        "re": found["relative_error"],
-    }
-
-
-def equal_steps(evidence: ClaimEvidence) -> Numbers:
-    """Take the steps of the identified thresholds."""
-    found = identified(evidence)
-    r = found["thresholds"]
-    steps = np.diff(r)
-    return {
         "thresholds": len(r),
         "weights": len(found["weights"]),
-        "first": r[0],
+        "least_threshold": r[0],
         "step": steps.mean(),
         "uneven": float(np.ptp(steps) / steps.mean()),
-    }
-
-
-def envelope_shape(evidence: ClaimEvidence) -> Numbers:
-    """Compare curves, for many a_j make the same loop."""
-    found = identified(evidence)
-    limit = evidence.text.amplitude_a
-    return {
-        "apart": shape_difference(evidence.text.envelope, found["envelope"], limit),
+        "apart": shape_difference(text.envelope, found["envelope"], text.amplitude_a),
         "re": found["relative_error"],
         "published_re": found["published_relative_error"],
     }

@@ -43,9 +43,10 @@ def generalized_plays(
     return sine(limit, 3), thresholds(text.filter_length, limit, envelope), envelope
 
 
-def play_at_two_speeds(evidence: ClaimEvidence) -> Numbers:
-    """Run plays along a sine at two speeds."""
-    return at_two_speeds(play, *plays(evidence))
+def of_play(evidence: ClaimEvidence) -> Numbers:
+    """Run plays along a sine at two speeds, and mirror the loop of equal weights."""
+    v, r = plays(evidence)
+    return {**at_two_speeds(play, v, r), "asymmetry": loop_asymmetry(play, v, r)}
 
 
 def at_two_speeds(operator: Operator, v: FloatArray, r: FloatArray) -> Numbers:
@@ -57,11 +58,6 @@ def at_two_speeds(operator: Operator, v: FloatArray, r: FloatArray) -> Numbers:
     return {"apart": apart, "excess": max(float(steps.max()), 0.0)}
 
 
-def play_asymmetry(evidence: ClaimEvidence) -> Numbers:
-    """Mirror the loop of a Prandtl-Ishlinskii model of equal weights."""
-    return {"asymmetry": loop_asymmetry(play, *plays(evidence))}
-
-
 def loop_asymmetry(operator: Operator, v: FloatArray, r: FloatArray) -> float:
     """Largest |F(t) - c + F(t + half a period) - c| of a steady loop, per height."""
     period = (len(v) - 1) // 3
@@ -70,16 +66,41 @@ def loop_asymmetry(operator: Operator, v: FloatArray, r: FloatArray) -> float:
     return float(np.abs(centred + np.roll(centred, period // 2)).max() / np.ptp(loop))
 
 
-def gpo_shape(evidence: ClaimEvidence) -> Numbers:
-    """Mirror the loop of generalized plays of equal weights; find flat envelopes."""
+def of_generalized_play(evidence: ClaimEvidence) -> Numbers:
+    """Run generalized plays along a sine: by Eq. 4, Eq. 12, and beside Eqs. 7 and 8.
+
+    The loop of equal weights is mirrored, and the envelopes' slopes at the ends of the
+    range are taken.
+    """
     v, r, envelope = generalized_plays(evidence)
+    run = generalized_play(v, r, envelope)
+    apart = np.abs(run - generalized_play_eq12(v, r, envelope)).max(axis=1)
     found = {
-        "asymmetry": loop_asymmetry(lambda v, r: generalized_play(v, r, envelope), v, r)
+        "asymmetry": loop_asymmetry(
+            lambda v, r: generalized_play(v, r, envelope), v, r
+        ),
+        "apart": apart.max(),
+        "later": apart[len(v) // 3 :].max(),
     }
+    height = float(np.ptp(run, axis=0).max())
+
+    def off(argument: float, reached: FloatArray) -> float:
+        at = np.array([argument])
+        inner = np.minimum(gamma_left(at, envelope) + r, run[0])
+        formula = np.maximum(gamma_right(at, envelope) - r, inner)
+        return float(np.abs(formula - reached).max() / height)
+
     u = np.linspace(-evidence.text.amplitude_a, evidence.text.amplitude_a, 2001)
-    for name, gamma in (("left", gamma_left), ("right", gamma_right)):
+    for side, gamma, pick in (
+        ("left", gamma_left, np.min),
+        ("right", gamma_right, np.max),
+    ):
         slope = np.gradient(gamma(u, envelope), u)
-        found[name] = float(min(slope[0], slope[-1]) / slope.max())
+        reached = pick(run, axis=0)
+        found[side] = float(min(slope[0], slope[-1]) / slope.max())
+        # gamma_l makes the smallest output, gamma_r the largest.
+        found[f"{side}_printed"] = off(float(pick(gamma(v, envelope))), reached)
+        found[f"{side}_with_v"] = off(float(pick(v)), reached)
     return found
 
 
@@ -90,55 +111,25 @@ def _envelope(evidence: ClaimEvidence, of: str) -> Envelope:
     return envelope
 
 
-def envelope_slopes(evidence: ClaimEvidence, of: str) -> Numbers:
-    """Find the smallest steps of both envelopes on the working range."""
+def envelopes(evidence: ClaimEvidence, of: str) -> Numbers:
+    """Find the smallest steps of both envelopes, and where gamma_r >= gamma_l."""
     envelope, limit = _envelope(evidence, of), evidence.text.amplitude_a
     v = np.linspace(-limit, limit, 2001)
     left, right = (
         float(np.diff(gamma(v, envelope)).min()) for gamma in (gamma_left, gamma_right)
     )
-    return {"limit": limit, "step": v[1] - v[0], "left": left, "right": right}
-
-
-def envelope_order(evidence: ClaimEvidence, of: str) -> Numbers:
-    """Find where gamma_r >= gamma_l on the working range."""
-    limit = evidence.text.amplitude_a
-    found = crossings(dict(_envelope(evidence, of)), -limit, limit)
-    start, end, excess = found[0] if found else (limit, limit, 0.0)
+    found = crossings(dict(envelope), -limit, limit)
+    start, end, most = found[0] if found else (limit, limit, 0.0)
     return {
         "limit": limit,
+        "step": v[1] - v[0],
+        "left": left,
+        "right": right,
         "crossings": len(found),
         "start": start,
         "end": end,
-        "excess": excess,
+        "excess": most,
     }
-
-
-def extreme(evidence: ClaimEvidence, largest: bool) -> Numbers:
-    """Hold Eq. 7 or 8 as printed, and with v in place of gamma(v), against a run."""
-    v, r, envelope = generalized_plays(evidence)
-    run = generalized_play(v, r, envelope)
-    reached = run.max(axis=0) if largest else run.min(axis=0)
-    gamma = gamma_right if largest else gamma_left
-    pick = np.max if largest else np.min
-    height = float(np.ptp(run, axis=0).max())
-
-    def off(argument: float) -> float:
-        at = np.array([argument])
-        inner = np.minimum(gamma_left(at, envelope) + r, run[0])
-        formula = np.maximum(gamma_right(at, envelope) - r, inner)
-        return float(np.abs(formula - reached).max() / height)
-
-    printed = off(float(pick(gamma(v, envelope))))
-    return {"printed": printed, "with_v": off(float(pick(v)))}
-
-
-def two_forms(evidence: ClaimEvidence) -> Numbers:
-    """Run a generalized play and Eq. 12 along a sine."""
-    v, r, envelope = generalized_plays(evidence)
-    one, other = generalized_play(v, r, envelope), generalized_play_eq12(v, r, envelope)
-    apart = np.abs(one - other).max(axis=1)
-    return {"apart": apart.max(), "later": apart[len(v) // 3 :].max()}
 
 
 def delay_line(evidence: ClaimEvidence) -> Numbers:

@@ -1,6 +1,6 @@
 """Measures of the signals and of the actuator's response, read off the records."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -51,21 +51,6 @@ def chirp_record(evidence: ClaimEvidence) -> Record:
 def settled(x: FloatArray) -> FloatArray:
     """Give the second half of a record."""
     return x[len(x) // 2 :]
-
-
-def chirp_frequencies(evidence: ClaimEvidence) -> Numbers:
-    """Read the frequency of the chirp's input at the two times of the paper."""
-    record = chirp_record(evidence)
-    time, frequency, _ = cycles(record.u, record.y, record.dt)
-    text = evidence.text
-    told = [
-        (m, float(np.interp(m.time_s, time, frequency)))
-        for m in (text.chirp_minimum, text.chirp_resonance)
-    ]
-    return {
-        "off": max(abs(found / m.frequency_hz - 1) for m, found in told),
-        "told": "; ".join(f"{found:.1f} Hz at {m.time_s:g} s" for m, found in told),
-    }
 
 
 def chirp_rates(evidence: ClaimEvidence) -> Numbers:
@@ -145,23 +130,18 @@ def power_in_band(evidence: ClaimEvidence) -> Numbers:
     return {"inside": inside, "limit": limit}
 
 
-def turns_under_sines(evidence: ClaimEvidence) -> Numbers:
-    """Count the turns of input and output inside the major loop."""
-    counts = [
-        minor_turning_points(settled(r.u)) + minor_turning_points(settled(r.y))
-        for r in sine_records(evidence)
-    ]
-    return {"most": max(counts), "sines": len(counts)}
-
-
-def turns_under_sums(evidence: ClaimEvidence) -> Numbers:
-    """Count the turns of input and output of the sums inside their range."""
+def turns(evidence: ClaimEvidence, tables: Sequence[int]) -> Numbers:
+    """Count the turns of input and output inside their range: minor loops."""
     counts = {
-        r.name: (minor_turning_points(settled(r.u)), minor_turning_points(settled(r.y)))
-        for r in records(evidence, signals(evidence.published, 3))
+        r.name: [minor_turning_points(settled(x)) for x in (r.u, r.y)]
+        for r in records(evidence, signals(evidence.published, *tables))
     }
-    told = "; ".join(f"{u} and {y} on {name}" for name, (u, y) in counts.items())
-    return {"fewest": min(map(min, counts.values())), "told": told}
+    return {
+        "most": max(map(sum, counts.values())),
+        "fewest": min(map(min, counts.values())),
+        "records": len(counts),
+        "told": "; ".join(f"{u} and {y} on {name}" for name, (u, y) in counts.items()),
+    }
 
 
 def sizes_over_frequency(evidence: ClaimEvidence, of: str = "twin") -> Numbers:
@@ -212,11 +192,12 @@ def _chirp_extremes(
 def chirp_shape(evidence: ClaimEvidence) -> Numbers:
     """Find the dip and the peak of the chirp's displacement, beside the paper's.
 
-    The tolerances are half the distances between the paper's dip and peak, so that
-    the two stay apart.
+    The input's frequencies are read at the two times of the paper. The tolerances are
+    half the distances between the paper's dip and peak, so that the two stay apart.
     """
     (time, frequency, size), dip, peak = _chirp_extremes(evidence)
     low, high = evidence.text.chirp_minimum, evidence.text.chirp_resonance
+    told = [(m, float(np.interp(m.time_s, time, frequency))) for m in (low, high)]
     inside = dip < peak < len(size) - 1
     return {
         "tolerance_s": (high.time_s - low.time_s) / 2,
@@ -224,6 +205,8 @@ def chirp_shape(evidence: ClaimEvidence) -> Numbers:
         "dip_off_s": abs(time[dip] - low.time_s),
         "peak_off_s": abs(time[peak] - high.time_s),
         "peak_off_hz": abs(frequency[peak] - high.frequency_hz),
+        "off": max(abs(found / m.frequency_hz - 1) for m, found in told),
+        "told": "; ".join(f"{found:.1f} Hz at {m.time_s:g} s" for m, found in told),
         "inside": inside,
         "note": "" if inside else ", which is no peak",
         "trend": rank_correlation(list(frequency[: dip + 1]), list(size[: dip + 1])),
