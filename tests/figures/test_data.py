@@ -3,7 +3,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from hystbench.figures.data import last_cycles, last_seconds, thin
+from hystbench.figures.data import last_cycles, last_seconds
+from hystbench.figures.style import thin
 from hystbench.record import Channel, Record
 
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from hystbench.compare.claims.statistics import cycles
 from hystbench.figures import panels, style
-from hystbench.figures.data import Output, read_pair, thin
+from hystbench.figures.data import Output, read_pair
 from hystbench.published import load_text
 from hystbench.record import FloatArray, Record
 
@@ -32,7 +32,7 @@ def draw(*, records: Sequence[Path], runs: Sequence[Path]) -> Figure:
     given, displacement, ranges, error = grid
     for axes in (ranges, error):
         axes.sharex(given)
-    x, y = thin(record.time, record.u)
+    x, y = style.thin(record.time, record.u)
     given.plot(x, y, color=style.BLACK, linewidth=0.7)
     part = _around_resonance(record)
     panels.in_time(displacement, record, output, part)

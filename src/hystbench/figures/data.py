@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -135,22 +134,3 @@ def last_cycles(record: Record, cycles: int) -> slice:
 def last_seconds(record: Record, seconds: float) -> slice:
     """Find the end of a record; all samples where it is shorter."""
     return slice(max(0, len(record) - round(seconds / record.dt) - 1), len(record))
-
-
-def thin(
-    x: FloatArray, y: FloatArray, bins: int = 2000
-) -> tuple[FloatArray, FloatArray]:
-    """Keep the smallest and the largest sample of each bin, as they are.
-
-    With more bins than a printer has dots the line looks the same, and an SVG file
-    stays small.
-    """
-    if len(x) <= 2 * bins:
-        return x, y
-    edges = np.linspace(0, len(x), bins + 1).astype(int)
-    kept = {0, len(x) - 1}
-    for low, high in pairwise(edges):
-        part = y[low:high]
-        kept |= {low + int(part.argmin()), low + int(part.argmax())}
-    index = np.array(sorted(kept))
-    return x[index], y[index]

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from hystbench.figures import style
-from hystbench.figures.data import Output, thin
+from hystbench.figures.data import Output
 from hystbench.record import FloatArray, Record
 
 
@@ -19,16 +19,16 @@ def loop(axes: Axes, record: Record, output: Output, part: slice) -> None:
 
 def in_time(axes: Axes, record: Record, output: Output, part: slice) -> None:
     """Draw both outputs over time."""
-    axes.plot(*thin(record.time[part], record.y[part]), **style.BEHIND)
+    axes.plot(*style.thin(record.time[part], record.y[part]), **style.BEHIND)
     if _reaches(axes, record, output, part):
         line = style.look(output.run.model).line
-        axes.plot(*thin(record.time[part], output.y[part]), linewidth=1.0, **line)
+        axes.plot(*style.thin(record.time[part], output.y[part]), linewidth=1.0, **line)
 
 
 def error_in_time(axes: Axes, record: Record, output: Output, part: slice) -> None:
     """Draw the error, the record's output minus the model's, over time."""
     if _reaches(axes, record, output, part):
-        _error(axes, output, *thin(record.time[part], output.error[part]))
+        _error(axes, output, *style.thin(record.time[part], output.error[part]))
 
 
 def error_over_input(axes: Axes, record: Record, output: Output, part: slice) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
-from itertools import cycle
+from itertools import cycle, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 from hystbench import published
 from hystbench.errors import refuse_unknown
 from hystbench.files import atomic_path
-from hystbench.record import Channel
+from hystbench.record import Channel, FloatArray
 
 #: Widths of a journal's column and page (inches).
 COLUMN = 3.5
@@ -252,3 +252,22 @@ def legend_above(figure: Figure, handles: Sequence[Line2D], columns: int = 0) ->
         loc="outside upper center",
         ncols=columns or len(handles),
     )
+
+
+def thin(
+    x: FloatArray, y: FloatArray, bins: int = 2000
+) -> tuple[FloatArray, FloatArray]:
+    """Keep the smallest and the largest sample of each bin, as they are.
+
+    With more bins than a printer has dots the line looks the same, and an SVG file
+    stays small.
+    """
+    if len(x) <= 2 * bins:
+        return x, y
+    edges = np.linspace(0, len(x), bins + 1).astype(int)
+    kept = {0, len(x) - 1}
+    for low, high in pairwise(edges):
+        part = y[low:high]
+        kept |= {low + int(part.argmin()), low + int(part.argmax())}
+    index = np.array(sorted(kept))
+    return x[index], y[index]

@@ -5,8 +5,9 @@ from typing import Any
 
 from matplotlib.ticker import MaxNLocator
 
-from hystbench.figures.style import BLUE, GREY, VERMILION, axis_label, unit_text
-from hystbench.gap.report.pictures import TICKS, hull
+from hystbench.figures.style import BLUE, GREY, VERMILION, axis_label, thin, unit_text
+from hystbench.gap.report.pictures import STRETCHES, TICKS, left_over_time
+from hystbench.gap.report.read import HoldOut
 from hystbench.record import FloatArray, Record
 
 MEASURED: dict[str, Any] = {"color": GREY, "linewidth": 2.2, "label": "measured"}
@@ -21,8 +22,8 @@ def records(axes: Any, shown: Sequence[Record]) -> None:
     """Draw input, output and loop of each record, a row each."""
     for row, record in zip(axes, shown, strict=True):
         given, got, loop = row
-        given.plot(*hull(record.time, record.u), color=BLUE)
-        got.plot(*hull(record.time, record.y), color=BLUE)
+        given.plot(*thin(record.time, record.u, STRETCHES), color=BLUE)
+        got.plot(*thin(record.time, record.y, STRETCHES), color=BLUE)
         loop.plot(record.u, record.y, color=BLUE, linewidth=0.8)
         given.set_title(f"{record.name} ({record.use})")
         for panel in (given, got):
@@ -45,12 +46,8 @@ def gap(
         loop.set_title(record.name)
         loop.set_xlabel(axis_label(record.input))
         loop.set_ylabel(axis_label(record.output))
-        for values, line in ((before, BEFORE), (after, AFTER)):
-            own = {**line, "linewidth": 0.9}
-            left.plot(*hull(record.time, record.y - values), **own)
-        left.axhspan(-floor, floor, color=GREY, alpha=0.35, linewidth=0)
-        left.set_title("noise floor grey")
-        left.set_xlabel("time (s)")
+        shown = (record.name, floor, record.output.unit, record.time, record.y)
+        left_over_time(left, HoldOut(*shown, before, after), slice(None))
         left.set_ylabel(f"residual ({unit_text(record.output.unit)})")
         _few_ticks(row)
     lines = axes[0][0].get_legend_handles_labels()[0]

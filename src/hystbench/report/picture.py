@@ -57,6 +57,11 @@ class PagePicture:
         return self.width > WIDE
 
 
+def svg_source(content: bytes) -> str:
+    """Give an SVG picture as a data URI."""
+    return f"data:image/svg+xml;base64,{base64.b64encode(content).decode('ascii')}"
+
+
 def embedded(
     path: Path, alt: str, caption: Markup, files: tuple[Link, ...] = ()
 ) -> PagePicture:
@@ -73,10 +78,9 @@ def embedded(
     size = dict(_SIZE.findall(tag[0])) if tag else {}
     if len(size) < 2:
         raise InputError(f"{path}: expected an SVG picture with a size in points")
-    text = base64.b64encode(content).decode("ascii")
     return PagePicture(
         name=path.stem,
-        source=f"data:image/svg+xml;base64,{text}",
+        source=svg_source(content),
         alt=alt,
         caption=caption,
         width=round(float(size["width"]) * 4 / 3),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -22,10 +21,11 @@ from hystbench.figures.style import (
     in_style,
     legend_above,
     plain_ticks,
+    thin,
     unit_text,
 )
 from hystbench.gap.report.read import HoldOut
-from hystbench.record import FloatArray
+from hystbench.report.picture import svg_source
 
 #: Bars of a picture: more of them are not read.
 BARS = 20
@@ -34,8 +34,8 @@ BARS = 20
 RECORDS = 4
 #: Periods of a record that are drawn large.
 PERIODS = 3
-#: Points of a line: more than a page has pixels.
-POINTS = 1500
+#: Stretches of a line, of two points each: more than a page has pixels.
+STRETCHES = 750
 
 #: Numbers below a small picture.
 TICKS = 5
@@ -78,8 +78,7 @@ def embedded(figure: Figure, words: str, *, clear: bool = False) -> EmbeddedPict
         figure.set_layout_engine("none")
     about = {"Date": None, "Creator": None}
     figure.savefig(buffer, format="svg", metadata=about, transparent=clear)
-    text = base64.b64encode(buffer.getvalue()).decode("ascii")
-    return EmbeddedPicture(f"data:image/svg+xml;base64,{text}", words)
+    return EmbeddedPicture(svg_source(buffer.getvalue()), words)
 
 
 def bars(
@@ -141,7 +140,7 @@ def series(axes: Any, tables: Sequence[HoldOut]) -> None:
     for (outputs, residuals, spectrum), table in zip(axes, tables, strict=True):
         _outputs(outputs, table, "before", "after")
         outputs.set_title(table.name)
-        _residuals(residuals, table, slice(None))
+        left_over_time(residuals, table, slice(None))
         _spectrum(spectrum, table)
     lines = axes[0][0].get_legend_handles_labels()[0]
     legend_above(axes[0][0].figure, lines)
@@ -162,7 +161,7 @@ def _outputs(panel: Axes, table: HoldOut, before: str, after: str | None) -> Non
 def residual(axes: Any, table: HoldOut) -> None:
     """Draw what is left of a record before and after: a stretch, and the spectrum."""
     over_time, over_frequency = axes
-    _residuals(over_time, table, _window(table))
+    left_over_time(over_time, table, _window(table))
     over_time.set_title(f"a stretch of {table.name}, noise floor grey")
     over_time.set_ylabel(f"residual ({unit_text(table.unit)})")
     _spectrum(over_frequency, table)
@@ -171,14 +170,15 @@ def residual(axes: Any, table: HoldOut) -> None:
     legend_above(over_time.figure, over_time.get_legend_handles_labels()[0])
 
 
-def _residuals(panel: Axes, table: HoldOut, part: slice) -> None:
+def left_over_time(panel: Axes, table: HoldOut, part: slice) -> None:
+    """Draw what is left of a part of a record before and after, over time."""
     for name, simulated, color in (
         ("before", table.before, BEFORE),
         ("after", table.after, AFTER),
     ):
         left = (table.measured - simulated)[part]
         look: dict[str, Any] = {"color": color, "linewidth": 0.8, "label": name}
-        panel.plot(*hull(table.time_s[part], left), **look)
+        panel.plot(*thin(table.time_s[part], left, STRETCHES), **look)
     panel.axhspan(-table.floor, table.floor, color=GREY, alpha=0.35, linewidth=0)
     panel.set_title("residual, noise floor grey")
     panel.set_xlabel("time (s)")
@@ -223,14 +223,3 @@ def logarithmic(panel: Axes, directions: str) -> None:
         axis = {"x": panel.xaxis, "y": panel.yaxis}[name]
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter("")
-
-
-def hull(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Thin a long line to the least and the largest value of each stretch."""
-    size = len(time) // (POINTS // 2)
-    if size < 3:
-        return time, values
-    count = len(time) // size
-    stretches = values[: count * size].reshape(count, size)
-    ends = np.column_stack([stretches.min(axis=1), stretches.max(axis=1)])
-    return np.repeat(time[: count * size : size], 2), ends.ravel()
