@@ -12,6 +12,7 @@ from hystbench.errors import InputError, refuse_unknown
 from hystbench.files import write_csv
 
 Item = TypeVar("Item")
+_TRUTH = {"True": True, "False": False}
 
 
 def read_rows(path: str | Path, columns: tuple[str, ...]) -> list[dict[str, str]]:
@@ -63,6 +64,9 @@ def read_items(path: str | Path, kind: type[Item]) -> tuple[Item, ...]:
             return None
         if float in wanted:
             return finite_or_infinite("" if text == "diverged" else text, path, row)
+        if bool in wanted:
+            refuse_unknown(text, _TRUTH, f"{path}: row {row}: {text!r} is no truth")
+            return _TRUTH[text]
         return int(text) if int in wanted else text
 
     return tuple(

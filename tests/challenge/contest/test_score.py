@@ -344,5 +344,14 @@ def test_rows_come_back_as_they_were(tmp_path):
 
 def test_other_columns_are_refused(tmp_path):
     (tmp_path / "rows.csv").write_text("solver,case\na,b\n")
-    with pytest.raises(InputError, match="expected the columns solver, case, seed"):
+    with pytest.raises(InputError, match="no column 'seed'"):
+        read_rows([tmp_path / "rows.csv"])
+
+
+def test_a_cell_that_is_neither_true_nor_false_is_refused(tmp_path):
+    write_rows(tmp_path / "rows.csv", [judged(truth(effect()), RIGHT)])
+    text = (tmp_path / "rows.csv").read_text()
+    assert ",True," in text
+    (tmp_path / "rows.csv").write_text(text.replace(",True,", ",maybe,", 1))
+    with pytest.raises(InputError, match="'maybe' is no truth"):
         read_rows([tmp_path / "rows.csv"])

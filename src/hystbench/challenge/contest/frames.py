@@ -7,11 +7,13 @@ from pathlib import Path
 import pandas as pd
 
 from hystbench.challenge.contest.score import COLUMNS, Row
-from hystbench.errors import InputError
+from hystbench.compare.rows import read_items
 from hystbench.files import write_csv
 
 #: What an effect must be stated with at least to be called confident.
 CONFIDENT = 0.8
+#: Types of columns; but for text, cells may be missing.
+TYPES = {"str": "str", "bool": "boolean", "int": "Int64", "float": "Float64"}
 
 
 def read_rows(paths: Sequence[Path]) -> pd.DataFrame:
@@ -20,15 +22,9 @@ def read_rows(paths: Sequence[Path]) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If a file has other columns.
+        If a file lacks a column, or a number in it is none.
     """
-    read = [pd.DataFrame([], columns=list(COLUMNS), dtype=str)]
-    for path in paths:
-        table = pd.read_csv(path, dtype=str, keep_default_na=False)
-        if tuple(table.columns) != COLUMNS:
-            raise InputError(f"{path}: expected the columns {', '.join(COLUMNS)}")
-        read.append(table)
-    return _typed(pd.concat(read, ignore_index=True))
+    return frame(row for path in paths for row in read_items(path, Row))
 
 
 def frame(rows: Iterable[Row]) -> pd.DataFrame:
@@ -39,32 +35,22 @@ def frame(rows: Iterable[Row]) -> pd.DataFrame:
     ``named``, as names beside another do not count; and ``confident``, whether one is
     stated with more than :data:`CONFIDENT`.
     """
-    told = [["" if v is None else str(v) for v in astuple(row)] for row in rows]
-    return _typed(pd.DataFrame(told, columns=list(COLUMNS), dtype=str))
-
-
-def write_frame(path: Path, table: pd.DataFrame) -> None:
-    """Write judged cases that were read, as they were written."""
-    told = table[list(COLUMNS)].astype(object)
-    write_csv(path, COLUMNS, told.where(told.notna(), None).itertuples(index=False))
-
-
-def _typed(table: pd.DataFrame) -> pd.DataFrame:
-    truth = {"True": True, "False": False, "": None}
-    for item in fields(Row):
-        column, kind = table[item.name], str(item.type)
-        if kind.startswith("bool"):
-            table[item.name] = column.map(truth).astype("boolean")
-        elif kind != "str":
-            numbers = pd.to_numeric(column.replace("", None))
-            dtype = pd.Int64Dtype() if kind.startswith("int") else pd.Float64Dtype()
-            table[item.name] = numbers.astype(dtype)
+    told = [astuple(row) for row in rows]
+    table = pd.DataFrame(told, columns=list(COLUMNS), dtype=object)
+    kinds = {item.name: str(item.type).partition(" ")[0] for item in fields(Row)}
+    table = table.astype({name: TYPES[kind] for name, kind in kinds.items()})
     table["stated"] = table["confidences"].map(_stated).astype(object)
     named = table["verdict"] == "named"
     given = [x if y else {} for x, y in zip(table["stated"], named, strict=True)]
     table["given"] = pd.Series(given, index=table.index, dtype=object)
     table["confident"] = pd.array(list(map(sure, table["stated"])), dtype="boolean")
     return table
+
+
+def write_frame(path: Path, table: pd.DataFrame) -> None:
+    """Write judged cases that were read, as they were written."""
+    told = table[list(COLUMNS)].astype(object)
+    write_csv(path, COLUMNS, told.where(told.notna(), None).itertuples(index=False))
 
 
 def _stated(confidences: str) -> dict[str, float]:
