@@ -259,10 +259,15 @@ def digest(folder: str | Path, pattern: str = "*") -> str:
     What hystbench notes of the files that it wrote is none of them.
     """
     whole = hashlib.sha256()
-    folder = Path(folder)
-    for file in sorted(folder.rglob(pattern)):
-        if file.is_file() and ENTRIES not in file.relative_to(folder).parts:
-            content = file.read_bytes()
-            name = file.relative_to(folder).as_posix()
-            whole.update(f"{name} {len(content)}\n".encode() + content)
+    files = sorted(file for file in Path(folder).rglob(pattern) if file.is_file())
+    named = {file.relative_to(folder): file for file in files}
+    own = {k.as_posix(): v for k, v in named.items() if ENTRIES not in k.parts}
+    update_with(whole, own)
     return whole.hexdigest()
+
+
+def update_with(whole: Any, files: Mapping[str, Path]) -> None:
+    """Take files into a digest, in their order: name, size and content of each."""
+    for name, file in files.items():
+        content = file.read_bytes()
+        whole.update(f"{name} {len(content)}\n".encode() + content)

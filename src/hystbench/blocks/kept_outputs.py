@@ -19,6 +19,7 @@ from types import BuiltinFunctionType, FunctionType, ModuleType
 
 import numpy as np
 
+from hystbench.files import update_with
 from hystbench.kept_files import KeptFiles
 from hystbench.record import FloatArray
 
@@ -108,11 +109,9 @@ def source_digest(name: str) -> str:
     name : str
         ``package.module:function``, imported and best called once before.
     """
-    own = dict(_own_modules(name.partition(":")[0].partition(".")[0]))
+    own = dict(sorted(_own_modules(name.partition(":")[0].partition(".")[0])))
     whole = blake2b(f"{name}\n{sys.version}\n".encode(), digest_size=16)
-    for label in sorted(own):
-        content = own[label].read_bytes()
-        whole.update(f"{label} {len(content)}\n".encode() + content)
+    update_with(whole, own)
     for package in sorted(set().union(*map(_named_packages, own), {"numpy"})):
         whole.update(f"{package} {_version(package)}\n".encode())
     return whole.hexdigest()

@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from hystbench.blocks.kept_outputs import folder_of_user
+from hystbench.files import update_with
 from hystbench.kept_files import KeptFiles
 from hystbench.record import Record
 
@@ -142,9 +143,7 @@ def code_digest() -> str:
     whole = blake2b(sys.version.encode(), digest_size=16)
     top = Path(__file__).parents[1]
     files = (item for item in top.rglob("*") if item.suffix in (".py", ".so", ".yaml"))
-    for file in sorted(files):
-        content = file.read_bytes()
-        whole.update(f"{file.relative_to(top)} {len(content)}\n".encode() + content)
+    update_with(whole, {str(file.relative_to(top)): file for file in sorted(files)})
     for name in LIBRARIES:
         whole.update(f"{name} {metadata.version(name)}\n".encode())
     return whole.hexdigest()
