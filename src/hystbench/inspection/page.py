@@ -12,7 +12,7 @@ from hystbench.inspection.facts import Facts
 from hystbench.inspection.visible import TENTH, SmallestSeen
 from hystbench.report.layout import page_environment
 from hystbench.report.markup import one_micro
-from hystbench.report.table import Cell, PageColumn, PageTable, number, table_of
+from hystbench.report.table import Cell, Heading, PageTable, number, table_of
 
 
 def page(found: Check) -> str:
@@ -41,28 +41,28 @@ def page(found: Check) -> str:
 
 def _records(found: Check) -> PageTable:
     record = found.records[0]
-    shown: dict[PageColumn, Callable[[Facts], Cell | str]] = {
-        PageColumn("record"): attrgetter("name"),
-        PageColumn("use"): attrgetter("use"),
-        PageColumn("samples", True): lambda x: number(x.samples, str(x.samples)),
-        PageColumn("rate (Hz)", True): lambda x: number(1 / x.dt, f"{1 / x.dt:.6g}"),
-        PageColumn("jitter (%)", True): lambda x: number(x.jitter, _jitter(x)),
-        PageColumn("input"): attrgetter("excitation.kind"),
-        PageColumn("period (samples)", True): lambda x: number(
+    shown: dict[Heading, Callable[[Facts], Cell | str]] = {
+        Heading("record"): attrgetter("name"),
+        Heading("use"): attrgetter("use"),
+        Heading("samples", True): lambda x: number(x.samples, str(x.samples)),
+        Heading("rate (Hz)", True): lambda x: number(1 / x.dt, f"{1 / x.dt:.6g}"),
+        Heading("jitter (%)", True): lambda x: number(x.jitter, _jitter(x)),
+        Heading("input"): attrgetter("excitation.kind"),
+        Heading("period (samples)", True): lambda x: number(
             x.period, str(x.period or "none")
         ),
-        PageColumn("periods", True): lambda x: number(x.periods, f"{x.periods:.3g}"),
-        PageColumn("band"): words.band,
-        PageColumn(f"input ({unit_text(record.input.unit)})"): lambda x: (
+        Heading("periods", True): lambda x: number(x.periods, f"{x.periods:.3g}"),
+        Heading("band"): words.band,
+        Heading(f"input ({unit_text(record.input.unit)})"): lambda x: (
             f"{x.excitation.low:.3g} to {x.excitation.high:.3g}"
         ),
-        PageColumn(f"output ({unit_text(record.output.unit)})"): lambda x: (
+        Heading(f"output ({unit_text(record.output.unit)})"): lambda x: (
             f"{x.low:.3g} to {x.high:.3g}"
         ),
-        PageColumn("delay (ms)", True): lambda x: number(
+        Heading("delay (ms)", True): lambda x: number(
             x.delay_s, f"{1e3 * x.delay_s:.3g} ± {1e3 * x.delay_error_s:.2g}"
         ),
-        PageColumn("missing", True): lambda x: number(x.missing, str(x.missing)),
+        Heading("missing", True): lambda x: number(x.missing, str(x.missing)),
     }
     return table_of(
         "records",
@@ -123,14 +123,14 @@ def _chart(found: Check) -> EmbeddedPicture | None:
 def _revealed(found: Check) -> PageTable:
     record = found.records[0]
     units = record.input.unit, record.output.unit
-    shown: dict[PageColumn, Callable[[SmallestSeen], Cell | str]] = {
-        PageColumn("effect"): attrgetter("effect"),
-        PageColumn("seen from", True): lambda x: number(
+    shown: dict[Heading, Callable[[SmallestSeen], Cell | str]] = {
+        Heading("effect"): attrgetter("effect"),
+        Heading("seen from", True): lambda x: number(
             x.seen_from, words.percent(x.seen_from)
         ),
-        PageColumn("that is"): lambda x: words.strength(x, *units),
-        PageColumn("in the form"): lambda x: x.form.replace("_", " "),
-        PageColumn("can be mistaken for"): lambda x: words.mistaken(x) or "nothing",
+        Heading("that is"): lambda x: words.strength(x, *units),
+        Heading("in the form"): lambda x: x.form.replace("_", " "),
+        Heading("can be mistaken for"): lambda x: words.mistaken(x) or "nothing",
     }
     return table_of(
         "revealed",
@@ -147,9 +147,6 @@ def _hidden(found: Check) -> PageTable:
         "hidden",
         f"Not revealed: {len(found.hidden)} of {len(found.effects)} effects.",
         found.hidden,
-        {
-            PageColumn("effect"): attrgetter("effect"),
-            PageColumn("why"): attrgetter("why"),
-        },
+        {Heading("effect"): attrgetter("effect"), Heading("why"): attrgetter("why")},
         cards=True,
     )

@@ -33,7 +33,7 @@ class Cell:
 
 
 @dataclass(frozen=True)
-class PageColumn:
+class Heading:
     """A column: its title, whether it holds numbers, and what it stands under."""
 
     title: str
@@ -81,7 +81,7 @@ class PageTable:
         Name of the element, by which it can be linked.
     caption : str
         Text or ``Markup``.
-    columns : sequence of PageColumn
+    columns : sequence of Heading
     bodies : sequence of Body
     files : tuple of Link
         Where it can be had as a file.
@@ -97,7 +97,7 @@ class PageTable:
 
     name: str
     caption: str
-    columns: Sequence[PageColumn]
+    columns: Sequence[Heading]
     bodies: Sequence[Body]
     files: tuple[Link, ...] = ()
     filtered: tuple[str, ...] = ()
@@ -152,7 +152,7 @@ def table_of(
     name: str,
     caption: str,
     items: Iterable[Item],
-    shown: Mapping[PageColumn, Callable[[Item], Cell | str]],
+    shown: Mapping[Heading, Callable[[Item], Cell | str]],
     **about: Any,
 ) -> PageTable:
     """Make a table with a row an item.

@@ -12,7 +12,7 @@ from hystbench.report.reproduction.read import Row
 from hystbench.report.table import (
     Body,
     Cell,
-    PageColumn,
+    Heading,
     PageTable,
     number,
     table_of,
@@ -50,25 +50,25 @@ def counts_table(claims: Sequence[Row]) -> PageTable:
         "claims-counted",
         "Claims by what the twin knew of them before they were judged. Rows are not "
         "added up: only the held-out ones were open.",
-        [PageColumn("basis"), *(PageColumn(verdict, True) for verdict in verdicts)],
+        [Heading("basis"), *(Heading(verdict, True) for verdict in verdicts)],
         [Body(rows)],
     )
 
 
 def claims_table(claims: Sequence[Row], caption: str, file: Link) -> PageTable:
     """Show every claim with its verdict and the evidence for it."""
-    shown: dict[PageColumn, Callable[[Row], Cell | str]] = {
-        PageColumn("verdict"): lambda row: _verdict(row["verdict"]),
-        PageColumn("basis"): lambda row: row["basis"] or "none",
-        PageColumn("kind"): itemgetter("kind"),
-        PageColumn("claim of the paper"): _claim,
-        PageColumn("evidence"): itemgetter("evidence"),
-        PageColumn("the paper's own numbers"): _borne_out,
-        PageColumn("holds on twins"): lambda row: row.get("holds_on", ""),
+    shown: dict[Heading, Callable[[Row], Cell | str]] = {
+        Heading("verdict"): lambda row: _verdict(row["verdict"]),
+        Heading("basis"): lambda row: row["basis"] or "none",
+        Heading("kind"): itemgetter("kind"),
+        Heading("claim of the paper"): _claim,
+        Heading("evidence"): itemgetter("evidence"),
+        Heading("the paper's own numbers"): _borne_out,
+        Heading("holds on twins"): lambda row: row.get("holds_on", ""),
     }
     for key in claims[0] if claims else ():
         if key not in _PLACED:
-            shown[PageColumn(key.replace("_", " "))] = itemgetter(key)
+            shown[Heading(key.replace("_", " "))] = itemgetter(key)
     return table_of(
         "claims",
         inline(caption),
@@ -111,14 +111,14 @@ def _borne_out(row: Row) -> str:
 
 def audit_table(audit: Sequence[Row], caption: str, file: Link) -> PageTable:
     """Show where the paper's own numbers contradict each other, conflicts first."""
-    shown: dict[PageColumn, Callable[[Row], Cell | str]] = {
-        PageColumn(key): itemgetter(key) for key in ("where", "statement", "evidence")
+    shown: dict[Heading, Callable[[Row], Cell | str]] = {
+        Heading(key): itemgetter(key) for key in ("where", "statement", "evidence")
     }
     return table_of(
         "audit",
         inline(caption),
         sorted(audit, key=lambda row: row["kind"] != "conflict"),
-        {PageColumn("kind"): _kind, **shown},
+        {Heading("kind"): _kind, **shown},
         files=(file,),
         filtered=("kind",),
         cards=True,

@@ -14,7 +14,7 @@ from hystbench.report.reproduction.read import Row, Shown
 from hystbench.report.table import (
     Body,
     Cell,
-    PageColumn,
+    Heading,
     PageTable,
     number,
     table_of,
@@ -45,10 +45,10 @@ def headline_table(cells: Sequence[ComparedCell], half: str) -> PageTable:
     by_key = {(cell.signal, cell.model): cell for cell in half_cells}
     signals = dict.fromkeys(cell.signal for cell in half_cells if cell.ran)
     models = [m for m in FILTERS if any(c.ran for c in half_cells if c.model == m)]
-    columns = [PageColumn("signal")]
+    columns = [Heading("signal")]
     for model in models:
         group = look(model).label
-        columns += [PageColumn("paper", True, group), PageColumn("ours", True, group)]
+        columns += [Heading("paper", True, group), Heading("ours", True, group)]
     rows = []
     for signal in signals:
         row = [words(signal_title(signal))]
@@ -100,10 +100,7 @@ def nearness_table(cells: Sequence[ComparedCell]) -> PageTable:
         "nearness",
         "How near our errors (MSE) come to the paper's, by model. The filters' errors "
         "are one-step a priori with running weights, the RDGPI model's free-run.",
-        [
-            PageColumn("model"),
-            *(PageColumn(title, True) for title in (*titles, "diverged")),
-        ],
+        [Heading("model"), *(Heading(title, True) for title in (*titles, "diverged"))],
         bodies,
         note="The typical factor is the median over the errors, in either direction.",
     )
@@ -132,11 +129,11 @@ def _factor(log10_ratio: float | None) -> Cell:
 def paper_table(shown: Shown, halves: Mapping[str, str]) -> PageTable:
     """Show a table of the paper with ours beside it; MSE and RE stand apart."""
     given = [key for key in shown.rows[0] if key not in ("signal", "error", "note")]
-    columns = [PageColumn("signal"), PageColumn("twin")]
+    columns = [Heading("signal"), Heading("twin")]
     for key in given:
         model, _, whose = key.partition(" ")
         label = look(model).label if model in MODELS else model
-        columns.append(PageColumn(whose or key, True, label if whose else ""))
+        columns.append(Heading(whose or key, True, label if whose else ""))
     bodies = []
     for metric in METRICS:
         name = METRIC_NAMES[metric]
@@ -186,22 +183,22 @@ def _printed(text: str) -> Cell:
 def all_cells(cells: Sequence[ComparedCell], caption: str, file: Link) -> PageTable:
     """Show every printed error with ours, the spread of equally good twins and all."""
     spread = "equally good twins"
-    shown: dict[PageColumn, Callable[[ComparedCell], Cell | str]] = {
-        PageColumn("twin"): lambda c: HALF_WORDS[c.half],
-        PageColumn("signal"): lambda c: signal_title(c.signal),
-        PageColumn("model"): lambda c: look(c.model).label,
-        PageColumn("error"): lambda c: c.metric.upper(),
-        PageColumn("paper", True): lambda c: number(float(c.published), c.published),
-        PageColumn("ours", True): lambda c: number(
+    shown: dict[Heading, Callable[[ComparedCell], Cell | str]] = {
+        Heading("twin"): lambda c: HALF_WORDS[c.half],
+        Heading("signal"): lambda c: signal_title(c.signal),
+        Heading("model"): lambda c: look(c.model).label,
+        Heading("error"): lambda c: c.metric.upper(),
+        Heading("paper", True): lambda c: number(float(c.published), c.published),
+        Heading("ours", True): lambda c: number(
             c.ours, "none" if c.ours is None else ""
         ),
-        PageColumn("ours / paper", True): lambda c: number(
+        Heading("ours / paper", True): lambda c: number(
             None if c.log10_ratio is None else 10**c.log10_ratio
         ),
-        PageColumn("least", True, spread): lambda c: number(c.spread_low),
-        PageColumn("most", True, spread): lambda c: number(c.spread_high),
-        PageColumn("printed pair can be true"): lambda c: c.published_consistent,
-        PageColumn("status"): lambda c: c.status,
+        Heading("least", True, spread): lambda c: number(c.spread_low),
+        Heading("most", True, spread): lambda c: number(c.spread_high),
+        Heading("printed pair can be true"): lambda c: c.published_consistent,
+        Heading("status"): lambda c: c.status,
     }
     return table_of(
         "cells",
@@ -216,16 +213,16 @@ def all_cells(cells: Sequence[ComparedCell], caption: str, file: Link) -> PageTa
 
 def off_table(off: Sequence[Row], caption: str, file: Link) -> PageTable:
     """Show the errors that are off by more than a factor of 2."""
-    shown: dict[PageColumn, Callable[[Row], Cell | str]] = {
-        PageColumn("twin"): lambda row: HALF_WORDS.get(row["half"], row["half"]),
-        PageColumn("signal"): lambda row: signal_title(row["signal"]),
-        PageColumn("model"): lambda row: look(row["model"]).label,
-        PageColumn("paper", True): lambda row: number(
+    shown: dict[Heading, Callable[[Row], Cell | str]] = {
+        Heading("twin"): lambda row: HALF_WORDS.get(row["half"], row["half"]),
+        Heading("signal"): lambda row: signal_title(row["signal"]),
+        Heading("model"): lambda row: look(row["model"]).label,
+        Heading("paper", True): lambda row: number(
             float(row["published"]), row["published"]
         ),
-        PageColumn("ours", True): lambda row: _error(row["ours"]),
-        PageColumn("ours / paper", True): lambda row: _error(row["ratio"]),
-        PageColumn("what is known"): lambda row: row["known"],
+        Heading("ours", True): lambda row: _error(row["ours"]),
+        Heading("ours / paper", True): lambda row: _error(row["ratio"]),
+        Heading("what is known"): lambda row: row["known"],
     }
     ordered = sorted(off, key=lambda row: row["half"] != "held-out")
     return table_of("off", inline(caption), ordered, shown, files=(file,), cards=True)
@@ -235,17 +232,17 @@ def measured_table(
     errors: Sequence[Row], caption: str, files: tuple[Link, ...]
 ) -> PageTable:
     """Show the errors on a measured dataset: a row a record and model."""
-    shown: dict[PageColumn, Callable[[Row], Cell | str]] = {
-        PageColumn("record"): lambda row: row["signal"],
-        PageColumn("model"): lambda row: look(row["model"]).label,
-        PageColumn("error"): lambda row: row["error_kind"],
-        PageColumn("RE", True): lambda row: _error(row["re"]),
-        PageColumn("MSE", True): lambda row: _error(row["mse"]),
-        PageColumn("unit"): lambda row: unit_text(row["unit"]),
-        PageColumn("RE after the transient", True): lambda row: _error(
+    shown: dict[Heading, Callable[[Row], Cell | str]] = {
+        Heading("record"): lambda row: row["signal"],
+        Heading("model"): lambda row: look(row["model"]).label,
+        Heading("error"): lambda row: row["error_kind"],
+        Heading("RE", True): lambda row: _error(row["re"]),
+        Heading("MSE", True): lambda row: _error(row["mse"]),
+        Heading("unit"): lambda row: unit_text(row["unit"]),
+        Heading("RE after the transient", True): lambda row: _error(
             row.get("re_after_transient", "")
         ),
-        PageColumn("status"): lambda row: row["status"],
+        Heading("status"): lambda row: row["status"],
     }
     filtered = ("record", "model")
     return table_of(
@@ -270,8 +267,8 @@ def measured_headline(errors: Sequence[Row]) -> PageTable:
         "Relative error of every model on every measured record. The filters' errors "
         "are one-step a priori, the RDGPI model's free-run: not the same task.",
         dict.fromkeys(row["signal"] for row in errors),
-        {PageColumn("record"): str}
-        | {PageColumn(look(model).label, True): shown(model) for model in models},
+        {Heading("record"): str}
+        | {Heading(look(model).label, True): shown(model) for model in models},
         dense=True,
     )
 

@@ -16,7 +16,7 @@ from hystbench.report.reproduction.read import (
     Row,
     Shown,
 )
-from hystbench.report.table import Cell, PageColumn, PageTable, number, table_of
+from hystbench.report.table import Cell, Heading, PageTable, number, table_of
 
 TEMPLATE = "page.html.j2"
 #: The picture of the first screen.
@@ -126,7 +126,7 @@ def _as_it_is(shown: Shown) -> PageTable:
     keys = list(shown.rows[0]) if shown.rows else []
     numeric = {key for key in keys if all(_is_number(row[key]) for row in shown.rows)}
     columns = {
-        PageColumn(_HEADINGS.get(key, key.replace("_", " ")), key in numeric): partial(
+        Heading(_HEADINGS.get(key, key.replace("_", " ")), key in numeric): partial(
             cell, key
         )
         for key in keys
