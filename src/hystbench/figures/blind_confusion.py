@@ -6,8 +6,9 @@ import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
+from hystbench.compare.rows import read_rows
+from hystbench.errors import InputError
 from hystbench.figures import style
-from hystbench.figures.data import read_table
 
 _COLUMNS = ("kind", "hidden", "answered", "right", "cases")
 #: Answers that are no effect, at the right end.
@@ -27,7 +28,9 @@ def draw(*, table: Path) -> Figure:
     table : Path
         ``kind, hidden, answered, right, cases``.
     """
-    rows = read_table(table, _COLUMNS, "case of the blind contest")
+    rows = read_rows(table, _COLUMNS)
+    if not rows:
+        raise InputError(f"{table}: no case of the blind contest")
     lines = list(dict.fromkeys(row["hidden"] for row in rows))
     listed = [row["hidden"] for row in rows if row["kind"] == "single"]
     answers = {row["answered"] for row in rows}

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 
 from hystbench.compare.evidence import Run, read_run
-from hystbench.compare.rows import read_rows
 from hystbench.errors import InputError, refuse_unknown
 from hystbench.record import FloatArray, Record, load_record
 
@@ -27,22 +26,6 @@ class Output:
     run: Run
     y: FloatArray
     error: FloatArray
-
-
-def read_table(
-    table: Path, columns: tuple[str, ...], rows: str
-) -> list[dict[str, str]]:
-    """Read a CSV file that has these columns.
-
-    Raises
-    ------
-    InputError
-        If a column is missing, or there is no row; ``rows`` says what they are.
-    """
-    found = read_rows(table, columns)
-    if not found:
-        raise InputError(f"{table}: no {rows}")
-    return found
 
 
 def read_one(records: Sequence[Path], which: str) -> Record:
