@@ -5,8 +5,9 @@ import re
 import pytest
 
 from hystbench.dataset import load_dataset
-from hystbench.device_kinds import DEVICE_KINDS, causes, causes_of, impossible_in
-from hystbench.gap.effects import effects
+from hystbench.device_kinds import DEVICE_KINDS, causes
+from hystbench.gap.effects import effects, own
+from hystbench.gap.vocabulary import EVERYTHING
 from hystbench.quantities import QUANTITIES, Quantities, quantity_of
 from tests.messages import message
 from tests.test_dataset import HEADER, TIME, U, Y, csv_text
@@ -126,11 +127,15 @@ def test_a_dataset_need_not_tell_the_kind(write_dataset):
 
 
 def test_every_effect_has_its_causes():
-    assert set(causes()) == set(effects())
+    assert set(causes()) == {name for name, item in own().items() if not item.causes}
     for name, rows in causes().items():
-        assert causes_of(name) == tuple(rows)
+        assert effects()[name].causes_in(None) == tuple(rows)
         for kinds in rows.values():
             assert set(kinds) <= set(DEVICE_KINDS)
+
+
+def impossible_in(kind):
+    return EVERYTHING.in_device(kind).impossible
 
 
 def test_what_nothing_causes_cannot_be_there():
@@ -144,6 +149,6 @@ def test_what_nothing_causes_cannot_be_there():
 
 
 def test_a_ceramic_has_no_eddy_currents():
-    said = " ".join(causes_of("eddy-diffusion", "piezoelectric"))
+    said = " ".join(effects()["eddy-diffusion"].causes_in("piezoelectric"))
     assert "polarization" in said
     assert "eddy" not in said

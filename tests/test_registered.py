@@ -3,6 +3,7 @@
 import importlib.metadata
 import math
 import re
+import sys
 from dataclasses import MISSING, FrozenInstanceError
 
 import numpy as np
@@ -13,6 +14,7 @@ from hystbench.adaptive import make_filter
 from hystbench.errors import InputError
 from hystbench.figures import style
 from hystbench.filters.keys import keys_of
+from hystbench.gap.cache import code_digest
 from hystbench.record import Channel, Record
 from hystbench.registered import with_installed
 from hystbench.signals import make_signal
@@ -206,6 +208,25 @@ def test_an_entry_point_that_is_wrong_is_one_line(monkeypatch, point, said):
         with_installed(filters.FILTERS, "group", filters.AdaptiveFilter)
     assert "\n" not in str(told.value)
     assert f"entry point {point.name!r} of group (package:thing)" in str(told.value)
+
+
+def test_results_are_kept_for_what_is_installed(monkeypatch, tmp_path):
+    """Another version of a package, or of a file that its effect imports, is other."""
+    package = tmp_path / "added"
+    package.mkdir()
+    for name in ("__init__.py", "effect.py", "helper.py"):
+        (package / name).write_text("")
+    point = importlib.metadata.EntryPoint("x", "added.effect:X", "hystbench.effects")
+    points = importlib.metadata.EntryPoints([])
+    monkeypatch.setattr(importlib.metadata, "entry_points", lambda: points)
+    monkeypatch.syspath_prepend(tmp_path)
+    digest = code_digest.__wrapped__
+    without = digest()
+    points = importlib.metadata.EntryPoints([point])
+    before = digest()
+    (package / "helper.py").write_text("GAIN = 2.0\n")
+    assert len({without, before, digest()}) == 3
+    assert "added" not in sys.modules
 
 
 def test_what_is_installed_is_found_beside_what_is_here(monkeypatch):

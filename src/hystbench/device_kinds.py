@@ -1,8 +1,8 @@
 """Kinds of devices, and what causes each effect in each of them.
 
-The table is ``device_kinds.yaml``. An effect that nothing causes in a kind of device
-cannot be there: a search leaves it out. The causes that are left say what the effect
-is called there.
+The table is ``device_kinds.yaml``; an effect that is not in it says its causes itself.
+One that nothing causes in a kind of device cannot be there: a search leaves it out. The
+causes that are left say what the effect is called there.
 """
 
 from collections.abc import Mapping, Sequence
@@ -39,31 +39,6 @@ def causes() -> Mapping[str, Mapping[str, Sequence[DeviceKind]]]:
         }
         for effect, rows in table.items()
     }
-
-
-def causes_of(effect: str, kind: DeviceKind | None = None) -> tuple[str, ...]:
-    """Give what usually causes an effect, in a kind of device or in any.
-
-    Parameters
-    ----------
-    effect : str
-    kind : str, optional
-
-    Returns
-    -------
-    tuple of str
-        Empty where such a device cannot have it, and of an effect that the table does
-        not have.
-    """
-    rows = causes().get(effect, {}).items()
-    return tuple(cause for cause, kinds in rows if kind is None or kind in kinds)
-
-
-def impossible_in(kind: DeviceKind | None) -> tuple[str, ...]:
-    """Name the effects that a kind of device cannot have; none where it is unknown."""
-    if kind is None:
-        return ()
-    return tuple(effect for effect in causes() if not causes_of(effect, kind))
 
 
 def behaviour_of(effect: str) -> str:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
-from hystbench.blocks import registry
+from hystbench.blocks import blocks
 from hystbench.blocks.base import Block
 from hystbench.errors import InputError, nearest, placed, refuse_unknown, short
 from hystbench.record import Channel
@@ -122,12 +122,12 @@ _BLOCK = "one block and its parameters, such as '- gain: {value: 2.0}'"
 
 def _block(content: object, position: int) -> Block:
     where = f"chain: block {position + 1}: "
-    known = registry()
     if isinstance(content, str):
         content = {content: None}  # a block without parameters may stand as a word
     if not isinstance(content, dict) or not content:
         raise InputError(f"{where}{short(content)}; expected {_BLOCK}")
     first = next(iter(content))
+    known = blocks(first)
     refuse_unknown(first, known, f"{where}unknown block {short(first)}")
     if len(content) > 1:
         raise InputError(

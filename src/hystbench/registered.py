@@ -4,9 +4,14 @@ import importlib
 import inspect
 import pkgutil
 from collections.abc import Iterable, Mapping
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 from hystbench.errors import InputError, in_line
+
+SOURCES = (".py", ".so", ".yaml")
+"""Endings of the files on which what a package computes depends."""
 
 
 def classes_in(package: str, path: Iterable[str], kind: type) -> dict[str, Any]:
@@ -78,6 +83,29 @@ def with_installed(inside: Mapping[str, Any], group: str, kind: type) -> dict[st
             raise InputError(f"{place}: the name is taken; expected another")
         found[point.name] = item
     return found
+
+
+def files_of_installed(*groups: str) -> list[Path]:
+    """List the files of the packages that have entry points in some groups.
+
+    All of a package, as what an entry point names may import the rest of it. Nothing is
+    imported.
+    """
+    from importlib.metadata import entry_points  # late, as above
+
+    installed = entry_points()
+    tops = {
+        point.module.partition(".")[0]
+        for group in groups
+        for point in installed.select(group=group)
+    }
+    files: list[Path] = []
+    for spec in filter(None, map(find_spec, tops)):  # a lost one is told when loaded
+        for folder in spec.submodule_search_locations or ():
+            files += (x for x in Path(folder).rglob("*") if x.suffix in SOURCES)
+        if spec.submodule_search_locations is None and spec.origin is not None:
+            files.append(Path(spec.origin))
+    return sorted(files)
 
 
 def _is_one(item: object, kind: type) -> bool:

@@ -1,7 +1,8 @@
-"""A small dataset: a generalized play operator model whose drive lags."""
+"""A small dataset: a generalized play operator model whose drive does something."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -38,10 +39,17 @@ def write_tiny(folder: Path, lag_s: float = LAG_S, more: str = "") -> tuple[Path
 
     ``more`` are further lines of dataset.yaml.
     """
+    lag = {"drive-lag": {"time_constant_s": lag_s}}
+    drive = Model.from_mapping(BASE | {"chain": [lag]}, "drive")
+    return write_driven(folder, lambda u: drive.simulate(u, DT), more)
+
+
+def write_driven(
+    folder: Path, drive: Callable[[np.ndarray], np.ndarray], more: str = ""
+) -> tuple[Path, Path]:
+    """Write dataset and base; what the drive does to the input is not in the base."""
     rng = np.random.default_rng(5)
     base = Model.from_mapping(BASE, "base")
-    lag = {"drive-lag": {"time_constant_s": lag_s}}
-    plant = Model.from_mapping(BASE | {"chain": [lag, *BASE["chain"]]}, "plant")
     time = np.arange(SAMPLES) * DT
     inputs = {
         "slow": np.sin(2 * np.pi * 10 * time),
@@ -54,7 +62,7 @@ def write_tiny(folder: Path, lag_s: float = LAG_S, more: str = "") -> tuple[Path
     data.mkdir(parents=True)
     entries = []
     for name, u in inputs.items():
-        y = plant.simulate(u, DT) + NOISE * rng.standard_normal(SAMPLES)
+        y = base.simulate(drive(u), DT) + NOISE * rng.standard_normal(SAMPLES)
         rows = [f"{t:.9g},{a:.9g},{b:.9g}" for t, a, b in zip(time, u, y, strict=True)]
         text = "\n".join(["time_s,current_A,displacement_um", *rows])
         (data / f"{name}.csv").write_text(text + "\n")

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -14,6 +17,7 @@ import yaml
 from hystbench.challenge.contest.plan import plan
 from tests.conftest import table as rows
 from tests.docs.pages import ROOT
+from tests.gap.tiny import write_driven
 
 from .conftest import Workflow, small_config
 
@@ -27,6 +31,7 @@ FIGURES = [
     for name in ("figure-07-order", "learning-curves", "step-edges")
 ]
 TARGETS = ["tables", *FIGURES]
+CYLINDER = {"dataset": "cylinder/dataset", "model": "cylinder/base.yaml"}
 
 
 def merged(one: dict, other: dict) -> dict:
@@ -69,6 +74,13 @@ def configured(tmp_path_factory) -> Workflow:
     config["blind"]["solvers"] = {"silent": solvers["silent"]}
     config["blind"]["only"] = ["saturation"]
     workflow = Workflow(tmp_path_factory.mktemp("extended"), package)
+    # A cylinder that loses 15 % of its force where it pulls.
+    write_driven(
+        workflow.folder / "cylinder",
+        lambda u: np.where(u < 0, 0.85 * u, u),
+        "device: {kind: hydraulic}\n",
+    )
+    config["gap"]["datasets"] = [CYLINDER]
     workflow.configure(config)
     return workflow
 
@@ -134,6 +146,68 @@ def test_the_solver_enters_the_contest_and_names_nothing(configured):
     )
 
 
+@pytest.fixture(scope="module")
+def searched(configured) -> Workflow:
+    """The folder in which the gap of the cylinder was searched."""
+    assert configured.run("results/gap/tiny/report.html")
+    return configured
+
+
+def test_the_effect_is_named_with_its_causes_in_such_a_device(searched):
+    folder = searched.folder / "results" / "gap" / "tiny"
+    gap = json.loads((folder / "gap.json").read_text())
+    assert gap["verdict"] == "named"
+    (effect,) = gap["effects"]
+    assert effect["name"] == "unequal-gain"
+    assert effect["behaviour"] == "unequal gain"
+    assert effect["causes"] == ["a cylinder with a rod on one side"]
+    share = effect["parameters"]["share"]
+    assert share["value"] == pytest.approx(0.15, abs=3 * share["standard_error"])
+    assert share["standard_error"] < 0.01
+    assert gap["ranking"][0]["name"] == "unequal-gain"
+    assert gap["gap"]["explained"] > 0.99
+    chain = yaml.safe_load((folder / "model.yaml").read_text())["chain"]
+    assert [next(iter(item)) for item in chain] == ["unequal-gain", "gpi"]
+    page = (folder / "report.html").read_text()
+    said = "Unequal gain: in a device that is hydraulic a cylinder with a rod"
+    assert said in page
+
+
+def test_an_edited_effect_is_searched_again(searched):
+    target = "results/gap/tiny/gap.json"
+    assert searched.would_run(target) == {}
+    file = searched.packages / "extra" / "unequal_gain_effect.py"
+    file.write_text(file.read_text() + "\n# edited\n")
+    planned = searched.would_run(target, "--rerun-triggers", "mtime")
+    assert set(planned) == {"gap_decide", "gap_show"}
+
+
+def test_all_of_the_package_keeps_the_contracts(configured):
+    """Those that hystbench's own filters, waveforms, blocks and effects keep."""
+    path = map(str, filter(None, (configured.packages, os.environ.get("PYTHONPATH"))))
+    contracts = ("test_registered.py", "blocks", "gap/effects/test_effects.py")
+    ran = subprocess.run(
+        [
+            *(sys.executable, "-m", "pytest", "-v", "-p", "no:cacheprovider"),
+            *("-k", "power or triangle or unequal"),
+            *(f"tests/{name}" for name in contracts),
+        ],
+        cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(path)},
+        capture_output=True,
+        text=True,
+    )
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    for contract in (
+        "test_a_filter_is_the_lms_of_its_regressor",
+        "test_a_waveform_makes_its_example[triangle]",
+        "test_it_is_causal[unequal-gain]",
+        "test_a_variant_builds_a_model_that_runs",
+        "test_bounds_come_from_the_records_alone[unequal-gain]",
+    ):
+        assert contract in ran.stdout
+
+
 def test_an_edited_file_of_the_package_runs_its_filter_again(extended):
     file = extended.packages / "extra" / "power.py"
     assert extended.would_run(*TARGETS) == {}
@@ -161,6 +235,11 @@ def test_an_edited_file_of_the_package_runs_its_filter_again(extended):
             "excitations",
             {"other": {"triangel": {"frequency_hz": 50}}},
             "unknown kind 'triangel'; did you mean 'triangle'?",
+        ),
+        (
+            "gap",
+            {"datasets": [{**CYLINDER, "without": ["unequal-gian"]}]},
+            "no effect 'unequal-gian'; did you mean 'unequal-gain'?",
         ),
     ],
 )

@@ -13,6 +13,7 @@ import hystbench
 from hystbench.errors import InputError
 from hystbench.figures import module_of
 from hystbench.filters import filter_class, registry
+from hystbench.registered import with_installed
 from hystbench.settings import read_settings
 from hystbench.waveforms import waveforms
 from hystbench.written import check_replaceable, claim_logs
@@ -49,6 +50,14 @@ try:
                     f"{source}: newer than the compiled kernels; run 'make'"
                 )
     SETTINGS = read_settings(config, SCHEMA, PLACE)
+    # What installed packages add, by the package of ours to which they add it.
+    INSTALLED = {
+        package: list(with_installed({}, group, object).values())
+        for package, group in (
+            ("hystbench.blocks", "hystbench.blocks"),
+            ("hystbench.gap.effects", "hystbench.effects"),
+        )
+    }
     # Snakemake itself would name no rule and no nearest name.
     for argument in sys.argv[1:]:
         SETTINGS.check_target(argument)
@@ -131,6 +140,9 @@ def code(*modules):
         files.extend(sorted(PACKAGE.glob("compare/*.j2")))
     if "hystbench.kernels" in names:
         files.extend(KERNELS)
+    for package, added in INSTALLED.items():
+        if package in names:
+            files.extend(files_outside(added))
     if "hystbench.waveforms" in names:
         kinds = [next(iter(each)) for each in config["excitations"].values()]
         files.extend(files_outside(waveforms(kind)[kind] for kind in kinds))

@@ -1,16 +1,16 @@
 """The vocabulary of blocks as a table, for docs/model-files.md."""
 
 from hystbench import files
-from hystbench.blocks import registry
+from hystbench.blocks import own
 from hystbench.blocks.parameter import HUGE, Parameter
 
 COLUMNS = ("block", "place", "parameter", "unit", "values", "meaning")
 
 
 def markdown_table() -> str:
-    """Write every block and parameter as a Markdown table, one parameter a row."""
+    """Write hystbench's own blocks as a Markdown table, one parameter a row."""
     rows = []
-    for name, block in registry().items():
+    for name, block in own().items():
         first = [f"`{name}`", str(block.place)]
         for key, about in block.parameters().items():
             values = _values(about)

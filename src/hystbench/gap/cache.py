@@ -3,9 +3,9 @@
 An engineer who rejects a name runs the search again with other effects. The records
 are the same, and so is the simulator that was identified from them; most effects were
 fitted beside it already. Each such result is kept under a digest of all that it is
-made of: the records, the model, the score, and hystbench's own sources. So nothing is
-ever looked up that another computation would give. The folder is a cache: who deletes
-it loses time alone.
+made of: the records, the model, the score, and the sources of hystbench and of packages
+that add blocks or effects to it. So nothing is ever looked up that another computation
+would give. The folder is a cache: who deletes it loses time alone.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from hystbench.blocks.kept_outputs import folder_of_user
 from hystbench.files import update_with
 from hystbench.kept_files import KeptFiles
 from hystbench.record import Record
+from hystbench.registered import SOURCES, files_of_installed
 
 Result = TypeVar("Result")
 
@@ -139,11 +140,16 @@ def records_digest(records: Sequence[Record]) -> str:
 
 @cache
 def code_digest() -> str:
-    """Digest of hystbench's sources and of the libraries that it computes with."""
+    """Digest of all sources that results depend on, and of the libraries' versions."""
     whole = blake2b(sys.version.encode(), digest_size=16)
     top = Path(__file__).parents[1]
-    files = (item for item in top.rglob("*") if item.suffix in (".py", ".so", ".yaml"))
-    update_with(whole, {str(file.relative_to(top)): file for file in sorted(files)})
+    own = {
+        str(file.relative_to(top)): file
+        for file in sorted(top.rglob("*"))
+        if file.suffix in SOURCES
+    }
+    added = files_of_installed("hystbench.blocks", "hystbench.effects")
+    update_with(whole, own | {str(file): file for file in added})
     for name in LIBRARIES:
         whole.update(f"{name} {metadata.version(name)}\n".encode())
     return whole.hexdigest()

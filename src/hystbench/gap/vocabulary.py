@@ -11,13 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from hystbench.device_kinds import (
-    BEHAVIOURS,
-    DeviceKind,
-    behaviour_of,
-    causes_of,
-    impossible_in,
-)
+from hystbench.device_kinds import BEHAVIOURS, DeviceKind, behaviour_of
 from hystbench.errors import InputError, nearest
 from hystbench.gap.progress import Say
 from hystbench.quantities import Quantities
@@ -78,8 +72,16 @@ class Vocabulary:
     @property
     def impossible(self) -> tuple[str, ...]:
         """Effects that the kind of device leaves out, which nobody named."""
-        named = {*self.without, *self.fixed}
-        return tuple(name for name in impossible_in(self.kind) if name not in named)
+        if self.kind is None:
+            return ()
+        from hystbench.gap.effects import effects  # late: as above
+
+        return tuple(
+            name
+            for name, effect in effects().items()
+            if name not in {*self.without, *self.fixed}
+            and not effect.possible_in(self.kind)
+        )
 
     @property
     def offered(self) -> tuple[str, ...]:
@@ -186,14 +188,16 @@ def with_device(
     return told
 
 
-def _with_causes(effects: list[dict[str, Any]], kind: DeviceKind | None) -> list[Any]:
+def _with_causes(named: list[dict[str, Any]], kind: DeviceKind | None) -> list[Any]:
+    from hystbench.gap.effects import effects  # late: as above
+
     return [
         item
         | {
             "behaviour": behaviour_of(item["name"]),
-            "causes": list(causes_of(item["name"], kind)),
+            "causes": list(effects()[item["name"]].causes_in(kind)),
         }
-        for item in effects
+        for item in named
     ]
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hystbench.blocks import registry
+from hystbench.blocks import block_class
 from hystbench.model import Model
 from hystbench.operators import play
 from hystbench.record import Record
@@ -44,15 +44,14 @@ def loop_of_plays(records: Sequence[Record]) -> Model:
     gain = max(abs(sum(weights)), 1e-3 * reach)
     shares = np.array(weights) / gain
     shares[0] -= 1.0  # the block has the input itself beside its operators
-    blocks = registry()
     return Model(
         "loop of play operators",
         records[0].input,
         records[0].output,
         (
-            blocks["prandtl-ishlinskii"].from_mapping(
+            block_class("prandtl-ishlinskii").from_mapping(
                 {"thresholds": thresholds.tolist(), "weights": shares.tolist()}
             ),
-            blocks["gain"].from_mapping({"value": gain, "offset": float(offset)}),
+            block_class("gain").from_mapping({"value": gain, "offset": float(offset)}),
         ),
     )

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from hystbench.blocks import registry
+from hystbench.blocks import block_class
 from hystbench.gap.fitting.score import record_weight
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.scored_samples import ScoredSamples
@@ -148,7 +148,7 @@ def _hysteresis(state: ModelState) -> list[Shape]:
     if place is None:
         return []
     block = simulation.chain[place]
-    gain = registry()["gain"].from_mapping({"value": 1.0})
+    gain = block_class("gain").from_mapping({"value": 1.0})
     straight = simulation.run(
         (gain, *simulation.chain[place + 1 :]), simulation.before[place]
     )

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from hystbench.blocks import registry
+from hystbench.blocks import block_class
 from hystbench.blocks.attached import attached
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock
@@ -25,7 +25,7 @@ def _chain(
     task: Task, effect: str, place: int, values: Mapping[str, float], form: str = ""
 ) -> tuple[Block, ...]:
     chain = list(task.model.chain)
-    block = registry()[effect]
+    block = block_class(effect)
     given: dict[str, object] = {
         key: (value,) if key in _LISTS else value for key, value in values.items()
     }
@@ -65,7 +65,7 @@ def search(
 
     names = list(searched)
     items = list(searched.values())
-    before = _before(task, place, registry()[effect])
+    before = _before(task, place, block_class(effect))
 
     def values(x: FloatArray) -> dict[str, float]:
         return {

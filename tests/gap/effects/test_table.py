@@ -2,7 +2,7 @@
 
 from hystbench.blocks import registry
 from hystbench.files import markdown_table
-from hystbench.gap.effects import effects
+from hystbench.gap.effects import own
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.law import Passed
 from tests.conftest import ROOT
@@ -11,10 +11,10 @@ from tests.conftest import ROOT
 def places(effect):
     """Give where an effect is tried: in a chain; before, inside or behind a host."""
     inside = any(
-        getattr(type(effect), name) is not getattr(Effect, name)
+        getattr(effect, name) is not getattr(Effect, name)
         for name in ("in_mechanism", "stored")
     )
-    around = [law.place for law in effect.around(Passed(1.0, 1.0, 1e-3))]
+    around = [law.place for law in effect().around(Passed(1.0, 1.0, 1e-3))]
     found = [effect.place, *(["inside"] if inside else []), *around]
     return ", ".join(dict.fromkeys(found))
 
@@ -22,10 +22,10 @@ def places(effect):
 def table_of_effects():
     """Give each effect with where it is tried, what it is, and its blocks."""
     rows = []
-    for name, effect in effects().items():
+    for name, effect in own().items():
         known = [x for x in dict.fromkeys((name, *effect.laws)) if x in registry()]
         blocks = ", ".join(f"`{block}`" for block in known)
-        said = type(effect).__doc__.splitlines()[0].rstrip(".")
+        said = effect.__doc__.splitlines()[0].rstrip(".")
         rows.append([f"`{name}`", places(effect), said, blocks])
     return markdown_table(["effect", "places", "what is tried", "blocks"], rows)
 

@@ -13,6 +13,11 @@ from hystbench.gap.effects.effect import Effect
 from hystbench.registered import classes_in, with_installed
 
 
+def own() -> dict[str, type[Effect]]:
+    """Give every effect class of hystbench itself, by name."""
+    return classes_in(__name__, __path__, Effect)
+
+
 @cache
 def effects() -> dict[str, Effect]:
     """Give one of each effect, by name.
@@ -22,8 +27,7 @@ def effects() -> dict[str, Effect]:
     InputError
         If an installed package offers what is no effect, or a name that is taken.
     """
-    inside = classes_in(__name__, __path__, Effect)
-    found = with_installed(inside, "hystbench.effects", Effect)
+    found = with_installed(own(), "hystbench.effects", Effect)
     return {name: found[name]() for name in sorted(found)}
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import ClassVar
 
-from hystbench.blocks import registry
+from hystbench.blocks import block_class
 from hystbench.blocks.base import Block
 from hystbench.blocks.exponential_curve import ExponentialCurve
 from hystbench.gap.effects.effect import Effect
@@ -84,7 +84,7 @@ class Asymmetry(Effect):
 
     def _bias(self, simulation: Simulation, start: int) -> Variant:
         """A constant added to the field; the sensor is set to zero with it on."""
-        gain = registry()["gain"]
+        gain = block_class("gain")
         behind = simulation.behind_hysteresis
         loop, rest = simulation.chain[start:behind], simulation.chain[behind:]
 

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
-from hystbench.blocks import registry
-from hystbench.blocks.base import Block
+from hystbench.blocks import block_class
+from hystbench.blocks.base import Block, Place
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.wrapping import WrappingBlock
+from hystbench.device_kinds import DEVICE_KINDS, DeviceKind, causes
+from hystbench.errors import refuse_unknown
 from hystbench.gap.effects.law import Changed, Filled, Law, Moved, Passed
 from hystbench.gap.effects.places import INSIDE, places_between_halves
 from hystbench.gap.effects.variant import Beside, Refused, Values, Variant, in_operation
@@ -29,9 +31,12 @@ class Effect(ABC):
     """One physical effect of the vocabulary."""
 
     name: ClassVar[str]
-    place: ClassVar[str]
+    place: ClassVar[Place]
     shows: ClassVar[ViewKind]
     """View in which an engineer looks for it first."""
+    causes: ClassVar[Mapping[str, Sequence[DeviceKind]]] = {}
+    """What usually causes it, and in which kinds of devices; where none are given, its
+    rows of ``device_kinds.yaml``."""
     offsets: ClassVar[Mapping[str, tuple[tuple[str, str], ...]]] = {}
     """By form, where its blocks are plain gains: the name and the unit that the offset
     of each has as a number of the effect."""
@@ -47,6 +52,40 @@ class Effect(ABC):
     special: ClassVar[bool] = False
     """Whether it is offered only where its cause can be, as a weight where something
     turns: of a tie with a law that any device may have it is the likelier."""
+
+    def __init_subclass__(cls) -> None:
+        """Refuse words that nobody would find.
+
+        Raises
+        ------
+        InputError
+            If a place, a view or a kind of device is none.
+        """
+        super().__init_subclass__()
+        said: list[tuple[str, str, tuple[str, ...]]] = []
+        if "place" in vars(cls):
+            said.append(("place", cls.place, get_args(Place)))
+        if "shows" in vars(cls):
+            said.append(("shows", cls.shows, get_args(ViewKind)))
+        for kinds in cls.causes.values():
+            said += [("causes", kind, DEVICE_KINDS) for kind in kinds]
+        for key, word, known in said:
+            refuse_unknown(word, known, f"{cls.__name__}: {key}: {word!r}")
+
+    def causes_in(self, kind: DeviceKind | None) -> tuple[str, ...]:
+        """Give what usually causes it in a kind of device, or in any.
+
+        Returns
+        -------
+        tuple of str
+            Empty where such a device cannot have it, and where no cause is known.
+        """
+        rows = (self.causes or causes().get(self.name, {})).items()
+        return tuple(cause for cause, kinds in rows if kind is None or kind in kinds)
+
+    def possible_in(self, kind: DeviceKind | None) -> bool:
+        """Tell whether a device of a kind can have it; any can if no cause is known."""
+        return bool(self.causes_in(kind)) or not self.causes_in(None)
 
     @abstractmethod
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
@@ -97,7 +136,7 @@ class Effect(ABC):
         A block that wraps the hysteresis changes the chain from the hysteresis on. The
         block has the effect's name, or that of another law of it.
         """
-        block = registry()[law or self.name]
+        block = block_class(law or self.name)
         start = place
         if issubclass(block, WrappingBlock) and simulation.hysteresis is not None:
             start = simulation.hysteresis
@@ -202,7 +241,7 @@ class Effect(ABC):
         **given
             Other parameters.
         """
-        block = registry()[self.name].from_mapping({name: 2 * passed.step, **given})
+        block = block_class(self.name).from_mapping({name: 2 * passed.step, **given})
         return Law("", block, (name,), place, ranges={name: (passed.step, np.inf)})
 
     def curve(
@@ -223,7 +262,7 @@ class Effect(ABC):
         **start : float
             Those that are, where their fit starts.
         """
-        block = registry()[self.name].from_mapping({**(also or {}), **start})
+        block = block_class(self.name).from_mapping({**(also or {}), **start})
         return Law(form, block, tuple(start), place)
 
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from hystbench.blocks import registry
+from hystbench.blocks import block_class
 from hystbench.blocks.base import Block
 from hystbench.blocks.exponential_stiffness import ExponentialStiffness
 from hystbench.blocks.stiffness import Stiffness
@@ -72,7 +72,7 @@ class StiffnessHardening(Effect):
         rest = simulation.chain[k + 1 :]
 
         def build(given: Values) -> tuple[Block, ...]:
-            own = registry()[self.name].from_mapping({**mode, **given})
+            own = block_class(self.name).from_mapping({**mode, **given})
             return (*before, own, *rest)
 
         # What moves the spring: the mode's own input, or what it gives.
@@ -156,6 +156,6 @@ def _left(block: TransferFunction, down: np.ndarray) -> Block:
     """Give a transfer function's numerator over what is left of its denominator."""
     if len(down) == 1:
         static = block.numerator[-1] / float(down[0])
-        return registry()["gain"].from_mapping({"value": static})
+        return block_class("gain").from_mapping({"value": static})
     given = block.to_mapping() | {"denominator": down.tolist()}
-    return registry()[TRANSFER_FUNCTION].from_mapping(given)
+    return block_class(TRANSFER_FUNCTION).from_mapping(given)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from hystbench.blocks import registry
+from hystbench.blocks import block_class
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import SETTINGS
 from hystbench.gap.effects import effects
@@ -106,5 +106,5 @@ def beside_blocks(state: ModelState) -> list[Block]:
     each = state.by_signal(state.beside_amplitudes)
     for (beside, values), rows in zip(state.beside, each, strict=True):
         described = effects()[beside.effect].describe(values, rows)
-        blocks.append(registry()[beside.effect].from_mapping(described))
+        blocks.append(block_class(beside.effect).from_mapping(described))
     return blocks

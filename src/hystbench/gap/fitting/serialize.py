@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.blocks import registry
+from hystbench.blocks import block_class
 from hystbench.blocks.base import Block
 from hystbench.blocks.simulator import Simulator
 from hystbench.gap.cache import Result, records_digest, remembered
@@ -175,7 +175,7 @@ class Restorer:
 
     def _block(self, content: Mapping[str, Any]) -> Block:
         ((name, values),) = content.items()
-        block = registry()[name].from_mapping(values)
+        block = block_class(name).from_mapping(values)
         kept = _block_mapping(block)
         own = (item for item in self._own if _block_mapping(item) == kept)
         return next(own, block)
