@@ -110,7 +110,7 @@ COMPILE := pip-compile --quiet --generate-hashes --allow-unsafe --strip-extras \
   --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header
 requirements:
 	$(COMPILE) --extra dev --output-file requirements.txt pyproject.toml
-	for group in bench slurm; do $(COMPILE) --extra $$group \
+	for group in bench crate slurm; do $(COMPILE) --extra $$group \
 	  --constraint requirements.txt --output-file requirements-$$group.txt pyproject.toml || exit 1; done
 	echo 'mkdocs>=1.6,<2' | $(COMPILE) --output-file requirements-site.txt -
 

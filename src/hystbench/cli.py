@@ -27,6 +27,7 @@ COMMANDS = {
     "invert": "Find the input that makes a model's output follow a reference.",
     "hide": "Make records in which a plant hides effects.",
     "rival": "Run a rival of the gap's solver on a dataset.",
+    "crate": "Pack results as an RO-Crate, for an archive.",
     "docs": "Fill the tables of README.md and docs from results.",
     "clean": "Remove what hystbench wrote, and nothing else.",
 }
