@@ -34,6 +34,7 @@ from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.judging.unnamed import Unnamed, what_is_unnamed
 from hystbench.gap.judging.verdict import Left, Verdict, judge, what_is_left, what_mends
 from hystbench.gap.locate import curves, locate
+from hystbench.gap.locate.level import beside_level
 from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.ladder import contributions, rungs
 from hystbench.gap.progress import Say, silent
@@ -115,7 +116,9 @@ def judge_and_tell(
     contributed = contributions(ladder) if found.verdict == "named" else ()
     where = locate(before, floor, contributed)
     say(where[0].sentence)
-    say(f"{found.verdict}: {found.reason}")
+    moved = beside_level(where, [item.effect for item in state.added])
+    reason = "; ".join(part for part in (found.reason, moved) if part)
+    say(f"{found.verdict}: {reason}")
     experiment, why_none = tell_apart(base, named, start.records, floor.rms, limits)
     unit = start.records[0].output.unit
     content: dict[str, Any] = {
@@ -123,7 +126,7 @@ def judge_and_tell(
         "model": base.name,
         "unit": unit,
         "verdict": found.verdict,
-        "reason": found.reason,
+        "reason": reason,
         "effects": _effects(named, model, left, floor, found.trust),
         "fit": _fit(start, state, floor)
         | {

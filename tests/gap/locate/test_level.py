@@ -9,8 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hystbench.gap.effects import effects
 from hystbench.gap.locate import curves, locate
-from hystbench.gap.locate.level import WORDS, picture_of, take_levels
+from hystbench.gap.locate.level import (
+    MOVES,
+    WORDS,
+    beside_level,
+    picture_of,
+    take_levels,
+)
 from hystbench.gap.locate.samples import take_samples
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.records.floor import noise_floor
@@ -161,6 +168,22 @@ def test_a_mode_that_stays_is_no_evidence(oscillators):
     views = locate(compared, noise_floor(compared))
     (view,) = (item for item in views if item.view == "level")
     assert view.p_value > 0.05
+    assert beside_level(views, ["friction"]) == ""
+
+
+def test_named_effects_are_held_against_how_modes_move(oscillators):
+    compared = records(oscillators["hysteresis"])
+    views = locate(compared, noise_floor(compared))
+    told = beside_level(views, ["sensor-lag", "hysteretic-force"])
+    assert "micro-slip" in told
+    assert told.endswith(": hysteretic-force does that")
+    assert beside_level(views, ["drag"]).endswith(": no named effect does that")
+    assert beside_level(views, []) == ""
+
+
+def test_what_moves_a_mode_is_in_the_vocabulary():
+    assert {*MOVES} == {*WORDS} - {"none"}
+    assert {name for names in MOVES.values() for name in names} <= {*effects()}
 
 
 def test_the_picture_has_axes_with_units(oscillators):

@@ -31,7 +31,7 @@ from hystbench.gap.locate.mode import (
 )
 from hystbench.gap.locate.picture import Axis, Panel, ViewPicture, series
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import View
+from hystbench.gap.locate.view import SIGNIFICANT, View
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.quantities import quantity_of
 from hystbench.record import FloatArray
@@ -48,6 +48,22 @@ WORDS = {
     "none": "a linear mode, as far as these levels show",
 }
 """Each class of what is missing, in words."""
+
+MOVES = {
+    "hardening": ("stiffness-hardening", "stop"),
+    "softening": ("stiffness-hardening", "hysteretic-force", "gravity"),
+    "clearance": ("stop", "slider-with-gap", "backlash", "dead-zone"),
+    "micro-slip or hysteresis": (
+        *("hysteretic-force", "friction", "slider-with-gap", "hysteresis"),
+    ),
+    "Coulomb friction": ("friction", "hysteretic-force", "slider-with-gap"),
+    "damping that grows with speed": ("drag",),
+    "a static curve before or behind": (
+        *("saturation", "asymmetry", "sensor-nonlinearity"),
+        *("drive-saturation", "dead-zone"),
+    ),
+}
+"""Effects that move a mode as a class says."""
 
 SURE = 3.0
 """Standard errors by which a number has to move."""
@@ -269,7 +285,34 @@ def level(samples: ViewSamples) -> View | None:
         ),
         saved=saved(samples, explained, freedom),
         pictures=(picture_of(moving, unit),),
+        kinds=tuple(dict.fromkeys(each.kind for each in moving)),
     )
+
+
+def beside_level(views: Sequence[View], names: Sequence[str]) -> str:
+    """Hold the named effects against how modes move with the level.
+
+    That is seen without any of their laws.
+
+    Parameters
+    ----------
+    views : sequence of View
+    names : sequence of str
+        The named effects.
+
+    Returns
+    -------
+    str
+        Empty where no mode moves, or nothing was named.
+    """
+    found = [view for view in views if view.kinds and view.p_value < SIGNIFICANT]
+    kinds = [kind for view in found for kind in view.kinds if kind in MOVES]
+    told = []
+    for kind in kinds if names else []:
+        fit = [name for name in names if name in MOVES[kind]]
+        does = f"{' and '.join(fit)} does that" if fit else "no named effect does that"
+        told.append(f"a mode moves with the level as of {WORDS[kind]}: {does}")
+    return "; ".join(told)
 
 
 def picture_of(moving: Sequence[Moving], unit: str) -> ViewPicture:

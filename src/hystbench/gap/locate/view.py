@@ -43,6 +43,8 @@ class View:
     named : bool
         Whether it shows what a named effect adds.
     pictures : tuple of ViewPicture
+    kinds : tuple of str
+        Of the view by level: how modes move with it.
     """
 
     view: ViewKind
@@ -56,6 +58,7 @@ class View:
     saved: float
     named: bool = False
     pictures: tuple[ViewPicture, ...] = ()
+    kinds: tuple[str, ...] = ()
 
     def to_mapping(self) -> dict[str, Any]:
         """Give what gap.json holds under ``where``."""
