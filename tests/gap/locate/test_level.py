@@ -176,8 +176,8 @@ def test_named_effects_are_held_against_how_modes_move(oscillators):
     views = locate(compared, noise_floor(compared))
     told = beside_level(views, ["sensor-lag", "hysteretic-force"])
     assert "micro-slip" in told
-    assert told.endswith(": hysteretic-force does that")
-    assert beside_level(views, ["drag"]).endswith(": no named effect does that")
+    assert told.endswith(": hysteretic-force does so")
+    assert beside_level(views, ["drag"]).endswith(": no named effect does so")
     assert beside_level(views, []) == ""
 
 

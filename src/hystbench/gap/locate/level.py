@@ -310,8 +310,9 @@ def beside_level(views: Sequence[View], names: Sequence[str]) -> str:
     told = []
     for kind in kinds if names else []:
         fit = [name for name in names if name in MOVES[kind]]
-        does = f"{' and '.join(fit)} does that" if fit else "no named effect does that"
-        told.append(f"a mode moves with the level as of {WORDS[kind]}: {does}")
+        who = " and ".join(fit) or "no named effect"
+        does = "do" if len(fit) > 1 else "does"
+        told.append(f"a mode moves with the level as of {WORDS[kind]}: {who} {does} so")
     return "; ".join(told)
 
 
