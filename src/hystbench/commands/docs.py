@@ -31,6 +31,7 @@ MAKERS = (
     ("results/benchmarks/slurm", "make test-slurm"),
     ("results/benchmarks/", "make bench"),
     ("results/blind/elsewhere", "hystbench job blind-elsewhere"),
+    ("docs/left-out-rounds", "hystbench job blind-rounds"),
     ("results/blind/", "snakemake blind"),
     ("results/blind-mechanisms/", "snakemake blind with the set mechanisms"),
     ("results/gap/", "snakemake gap"),
