@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from hystbench import files
+from hystbench.challenge.kept import GROUPS
 from hystbench.challenge.plant.effects import IN_ACTUATOR
 from hystbench.challenge.plant.inside import IN_MACHINE
 from hystbench.challenge.plant.kind import Range
@@ -24,15 +25,15 @@ def markdown_table() -> str:
     """Write every effect, form and parameter as a Markdown table.
 
     A range with a plus and minus sign gets its sign by a coin; one with a star is not
-    multiplied by ``spread``.
+    multiplied by ``spread``. A number in brackets is the group with which it is left
+    out.
     """
     rows = []
     for kind in IN_ACTUATOR.values():
-        use = "" if kind.use == "vocabulary" else f" ({kind.use})"
-        first = [f"`{kind.name}`{use}", kind.place]
+        first = [_named(f"`{kind.name}`", kind.name), kind.place]
         views = ", ".join(kind.views)
         for form, about in kind.forms.items():
-            second = form if about.use == "all" else f"{form} ({about.use})"
+            second = _named(form, f"{kind.name}: {form}")
             for name, item in about.ranges.items() or [("", None)]:
                 cells = [*first, second, "", "", "", "", views]
                 if item is not None:
@@ -53,15 +54,22 @@ def markdown_table_of_machines() -> str:
     """Write every effect of machines, its families, forms and shares as a table."""
     rows = []
     for kind in IN_MACHINE.values():
-        first = [f"`{kind.name}`", kind.place, ", ".join(kind.families)]
+        name = _named(f"`{kind.name}`", kind.name)
+        first = [name, kind.place, ", ".join(kind.families)]
         for form, law in kind.forms.items():
-            second = form
+            second = _named(form, f"{kind.name}: {form}")
             for name, item in law.ranges.items():
                 sign = "±" if item.sign else ""
                 span = f"{sign}{item.low:g} to {item.high:g} {item.unit}"
                 rows.append([*first, second, f"`{name}`", span, f"{item.most:g}"])
                 first, second = ["", "", ""], ""
     return files.markdown_table(COLUMNS_OF_MACHINES, rows) + "\n"
+
+
+def _named(shown: str, name: str) -> str:
+    """Add the group with which it is left out, if there is one."""
+    within = [n for n, item in GROUPS.items() if name in item.unlisted + item.forms]
+    return f"{shown} ({within[0]})" if within else shown
 
 
 def _bounds(item: Range) -> str:

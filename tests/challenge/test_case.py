@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from hystbench.challenge.case import make_case
 from hystbench.challenge.excitation import CAMPAIGNS, PERIOD
+from hystbench.challenge.kept import GROUPS
 from hystbench.challenge.plant.actuator import Actuator, KnownMode
 from hystbench.challenge.plant.effects import APART, IN_ACTUATOR, UNLISTED, VOCABULARY
 from hystbench.challenge.plant.hysteresis import draw as draw_loop
@@ -46,10 +47,8 @@ def test_the_vocabulary_is_that_of_the_model_files():
     }
 
 
-def test_the_unlisted_are_halved_and_share_no_name():
-    uses = [kind.use for kind in UNLISTED.values()]
-    assert len(uses) >= 8
-    assert uses.count("development") == uses.count("transfer") == len(uses) / 2
+def test_the_unlisted_share_no_name_with_the_vocabulary():
+    assert len(UNLISTED) >= 8
     assert not set(UNLISTED) & set(VOCABULARY)
 
 
@@ -324,10 +323,12 @@ def test_drawn_effects_may_meet(seed, kind):
 
 
 @given(st.integers(0, 10**6))
-def test_half_of_the_unlisted_stays_unseen(seed):
-    for use in ("development", "transfer"):
-        spec = draw_spec(seed, "unlisted", "gpi", 20.0, unlisted=use)
-        assert IN_ACTUATOR[spec.effects[0]].use == use
+def test_what_is_left_out_is_drawn_nowhere_else(seed):
+    for kept in GROUPS:
+        for of_kept in (False, True):
+            about = {"kept": kept, "of_kept": of_kept}
+            spec = draw_spec(seed, "unlisted", "gpi", 20.0, **about)
+            assert (spec.effects[0] in GROUPS[kept].unlisted) == of_kept
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.challenge.kept import GROUPS
 from hystbench.challenge.machine import draw_machine
 from hystbench.challenge.make import make
 from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES, hidden_in
@@ -15,6 +16,8 @@ from hystbench.errors import InputError
 
 def case_of(family, *effects, seed=7, **more):
     kind = {0: "none", 1: "single", 2: "pair"}[len(effects)]
+    if not all(IN_MACHINE[name].listed for name in effects):
+        kind = "unlisted"
     return make(CaseSpec(seed, kind, effects, family, 20.0, **more))
 
 
@@ -73,12 +76,21 @@ def test_a_mass_with_nothing_hidden_is_the_linear_equation_but_for_noise(seed):
         assert least < rms(left) < np.hypot(1.1 * case.truth["noise_rms"], own)
 
 
-PAIRS = [(family, name) for family in MACHINES for name in hidden_in(family)]
+PAIRS = [
+    (family, name, of_kept)
+    for family in MACHINES
+    for name in (*hidden_in(family), *hidden_in(family, listed=False))
+    for of_kept in (False, True)
+    # where it has no form of its own for the group, the case is the same
+    if not of_kept
+    or GROUPS[1].allowed(IN_MACHINE[name], True)[0]
+    not in GROUPS[1].allowed(IN_MACHINE[name], False)
+]
 
 
-@pytest.mark.parametrize(("family", "name"), PAIRS)
-def test_every_effect_shows_in_every_family(family, name):
-    truth = case_of(family, name, seed=3).truth
+@pytest.mark.parametrize(("family", "name", "of_kept"), PAIRS)
+def test_every_effect_shows_in_every_family(family, name, of_kept):
+    truth = case_of(family, name, seed=3, kept=1, of_kept=of_kept).truth
     (effect,) = truth["effects"]
     assert (effect["name"], effect["place"]) == (name, IN_MACHINE[name].place)
     assert effect["ratio_db"] == pytest.approx(20.0, abs=0.1)
@@ -147,4 +159,4 @@ def test_effects_of_actuators_are_refused_in_machines():
     with pytest.raises(InputError, match="unknown in the family 'tank'"):
         case_of("tank", "friction")
     with pytest.raises(InputError, match="of the family 'tank'"):
-        draw_spec(1, "unlisted", "tank", 20.0)
+        draw_spec(1, "triple", "tank", 20.0)

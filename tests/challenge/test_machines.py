@@ -1,11 +1,16 @@
 """Machines against closed forms of textbooks."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hystbench.challenge.plant import inside
+from hystbench.challenge.plant.kind import Reach
 from hystbench.challenge.plant.machine import (
+    FINE,
     MovingPart,
     Tank,
     decimated,
@@ -236,3 +241,79 @@ def test_decimation_keeps_what_lies_below_half_the_rate():
     fast = np.sin(2 * np.pi * fine / 32 * 0.8) * np.hanning(len(fine))
     assert decimated(slow) == pytest.approx(slow[::32], abs=1e-3)
     assert np.max(np.abs(decimated(fast))) < 1e-2
+
+
+def test_a_coil_off_its_magnet_rests_where_its_lesser_force_meets_the_spring():
+    part = MovingPart(1.0, 40.0, 400.0, coil_width=0.5, coil_shift=0.1)
+    q = move(part, np.full(20000, 300.0), DT).position[-1]
+    assert q < 0.6  # 0.75 with the same force everywhere
+    assert 400.0 * q == pytest.approx(300.0 / (1 + ((q - 0.1) / 0.5) ** 2), rel=1e-6)
+
+
+def test_a_stiffness_that_swings_twice_a_period_drives_the_mass():
+    # Mathieu: with k (1 + e sin 2 w t) the motion grows by e w / 4 a second.
+    w, e = 2 * np.pi * 10, 0.1
+    part = MovingPart(1.0, 0.0, w**2, ripple=e, ripple_rate=2 * w, ripple_phase=0.0)
+    q = free_decay(part, 4.0)
+    early, late = (np.max(np.abs(q[round(t / DT) :][:1000])) for t in (2.0, 3.5))
+    assert np.log(late / early) / 1.5 == pytest.approx(e * w / 4, rel=0.02)
+    x = np.sin(np.arange(0, 1, DT))
+    expected = w**2 * x * (1 + e * np.sin(2 * w * np.arange(0, 1, DT)))
+    massless = MovingPart(0.0, 0.0, w**2, ripple=e, ripple_rate=2 * w)
+    assert resist(massless, x, DT) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_clearance_wears_with_the_way():
+    part = MovingPart(0.0, loose_stiffness=10.0, loose=0.1, wear=0.02)
+    force = resist(part, np.sin(2 * np.pi * np.arange(0, 4, DT)), DT)
+    peaks = force.reshape(4, -1).max(axis=1)
+    # at the n-th peak the part has gone 1 + 4 n
+    expected = [10.0 * (1 - 0.1 - 0.02 * (1 + 4 * n)) for n in range(4)]
+    assert peaks == pytest.approx(expected, rel=1e-3)
+
+
+def test_coupled_tanks_fill_as_their_linear_equations():
+    from scipy.linalg import expm
+
+    tanks = (Tank(2.0, 1.0, back=1.0), Tank(2.0, 1.0, back=1.0))
+    level = fill(tanks, np.full(40001, 3.0), 1e-3, (0.0, 0.0))
+    flows = np.array([[-1.0, 1.0], [1.0, -2.0]]) / 2.0
+    rest = np.array([6.0, 3.0])  # 3 through each outlet
+    for seconds in (0.5, 2.0, 10.0):
+        expected = rest - expm(flows * seconds) @ rest
+        assert level[round(seconds * 1e3)] == pytest.approx(expected[1], rel=1e-6)
+
+
+def test_a_seal_leaks_by_the_level_and_by_how_long_it_was_wet():
+    inflow = np.full(40001, 2.0)
+    # c h + leak c h^2 = inflow, once the seal is as wet as the level
+    wet = fill((Tank(1.0, 1.0, leak=0.5, leak_time=0.5),), inflow, 1e-3, (0.0,))
+    assert wet[-1] == pytest.approx((np.sqrt(1 + 4 * 0.5 * 2.0) - 1) / (2 * 0.5))
+    dry = fill((Tank(1.0, 1.0, leak=0.5, leak_time=1e9),), inflow, 1e-3, (0.0,))
+    assert dry[-1] == pytest.approx(2.0, rel=1e-5)
+
+
+REACH = Reach(position=1.0, velocity=1.0, force=2.0, output=2.0, stiffness=1.0)
+
+
+def test_a_flood_wave_runs_ahead_of_the_water_that_is_left():
+    n, late = 100 * FINE, math.ceil(20.0 * (0.5**-0.4 - 1.0) * FINE)
+    risen = np.where(np.arange(2 * n) < n, 1.0, 2.0)
+    # the largest flow comes at once, and overtakes
+    rise = inside.flood_wave(risen, {"delay": 20.0}, REACH)
+    assert (rise[late : n - 1] == 1.0).all()
+    assert (rise[n + late :] == 2.0).all()
+    fall = inside.flood_wave(3.0 - risen, {"delay": 20.0}, REACH)
+    # half of the flow follows by its own delay, and what lies between comes between
+    assert fall[n - 1] == 2.0
+    assert fall[round(n + late / 2)] == pytest.approx(1.5, abs=0.01)
+    assert fall[n + late :] == pytest.approx(1.0)
+
+
+def test_a_strained_sensor_reads_another_value_on_the_way_back():
+    y = 2.0 * np.sin(2 * np.pi * np.arange(0, 3, DT))
+    told = inside.strained(y, {"weight": 0.3, "half_width": 0.2}, REACH)
+    beside = (told - y)[-10000:]
+    # the square over the largest output runs ahead of its play by the half width
+    assert np.max(beside) == pytest.approx(0.3 * 2.0 * 0.2)
+    assert np.min(beside) == pytest.approx(-0.3 * 2.0 * 0.2)

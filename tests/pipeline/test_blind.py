@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from hystbench.challenge.contest.plan import RETIRED_SEEDS, plan
+from hystbench.challenge.contest.plan import DEVELOPMENT_SEEDS, RETIRED_SEEDS, plan
 from hystbench.challenge.plant.effects import IN_ACTUATOR
 from tests.conftest import table
 
@@ -118,7 +118,7 @@ def test_all_jobs_run_and_leave_their_files(held):
     assert (summary["cases"], summary["lost"]) == (12, 0)
     assert summary["top1"]["20"]["gpi"]["cases"] == 4
     assert summary["seeds_used_while_mending"] == {
-        "development and tests": [0, 199_999],
+        "development and tests": [0, DEVELOPMENT_SEEDS.stop - 1],
         "earlier scores": [1_000_000, RETIRED_SEEDS.stop - 1],
     }
     for name in ("confusion", "effects", "power", "reliability", "where"):
@@ -205,6 +205,18 @@ def test_the_gaps_own_solver_enters_the_contest(tmp_path):
     workflow.configure(config)
     planned = workflow.would_run("blind")
     assert planned["blind_solve"] == 4  # three chunks, and the first one twice
+
+
+def test_machines_have_a_transfer_set_of_their_own(tmp_path):
+    workflow = Workflow(tmp_path / "contest")
+    workflow.folder.mkdir()
+    plain = entered(tmp_path, "plain", SOLVER + "reason = 'none is tried'\n" + ANSWER)
+    config = contest(tmp_path, {"plain": plain}, "plain")
+    config["blind"] |= {"set": "mechanisms-development", "transfer_scale": 0.01}
+    workflow.configure(config)
+    printed = workflow.snakemake("blind", "--dry-run", "--printshellcmds").stdout
+    assert "results/blind-mechanisms/judged/mechanisms-transfer/0000.csv" in printed
+    assert "judged/transfer" not in printed
 
 
 def test_a_solver_may_not_name_what_is_left_out(tmp_path):

@@ -76,8 +76,8 @@ rule blind_summary:
         ],
         transfer=(
             [
-                f"{BLIND}/judged/transfer/{chunk}.csv"
-                for chunk in blind_chunks("transfer")
+                f"{BLIND}/judged/{TRANSFER}/{chunk}.csv"
+                for chunk in blind_chunks(TRANSFER)
             ]
             if CONTEST["transfer_scale"]
             else []
@@ -90,6 +90,7 @@ rule blind_summary:
             for name in (
                 "in-words",
                 "contest",
+                "kept",
                 "reach",
                 "further",
                 "transfer",

@@ -4,6 +4,7 @@
 import math
 
 from hystbench.challenge.contest.plan import numbers, plan
+from hystbench.challenge.kept import KEPT
 from hystbench.commands.rival import RIVALS
 from hystbench.errors import nearest
 
@@ -13,17 +14,15 @@ OF_MACHINES = CONTEST["set"].startswith("mechanisms")
 BLIND = "results/blind-mechanisms" if OF_MACHINES else "results/blind"
 PLANT_KERNELS = sorted(map(str, PACKAGE.glob("challenge/kernels/*.so")))
 # The set that is judged, with all solvers, and the transfer set, with one.
+TRANSFER = "mechanisms-transfer" if OF_MACHINES else "transfer"
 BLIND_SOLVERS = {CONTEST["set"]: list(CONTEST["solvers"])}
 if CONTEST["transfer_scale"]:
-    BLIND_SOLVERS["transfer"] = list(
-        dict.fromkeys(BLIND_SOLVERS.get("transfer", []) + [CONTEST["solver"]])
+    BLIND_SOLVERS[TRANSFER] = [CONTEST["solver"]]
+if OF_MACHINES and CONTEST["left_out_scale"]:
+    refuse(
+        f"{PLACE}: blind: left_out_scale: {CONTEST['left_out_scale']:g} with the set "
+        f"{CONTEST['set']!r}; expected 0, as it belongs to the set of actuators"
     )
-for SCALE in ("transfer_scale", "left_out_scale"):
-    if OF_MACHINES and CONTEST[SCALE]:
-        refuse(
-            f"{PLACE}: blind: {SCALE}: {CONTEST[SCALE]:g} with the set "
-            f"{CONTEST['set']!r}; expected 0, as it belongs to the set of actuators"
-        )
 if CONTEST["solver"] not in CONTEST["solvers"]:
     refuse(
         f"{PLACE}: blind: solver: {CONTEST['solver']!r}; "
@@ -57,12 +56,15 @@ def blind_cases(name):
             "scale": CONTEST["left_out_scale"],
             "without": [],
             "only": [LEFT_OUT[name]],
+            "kept": KEPT,
         }
     return {
         "name": name,
-        "scale": CONTEST["transfer_scale" if name == "transfer" else "scale"],
+        "scale": CONTEST["transfer_scale" if name == TRANSFER else "scale"],
         "without": CONTEST["without"],
         "only": CONTEST["only"],
+        # As a setting, so that another group makes all cases anew.
+        "kept": KEPT,
     }
 
 

@@ -213,17 +213,10 @@ def _draw(
 
 
 def _forms(name: str, spec: CaseSpec) -> tuple[str, ...]:
-    """Forms of an effect that the plant's family can have.
-
-    Other records are the transfer set's: forms that are kept for it come first.
-    """
+    """Forms of an effect that the plant's family and the set can have."""
     if name == "rate-dependent-hysteresis":
         return ("growing-thresholds",) if spec.family == "gpi" else ("excess-field",)
-    forms = IN_ACTUATOR[name].forms
-    kept = tuple(form for form, law in forms.items() if law.use == "transfer")
-    if spec.campaign == "other" and kept:
-        return kept
-    return tuple(form for form in forms if form not in kept)
+    return spec.forms(IN_ACTUATOR[name])
 
 
 def _other_loop(
@@ -295,7 +288,7 @@ def effect_told(effect: HiddenEffect, **own: Any) -> dict[str, Any]:
         "name": effect.kind.name,
         "form": effect.form,
         "place": effect.kind.place,
-        "use": effect.kind.use,
+        "listed": effect.kind.listed,
         "parameters": form.told(effect.parameters),
         "units": {name: item.unit for name, item in form.ranges.items()},
         **own,

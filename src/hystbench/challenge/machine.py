@@ -92,12 +92,19 @@ class Machine:
         self, item: RecordCommand, hidden: Sequence[HiddenEffect], reach: Reach
     ) -> PartMotion:
         """Give force and motion under a record, on the fine grid."""
+        command = self.driven(item, hidden, reach)
+        part = self.with_forces(hidden, reach)
+        return move(part, command, self.dt, gains=self.gains)
+
+    def driven(
+        self, item: Excitation, hidden: Sequence[HiddenEffect], reach: Reach
+    ) -> FloatArray:
+        """Compute what a record's command becomes before it drives the machine."""
         command = self.command(item)
         for effect in hidden:
             if effect.kind.place == "before" and effect.law.curve:
                 command = effect.law.curve(command, effect.parameters, reach)
-        part = self.with_forces(hidden, reach)
-        return move(part, command, self.dt, gains=self.gains)
+        return command
 
     def with_forces(self, hidden: Sequence[HiddenEffect], reach: Reach) -> MovingPart:
         """Give the part with what is hidden inside it."""
@@ -117,8 +124,9 @@ class Machine:
     ) -> tuple[FloatArray, FloatArray]:
         if self.part is None:
             u = self.command(item)
-            tanks = with_rims(self.tanks, hidden, reach)
-            y = fill(tanks, u, self.dt, (0.0,) * len(tanks))
+            tanks = with_holes(self.tanks, hidden, reach)
+            inflow = self.driven(item, hidden, reach)
+            y = fill(tanks, inflow, self.dt, (0.0,) * len(tanks))
         elif self.output == "force":
             u = self.command(item)
             y = resist(self.with_forces(hidden, reach), u, self.dt)
@@ -140,19 +148,23 @@ def _on_fine_grid(item: RecordCommand) -> FloatArray:
     return item(np.arange(count) / (FAST * FINE))
 
 
-def with_rims(
+def with_holes(
     tanks: tuple[Tank, ...], hidden: Sequence[HiddenEffect], reach: Reach
 ) -> tuple[Tank, ...]:
     """Give the tanks with what is hidden in them.
 
-    All bend their outflow; only the first has a rim.
+    All bend their outflow; only the first has a rim or a seal.
     """
     out = list(tanks)
     for effect in hidden:
-        assert effect.law.numbers is not None  # noqa: S101  (for the type checker)
+        if effect.law.numbers is None:  # a curve before or behind them
+            continue
         numbers = effect.law.numbers(effect.parameters, reach)
-        if "rim" in numbers:
-            out[0] = replace(out[0], rim=numbers["rim"], caught=numbers["caught"])
+        if "exponent" not in numbers:
+            if "rim" in numbers and out[0].back:
+                # behind an outlet against its level the last stands half as high
+                numbers["rim"] *= 2.0
+            out[0] = replace(out[0], **numbers)
         else:
             power, about = numbers["exponent"], numbers["about"]
             out = [
@@ -173,7 +185,9 @@ def reach_of(machine: Machine) -> Reach:
     if machine.part is None:
         levels = [machine._read(item, (), nothing)[1] for item in chosen]
         most = max(float(np.max(level)) for level in levels)
-        return Reach(most, most, most, most, 1.0)
+        pumped = max(float(np.max(machine.command(item))) for item in chosen)
+        settling = machine.tanks[0].area / machine.tanks[0].coefficient
+        return Reach(most, most / settling, pumped, most, 1.0)
     force, position, velocity, output = [], [], [], []
     for item in chosen:
         if machine.output == "force":
@@ -218,12 +232,14 @@ def draw_machine(
     size, coin = between(0.3, 5.0), random.uniform()
     output = str(random.choice(MOTIONS))
     gains = (0.0, 0.0)
-    if family == "tank":
+    if family in ("tank", "coupled-tanks"):
         count = 1 + int(random.uniform() < 0.5)
+        coupled = float(family == "coupled-tanks")
         coefficient = between(0.5, 3.0)
         # it settles over two hundred to four hundred samples
         area = coefficient * between(60.0, 120.0) / rate
-        tanks = (Tank(area, coefficient),) * count
+        tank = Tank(area, coefficient, back=coupled)
+        tanks = (tank,) * (2 if coupled else count)
         records = filling(random, FAST / between(300.0, 600.0))
         return Machine(
             family, rate, None, tanks, "level", 10.0 * coefficient, gains, records
@@ -310,7 +326,10 @@ def _own_numbers(machine: Machine) -> list[float]:
 def _simulated(machine: Machine, values: FloatArray, u: FloatArray) -> FloatArray:
     dt = machine.dt * FINE / COARSE
     if machine.part is None:
-        tanks = tuple(Tank(float(value), 1.0) for value in values)
+        tanks = tuple(
+            Tank(float(value), 1.0, back=tank.back)
+            for value, tank in zip(values, machine.tanks, strict=True)
+        )
         return decimated(fill(tanks, u, dt, (0.0,) * len(tanks)), COARSE)
     part = MovingPart(
         1.0, float(values[0]), float(values[1]) if len(values) > 1 else 0.0

@@ -36,7 +36,8 @@ def make_machine_case(spec: CaseSpec) -> Case:
     machine = draw_machine(spec.family, spec.random(PLANT), False if outer else None)
     reach = reach_of(machine)
     random = spec.random(EFFECT)
-    hidden = tuple(draw(IN_MACHINE[name], random, spec.spread) for name in spec.effects)
+    kinds = [IN_MACHINE[name] for name in spec.effects]
+    hidden = tuple(draw(k, random, spec.spread, spec.forms(k)) for k in kinds)
     hidden = tuple(_resized(machine, item, reach) for item in hidden)
     signals = machine.read(hidden, reach)
     fit = _used(machine, signals, "fit")

@@ -6,14 +6,15 @@ from typing import Literal, get_args
 import numpy as np
 
 from hystbench.challenge.excitation import CAMPAIGNS
+from hystbench.challenge.kept import KEPT, group_of
 from hystbench.challenge.plant import inside
 from hystbench.challenge.plant.effects import (
     APART,
-    IN_ACTUATOR,
     UNLISTED,
     VOCABULARY,
 )
 from hystbench.challenge.plant.hysteresis import DRAWS
+from hystbench.challenge.plant.kind import Kind
 from hystbench.errors import InputError, refuse_unknown
 
 CaseKind = Literal["single", "pair", "triple", "none", "unlisted"]
@@ -24,6 +25,11 @@ FAMILIES = (*ACTUATORS, *inside.MACHINES)
 #: Known to the plant of plays alone: beside another family the base's loop is wrong
 #: in any case.
 GPI_ONLY = ("hysteresis-shape",)
+#: Effects of actuators and machines that the vocabulary has no word for.
+NAMELESS = (
+    *UNLISTED,
+    *(name for name, kind in inside.IN_MACHINE.items() if not kind.listed),
+)
 RATIO_LIMITS = (-20.0, 60.0)
 
 
@@ -41,7 +47,7 @@ class CaseSpec:
     family : str
         Hysteresis of the plant: ``gpi``, ``preisach``, ``jiles-atherton`` or ``duhem``;
         or a machine: ``mass-spring``, ``free-mass``, ``pendulum``, ``impedance``,
-        ``tank``.
+        ``tank``, ``coupled-tanks``.
     ratio_db : float
         20 log10 of rms(output with the effect minus without) over the noise's rms on
         the fit records; of several effects, for the one that shows least. With
@@ -51,6 +57,10 @@ class CaseSpec:
         Multiplies the ranges of time constants, frequencies and sizes.
     campaign : {"standard", "other"}
         Which laboratory took the records.
+    kept : int
+        The group of forms that is left out, as ``kept.yaml`` has it.
+    of_kept : bool
+        Whether an effect takes the group's own forms instead, where it has any.
 
     Raises
     ------
@@ -65,6 +75,8 @@ class CaseSpec:
     ratio_db: float
     spread: float = 1.0
     campaign: str = "standard"
+    kept: int = KEPT
+    of_kept: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what cannot be made."""
@@ -83,7 +95,8 @@ class CaseSpec:
                     f"effect: {name!r} beside the family {self.family!r}; expected "
                     "the family 'gpi', as the base's loop is wrong beside any other"
                 )
-        known = _known(self.kind, self.family)
+        group_of(self.kept)
+        known = effects_of(self.kind, self.family)
         for name in self.effects:
             refuse_unknown(
                 name, known, f"effect: {name!r} unknown in the family {self.family!r}"
@@ -108,34 +121,38 @@ class CaseSpec:
         if self.seed < 0:
             raise InputError(f"seed: {self.seed}; expected 0 or more")
 
+    def forms(self, kind: Kind) -> tuple[str, ...]:
+        """Give the forms of an effect that may be drawn."""
+        return group_of(self.kept).allowed(kind, self.of_kept)
+
     def random(self, stream: int) -> np.random.Generator:
         """Source of random numbers for one purpose; purposes do not disturb others."""
         return np.random.default_rng([self.seed, stream])
 
 
 def effects_of(
-    kind: str, family: str, unlisted: Literal["development", "transfer"] | None = None
+    kind: str, family: str, kept: int | None = None, of_kept: bool = False
 ) -> list[str]:
     """Give the names of what a case of a kind may hide in a family.
 
     Parameters
     ----------
     kind, family : str
-    unlisted : {"development", "transfer"}, optional
-        Half of the sorts outside the vocabulary; by default all.
+    kept : int, optional
+        Group whose sorts outside the vocabulary are left out; by default none are.
+    of_kept : bool
+        Whether it is those alone instead.
     """
-    names = _known(kind, family)
-    if kind == "unlisted":
-        names = [name for name in names if unlisted in (None, IN_ACTUATOR[name].use)]
-    return names
-
-
-def _known(kind: str, family: str) -> list[str]:
     if family in inside.MACHINES:
-        return [] if kind == "unlisted" else list(inside.hidden_in(family))
-    if kind == "unlisted":
-        return list(UNLISTED)
-    return [name for name in VOCABULARY if name not in GPI_ONLY or family == "gpi"]
+        names = list(inside.hidden_in(family, kind != "unlisted"))
+    elif kind == "unlisted":
+        names = list(UNLISTED)
+    else:
+        names = [name for name in VOCABULARY if name not in GPI_ONLY or family == "gpi"]
+    if kind == "unlisted" and kept is not None:
+        left_out = group_of(kept).unlisted
+        names = [name for name in names if (name in left_out) == of_kept]
+    return names
 
 
 def _may_meet(names: tuple[str, ...], family: str) -> bool:
@@ -147,7 +164,7 @@ def _may_meet(names: tuple[str, ...], family: str) -> bool:
 
 def kind_of(effects: tuple[str, ...]) -> str:
     """Tell the kind of case from the effects' names."""
-    if any(name in UNLISTED for name in effects):
+    if any(name in NAMELESS for name in effects):
         return "unlisted"
     kinds = {count: kind for kind, count in COUNTS.items() if kind != "unlisted"}
     if len(effects) not in kinds:
@@ -163,16 +180,16 @@ def draw_spec(
     *,
     spread: float = 1.0,
     campaign: str = "standard",
-    unlisted: Literal["development", "transfer"] | None = None,
+    kept: int = KEPT,
+    of_kept: bool = False,
 ) -> CaseSpec:
     """Draw which effects a case hides, each as likely as any other.
 
     Parameters
     ----------
-    seed, kind, family, ratio_db, spread, campaign
-        As in :class:`CaseSpec`.
-    unlisted : {"development", "transfer"}, optional
-        Half of the sorts outside the vocabulary; by default all.
+    seed, kind, family, ratio_db, spread, campaign, kept, of_kept
+        As in :class:`CaseSpec`. The group's sorts outside the vocabulary are left out
+        too, or drawn alone.
 
     Raises
     ------
@@ -180,7 +197,7 @@ def draw_spec(
         As :class:`CaseSpec`.
     """
     refuse_unknown(kind, CASE_KINDS, f"kind: {kind!r}")
-    names = effects_of(kind, family, unlisted)
+    names = effects_of(kind, family, kept, of_kept)
     if len(names) < COUNTS[kind]:
         raise InputError(
             f"kind: {kind!r} of the family {family!r}; expected a kind of at most "
@@ -192,4 +209,5 @@ def draw_spec(
         effects = tuple(names[int(place)] for place in chosen)
         if _may_meet(effects, family):
             break
-    return CaseSpec(seed, kind, effects, family, ratio_db, spread, campaign)
+    about = (spread, campaign, kept, of_kept)
+    return CaseSpec(seed, kind, effects, family, ratio_db, *about)

@@ -8,21 +8,23 @@ from hystbench.challenge.contest.plan import (
     DEVELOPMENT_SEEDS,
     RETIRED_SEEDS,
     SETS,
-    STRATA,
+    TRANSFER,
     chunks,
     numbers,
     plan,
     sizes,
+    strata,
 )
+from hystbench.challenge.kept import GROUPS, KEPT
 from hystbench.challenge.make import make
-from hystbench.challenge.plant.effects import IN_ACTUATOR, UNLISTED, VOCABULARY
-from hystbench.challenge.plant.inside import MACHINES, hidden_in
-from hystbench.challenge.spec import CaseSpec
+from hystbench.challenge.plant.effects import IN_ACTUATOR, VOCABULARY
+from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES, hidden_in
+from hystbench.challenge.spec import ACTUATORS, CaseSpec, effects_of
 from hystbench.errors import InputError
 from tests.conftest import ROOT
 
 #: Sets whose seeds serve a score alone.
-PUBLISHED = ("published", "transfer", "mechanisms", "left-out")
+PUBLISHED = ("published", "transfer", "mechanisms", "mechanisms-transfer", "left-out")
 
 
 def seeds(name, scale=1.0):
@@ -77,10 +79,11 @@ def test_the_published_set_is_stratified_as_asked():
 
 
 SETS_OF_ALL = [
-    (name, family)
-    for name in ("development", "published")
-    for family in ("gpi", "preisach", "jiles-atherton")
-] + [("transfer", "gpi"), ("transfer", "duhem")]
+    (name, stratum.family)
+    for name in ("development", "published", "transfer")
+    for stratum in strata(name)
+    if (stratum.kind, stratum.ratio_db) == ("single", 20.0)
+]
 
 
 @pytest.mark.parametrize(("name", "family"), SETS_OF_ALL)
@@ -98,34 +101,119 @@ def test_single_effects_are_balanced(name, family):
     assert max(counts.values()) - min(counts.values()) <= 1
 
 
-def test_the_transfer_set_is_shifted_and_shares_no_unlisted_effect():
+def test_the_transfer_set_is_shifted():
     transfer = [entry.spec for entry in plan("transfer")]
     assert {(spec.spread, spec.campaign) for spec in transfer} == {(3.0, "other")}
-
-    def unlisted(name):
-        entries = plan(name)
-        return {e.spec.effects[0] for e in entries if e.spec.kind == "unlisted"}
-
-    half = {name for name in UNLISTED if IN_ACTUATOR[name].use == "transfer"}
-    assert unlisted("transfer") == half
-    others = unlisted("published") | unlisted("development") | unlisted("small")
-    assert not others & half
+    # of machines there is one set of records, and shares do not shift
+    inside = [entry.spec for entry in plan("mechanisms-transfer")]
+    assert {(spec.spread, spec.campaign) for spec in inside} == {(1.0, "standard")}
 
 
-def test_no_other_set_holds_a_family_or_a_form_that_is_kept_for_transfer():
-    assert count("transfer", family="duhem") > 0
-    for name in ("small", "development", "published", "left-out"):
-        assert count(name, family="duhem") == 0
+def kinds_of(spec):
+    known = IN_MACHINE if spec.family in MACHINES else IN_ACTUATOR
+    return [known[name] for name in spec.effects]
 
-    def form(campaign, seed=1):
-        spec = CaseSpec(seed, "single", ("creep",), "gpi", 20.0, 1.0, campaign)
+
+def met(kept, *names):
+    """Families, unlisted effects and forms that sets may draw."""
+    specs = [entry.spec for name in names for entry in plan(name, kept=kept)]
+    families = {spec.family for spec in specs}
+    unlisted = {x for s in specs if s.kind == "unlisted" for x in s.effects}
+    forms = {
+        f"{kind.name}: {form}"
+        for spec in specs
+        for kind in kinds_of(spec)
+        for form in spec.forms(kind)
+    }
+    return families, unlisted, forms
+
+
+@pytest.mark.parametrize("kept", GROUPS)
+def test_no_set_but_those_of_transfer_holds_the_group_that_is_left_out(kept):
+    out = GROUPS[kept]
+    families, unlisted, forms = met(kept, *(set(SETS) - set(TRANSFER)))
+    assert not families & set(out.families)
+    assert not unlisted & set(out.unlisted)
+    assert not forms & set(out.forms)
+    families, unlisted, forms = met(kept, *TRANSFER)
+    assert set(out.families) <= families
+    assert unlisted == set(out.unlisted)
+    assert set(out.forms) <= forms
+
+
+def test_every_group_comes_back_when_another_is_left_out():
+    """What is left out now is drawn again, so that leaving out goes round."""
+    for number, other in itertools.permutations(GROUPS, 2):
+        families, unlisted, forms = met(other, "published", "mechanisms")
+        back = GROUPS[number]
+        assert set(back.families) <= families
+        assert set(back.unlisted) <= unlisted
+        homeless = (
+            {"gravity: tilted"} if "pendulum" in GROUPS[other].families else set()
+        )
+        assert set(back.forms) - homeless <= forms
+
+
+def test_groups_share_nothing_and_their_names_are_known():
+    every = [x for g in GROUPS.values() for x in (*g.families, *g.unlisted, *g.forms)]
+    assert len(set(every)) == len(every)
+    kinds = {**IN_ACTUATOR}, {**IN_MACHINE}
+    forms = {f"{n}: {f}" for known in kinds for n, k in known.items() for f in k.forms}
+    unlisted = {n for known in kinds for n, kind in known.items() if not kind.listed}
+    for item in GROUPS.values():
+        actuator, machine = item.families
+        assert (actuator in ACTUATORS, machine in MACHINES) == (True, True)
+        assert set(item.forms) <= forms
+        # a name of both an actuator's and a machine's effects hides in both
+        for known in kinds:
+            for kind in known.values():
+                assert item.allowed(kind, inside=False) or not kind.listed
+    # each kind of physics without a word is left out once
+    assert sorted(x for g in GROUPS.values() for x in g.unlisted) == sorted(unlisted)
+
+
+def test_a_group_that_there_is_not_is_refused():
+    with pytest.raises(InputError, match="kept: 9; expected 1 to 3"):
+        plan("small", kept=9)
+
+
+@pytest.mark.parametrize(
+    ("effect", "family", "form"),
+    [
+        ("creep", "gpi", "fractional"),
+        ("friction", "impedance", "stribeck-presliding"),
+        ("gravity", "pendulum", "tilted"),
+    ],
+)
+def test_a_case_takes_the_form_that_is_left_out_in_the_transfer_set_alone(
+    effect, family, form
+):
+    def taken(of_kept, seed=1):
+        about = {"kept": 1, "of_kept": of_kept}
+        spec = CaseSpec(seed, "single", (effect,), family, 20.0, **about)
         return make(spec).truth["effects"][0]["form"]
 
-    assert form("other") == "fractional"
-    assert {form("standard", seed) for seed in range(9)} == {
-        "one-element",
-        "three-elements",
+    assert taken(of_kept=True) == form
+    assert form not in {taken(False, seed) for seed in range(4)}
+
+
+def test_unlisted_effects_are_hidden_in_machines_too():
+    """At least four kinds, and each as often as any other in its family."""
+    specs = [e.spec for e in plan("mechanisms") if e.spec.kind == "unlisted"]
+    hidden = Counter(spec.effects[0] for spec in specs)
+    development = {
+        e.spec.effects[0]
+        for e in plan("mechanisms-development")
+        if e.spec.kind == "unlisted"
     }
+    assert set(hidden) == development
+    left_out = set(GROUPS[KEPT].unlisted) & set(IN_MACHINE)
+    assert len(set(hidden) | left_out) >= 4
+    assert left_out
+    for family in {spec.family for spec in specs}:
+        counts = Counter(s.effects[0] for s in specs if s.family == family)
+        assert set(counts) == set(effects_of("unlisted", family, KEPT))
+        assert max(counts.values()) - min(counts.values()) <= 1
 
 
 def test_a_larger_contest_holds_the_smaller_one():
@@ -155,7 +243,7 @@ def test_an_unknown_set_gets_the_nearest_name():
 
 
 def test_a_scale_beyond_the_seeds_is_refused():
-    most = max(stratum.cases for stratum in STRATA["published"])
+    most = max(stratum.cases for stratum in strata("published"))
     with pytest.raises(InputError, match="scale: 26"):
         plan("published", 26.0)
     assert most * 25.0 <= 5000
@@ -189,7 +277,7 @@ def test_a_kind_that_is_left_out_must_be_known_and_leave_some():
         plan("small", only=["tank"])
 
 
-@pytest.mark.parametrize("family", MACHINES)
+@pytest.mark.parametrize("family", sorted({x.family for x in strata("mechanisms")}))
 def test_effects_of_machines_are_balanced(family):
     chosen = [
         entry.spec.effects[0]

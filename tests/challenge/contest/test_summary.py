@@ -61,6 +61,7 @@ NOTHING = gap(verdict="no-gap")
 ABOUT = {
     "set": "small",
     "scale": 0.5,
+    "kept": 2,
     "transfer_scale": 0.25,
     "seeds_used_while_mending": {"development": [1, 9], "earlier": [20, 29]},
 }
@@ -283,6 +284,20 @@ def test_which_cases_the_score_is_of(tmp_path):
         ("development", "", "", "1", "9"),
         ("earlier", "", "", "20", "29"),
     ]
+
+
+def test_the_group_that_was_left_out_is_told_and_scored(tmp_path):
+    away = [row(truth(effect("creep", "three-elements"), seed=40), CREEP)]
+    away.append(row(truth(effect("creep", "fractional"), seed=41), RESONANCE))
+    write_score(frame([]), frame(away), "s", ABOUT, tmp_path)
+    groups = {line["group"]: line for line in table(tmp_path / "kept.csv")}
+    assert [n for n, line in groups.items() if line["left out"] == "yes"] == ["2"]
+    assert groups["2"]["families"] == "preisach, pendulum"
+    assert json.loads((tmp_path / "summary.json").read_text())["kept"] == 2
+    # the fractional creep belongs to another group
+    seen = table(tmp_path / "never-seen.csv")
+    told = [(line["name"], line["cases"], line["right"]) for line in seen]
+    assert told == [("creep: three-elements", "1", "1.0"), ("all", "1", "1.0")]
 
 
 def test_what_carries_to_the_transfer_set(tmp_path):

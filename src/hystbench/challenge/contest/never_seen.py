@@ -9,20 +9,13 @@ import pandas as pd
 
 from hystbench.challenge.contest.frames import sure
 from hystbench.challenge.contest.tables import how_often, names_that_count, wilson
-from hystbench.challenge.plant.effects import IN_ACTUATOR, UNLISTED
-from hystbench.challenge.plant.hysteresis import KEPT
+from hystbench.challenge.kept import KEPT, group_of
+from hystbench.challenge.spec import NAMELESS
 
 LEFT_OUT = ("left_out", "cases", "no_name", "low", "high", "confident", "called")
 """Columns of the table of what is left out."""
 EVERY = "all"
 """The last row of each sort."""
-FORMS = tuple(
-    f"{name}: {form}"
-    for name, kind in IN_ACTUATOR.items()
-    for form, law in kind.forms.items()
-    if law.use == "transfer"
-)
-"""Forms of listed effects that no set but the transfer set holds."""
 
 
 def left_out(cases: pd.DataFrame) -> pd.DataFrame:
@@ -47,13 +40,15 @@ def left_out(cases: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(found, columns=list(LEFT_OUT)).round(4)
 
 
-def never_seen(cases: pd.DataFrame) -> Iterator[tuple[Any, ...]]:
+def never_seen(cases: pd.DataFrame, kept: int = KEPT) -> Iterator[tuple[Any, ...]]:
     """Sum up cases of one hidden effect, or none, by what was kept from all other sets.
 
     Parameters
     ----------
     cases : DataFrame
         Judged cases of one solver on the transfer set, as ``frames.frame`` has them.
+    kept : int
+        The group that all other sets left out.
 
     Yields
     ------
@@ -65,12 +60,14 @@ def never_seen(cases: pd.DataFrame) -> Iterator[tuple[Any, ...]]:
         wrong names were given how often. A free shape of the hysteresis beside a plant
         of another family than the base's is no name.
     """
+    held = group_of(kept)
     single = cases[cases["kind"] == "single"]
     forms = single["truth"] + ": " + single["form"]
-    plain = cases[cases["kind"].isin(("single", "none")) & cases["family"].isin(KEPT)]
+    ours = cases["family"].isin(held.families)
+    plain = cases[cases["kind"].isin(("single", "none")) & ours]
     unlisted = cases[cases["kind"] == "unlisted"]
     for sort, chosen, names in (
-        ("form", single[forms.isin(FORMS)], forms),
+        ("form", single[forms.isin(held.forms)], forms),
         ("family", plain, plain["family"]),
         ("unlisted", unlisted, unlisted["truth"]),
     ):
@@ -83,7 +80,7 @@ def _rows(cases: pd.DataFrame, names: pd.Series[Any]) -> Iterator[tuple[Any, ...
     groups = [*cases.groupby(names), (EVERY, cases)] if len(cases) else []
     for name, group in groups:
         said = names_that_count(group)
-        hidden = [set(truth.split()) - set(UNLISTED) for truth in group["truth"]]
+        hidden = [set(truth.split()) - set(NAMELESS) for truth in group["truth"]]
         both = list(zip(said, hidden, strict=True))
         right = wilson(sum(set(given) == there for given, there in both), len(both))
         wrong = [

@@ -3,11 +3,12 @@
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 from hystbench.challenge.contest import table
+from hystbench.challenge.kept import KEPT, group_of
 from hystbench.challenge.plant.effects import IN_ACTUATOR
-from hystbench.challenge.plant.inside import IN_MACHINE
+from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES
 from hystbench.challenge.spec import (
     CASE_KINDS,
     FAMILIES,
@@ -19,7 +20,7 @@ from hystbench.errors import InputError, refuse_unknown
 
 #: The development set, the small one of the pipeline's test and the cases of all other
 #: tests.
-DEVELOPMENT_SEEDS = range(200_000)
+DEVELOPMENT_SEEDS = range(210_000)
 #: Published and transfer sets of earlier scores, whose misses were looked at.
 RETIRED_SEEDS = range(1_000_000, 50_000_000)
 
@@ -50,15 +51,9 @@ class Entry:
 
 
 _SETS: dict[str, Any] = table("sets")
-STRATA: dict[str, tuple[Stratum, ...]] = {
-    name: tuple(
-        Stratum(row["kind"], family, row["ratio_db"], cases)
-        for row in about["strata"]
-        for family, cases in row["cases"].items()
-    )
-    for name, about in _SETS.items()
-}
-SETS = tuple(STRATA)
+SETS = tuple(_SETS)
+TRANSFER = tuple(name for name, about in _SETS.items() if about.get("of_kept"))
+"""Sets of what is left out of all others."""
 #: By which cases are left out: effects, families of plants, kinds of cases.
 WORDS = tuple(dict.fromkeys([*CASE_KINDS, *FAMILIES, *IN_ACTUATOR, *IN_MACHINE]))
 
@@ -68,6 +63,7 @@ def plan(
     scale: float = 1.0,
     without: Sequence[str] = (),
     only: Sequence[str] = (),
+    kept: int = KEPT,
 ) -> tuple[Entry, ...]:
     """List the cases of a set.
 
@@ -77,8 +73,9 @@ def plan(
     Parameters
     ----------
     name : str
-        One of :data:`SETS`. The set ``transfer`` has ranges shifted by 3, other
-        records, and forms, families and unlisted effects that no other set holds.
+        One of :data:`SETS`. Those of :data:`TRANSFER` have forms, a family and unlisted
+        effects that no other set holds; that of actuators has ranges shifted by 3 and
+        other records too.
     scale : float
         Factor on the number of cases of each stratum; at least one is left.
     without : sequence of str
@@ -86,6 +83,8 @@ def plan(
         seeds, so that a contest of what was left out has no case of this one.
     only : sequence of str
         Effects, families and kinds of which a case holds at least one; all by default.
+    kept : int
+        The group that all other sets leave out.
 
     Returns
     -------
@@ -101,12 +100,13 @@ def plan(
     for key, words in (("without", without), ("only", only)):
         for word in words:
             refuse_unknown(word, WORDS, f"blind: {key}: {word!r}")
-    counts = sizes(name, scale)
+    counts = sizes(name, scale, kept)
+    held = zip(strata(name, kept), counts, strict=True)
     entries = []
-    for number, (stratum, cases) in enumerate(zip(STRATA[name], counts, strict=True)):
+    for number, (stratum, cases) in enumerate(held):
         first = _SETS[name]["first_seed"] + number * _SETS[name]["seeds"]
         for k in range(cases):
-            spec = _spec(name, stratum, first + k, number + k)
+            spec = _spec(name, stratum, first + k, number + k, kept)
             if _wanted(spec, without, only):
                 told = hashlib.sha256(f"{name} {spec.seed}".encode()).hexdigest()
                 entries.append(Entry(f"case-{told[:10]}", spec))
@@ -124,11 +124,34 @@ def _wanted(spec: CaseSpec, without: Sequence[str], only: Sequence[str]) -> bool
     return words.isdisjoint(without) and (not only or not words.isdisjoint(only))
 
 
-def sizes(name: str, scale: float = 1.0) -> list[int]:
-    """Count the cases of each stratum of a set, as for :func:`plan`."""
+def strata(name: str, kept: int = KEPT) -> tuple[Stratum, ...]:
+    """Give the strata of a set, without what it has no effects for.
+
+    The family that is left out stands in the sets of :data:`TRANSFER` alone, where
+    ``kept`` is its name.
+    """
     refuse_unknown(name, SETS, f"blind: set: no set {name!r}")
-    most, counts = _SETS[name]["seeds"], []
-    for stratum in STRATA[name]:
+    inside = name in TRANSFER
+    actuator, machine = group_of(kept).families
+    own = machine if name.startswith("mechanisms") else actuator
+    found = (
+        Stratum(row["kind"], own if family == "kept" else family, row["ratio_db"], n)
+        for row in _SETS[name]["strata"]
+        for family, n in row["cases"].items()
+        if family not in (actuator, machine)
+    )
+    return tuple(
+        item
+        for item in found
+        if item.kind == "none" or effects_of(item.kind, item.family, kept, inside)
+    )
+
+
+def sizes(name: str, scale: float = 1.0, kept: int = KEPT) -> list[int]:
+    """Count the cases of each stratum of a set, as for :func:`plan`."""
+    counts = []
+    for stratum in strata(name, kept):
+        most = _SETS[name]["seeds"]
         counts.append(max(1, round(stratum.cases * scale)))
         if counts[-1] > most:
             raise InputError(
@@ -151,19 +174,18 @@ def chunks(entries: tuple[Entry, ...], size: int) -> dict[str, tuple[Entry, ...]
     }
 
 
-def _spec(name: str, stratum: Stratum, seed: int, place: int) -> CaseSpec:
-    transfer = name == "transfer"
-    spread, campaign = (3.0, "other") if transfer else (1.0, "standard")
-    use: Literal["transfer", "development"] = "transfer" if transfer else "development"
-    shared: dict[str, Any] = {"spread": spread, "campaign": campaign}
-    if stratum.kind in ("single", "unlisted"):
-        known = effects_of(stratum.kind, stratum.family, use)
+def _spec(name: str, stratum: Stratum, seed: int, place: int, kept: int) -> CaseSpec:
+    inside = name in TRANSFER
+    about: dict[str, Any] = {"kept": kept, "of_kept": inside}
+    if inside and stratum.family not in MACHINES:
+        about |= {"spread": 3.0, "campaign": "other"}
+    kind, family, ratio_db = stratum.kind, stratum.family, stratum.ratio_db
+    if kind in ("single", "unlisted"):
+        known = effects_of(kind, family, kept, inside)
         # a stride that shares no factor with the count: few cases are mixed too
         effect = known[_STRIDE * place % len(known)]
-        return CaseSpec(
-            seed, stratum.kind, (effect,), stratum.family, stratum.ratio_db, **shared
-        )
-    return draw_spec(seed, stratum.kind, stratum.family, stratum.ratio_db, **shared)
+        return CaseSpec(seed, kind, (effect,), family, ratio_db, **about)
+    return draw_spec(seed, kind, family, ratio_db, **about)
 
 
 #: A prime above the number of effects.

@@ -10,6 +10,7 @@ from hystbench.challenge.contest import table, tables
 from hystbench.challenge.contest.frames import frame, write_frame
 from hystbench.challenge.contest.never_seen import never_seen
 from hystbench.challenge.contest.summary import Asked, further, reach, summary
+from hystbench.challenge.kept import GROUPS
 from hystbench.files import write_csv, write_json
 
 #: No transfer set.
@@ -42,8 +43,8 @@ def write_score(
         Whose score it is.
     about : mapping
         What summary.json says of the contest: ``set``, ``scale``, ``transfer_scale``,
-        its seeds and ``seeds_used_while_mending`` (first and last, by what they
-        were used for).
+        ``kept``, the group that all sets but the transfer set left out, its seeds and
+        ``seeds_used_while_mending`` (first and last, by what they were used for).
     out : Path
         Folder for :data:`WRITTEN`.
     """
@@ -53,11 +54,12 @@ def write_score(
     found: dict[str, Iterable[Sequence[Any]]] = {
         "in-words.csv": _in_words(own, transfer),
         "contest.csv": _held(own, transfer, about),
+        "kept.csv": list(_groups(about["kept"])),
         "reach.csv": asked,
         "further.csv": further(own),
         "transfer.csv": carried,
         "confusion.csv": tables.confusion(own),
-        "never-seen.csv": never_seen(transfer),
+        "never-seen.csv": never_seen(transfer, about["kept"]),
         "confused.csv": tables.confused(own),
         "effects.csv": tables.by_effect(own),
         "retuned.csv": tables.retuned(own),
@@ -96,6 +98,13 @@ def _held(
             told.append((name, scale, len(seeds), seeds.min(), seeds.max()))
     mended = about["seeds_used_while_mending"]
     return [*told, *((name, None, None, *ends) for name, ends in mended.items())]
+
+
+def _groups(kept: int) -> Iterator[tuple[Any, ...]]:
+    """Say which group was left out, and which come next."""
+    for number, item in GROUPS.items():
+        parts = (item.families, item.unlisted, item.forms)
+        yield number, number == kept, *(", ".join(names) for names in parts)
 
 
 def _carried(

@@ -16,10 +16,12 @@ struct part {
     double coulomb, surplus, stribeck_speed, presliding, drag;
     double remembered, yield, sharpness, unloading;
     double slider_stiffness, slip, clearance;
+    double coil_width, coil_shift, ripple, ripple_rate, ripple_phase;
+    double loose_stiffness, loose, wear;
 };
 
 struct memory {
-    double asperity, loop, slider;
+    double asperity, loop, slider, way, time;
 };
 
 static double clip(double x, double limit) { return fmax(-limit, fmin(limit, x)); }
@@ -57,6 +59,28 @@ static double other(const struct part *p, const struct memory *m, double v)
     return f;
 }
 
+/* Force of what changes as time and way go by: a spring whose stiffness swings, and one
+   behind a clearance that every way rubs wider. */
+static double ageing(const struct part *p, const struct memory *m, double q)
+{
+    double f = 0.0;
+    if (p->ripple != 0.0)
+        f += p->stiffness * p->ripple * q
+             * sin(p->ripple_rate * m->time + p->ripple_phase);
+    if (p->loose_stiffness != 0.0)
+        f += p->loose_stiffness * (q - clip(q, p->loose + p->wear * m->way));
+    return f;
+}
+
+/* Share of its largest force that a coil has off the middle of its magnet. */
+static double force_factor(const struct part *p, double q)
+{
+    if (p->coil_width == 0.0)
+        return 1.0;
+    double off = (q - p->coil_shift) / p->coil_width;
+    return 1.0 / (1.0 + off * off);
+}
+
 /* Slope of the Bouc-Wen loop over the distance. */
 static double loop_slope(const struct part *p, double z, double way)
 {
@@ -64,8 +88,10 @@ static double loop_slope(const struct part *p, double z, double way)
     return (1.0 - pow(fabs(z), p->sharpness) * turned) / p->yield;
 }
 
-static void remember(const struct part *p, struct memory *m, double dq)
+static void remember(const struct part *p, struct memory *m, double dq, double dt)
 {
+    m->way += fabs(dq);
+    m->time += dt;
     if (p->presliding > 0.0)
         m->asperity = clip(m->asperity + dq, p->presliding);
     if (p->slider_stiffness != 0.0)
@@ -96,7 +122,7 @@ EXPORT void hc_mass(ptrdiff_t n, double dt, double q, double v, double gain,
                     double *acceleration)
 {
     const struct part *p = (const struct part *)numbers;
-    struct memory m = {0.0, 0.0, 0.0};
+    struct memory m = {0.0, 0.0, 0.0, 0.0, 0.0};
     double before = v;
     for (ptrdiff_t k = 0; k < n; k++) {
         double u = drive[k];
@@ -106,7 +132,7 @@ EXPORT void hc_mass(ptrdiff_t n, double dt, double q, double v, double gain,
             u = gain * (drive[k] - q)
                 + rate_gain * (0.5 * (ahead - behind) / dt - before);
         }
-        double held = u - spring(p, q);
+        double held = u * force_factor(p, q) - spring(p, q) - ageing(p, &m, q);
         if (k > 0)
             v = kicked(p, before, held - other(p, &m, before), 0.5 * dt);
         force[k] = u;
@@ -115,7 +141,7 @@ EXPORT void hc_mass(ptrdiff_t n, double dt, double q, double v, double gain,
         double after = kicked(p, v, held - other(p, &m, v), 0.5 * dt);
         acceleration[k] = k > 0 ? (after - before) / dt : (after - v) / (0.5 * dt);
         q += dt * after;
-        remember(p, &m, dt * after);
+        remember(p, &m, dt * after, dt);
         before = after;
     }
 }
@@ -125,30 +151,38 @@ EXPORT void hc_impedance(ptrdiff_t n, double dt, const double *numbers,
                          const double *position, double *force)
 {
     const struct part *p = (const struct part *)numbers;
-    struct memory m = {0.0, 0.0, 0.0};
+    struct memory m = {0.0, 0.0, 0.0, 0.0, 0.0};
     for (ptrdiff_t k = 0; k < n; k++) {
         ptrdiff_t i = k < 1 ? 1 : (k + 2 > n ? n - 2 : k);
         double behind = position[i - 1], here = position[i], ahead = position[i + 1];
         double v = 0.5 * (ahead - behind) / dt;
         double a = (ahead - 2.0 * here + behind) / (dt * dt);
         if (k > 0)
-            remember(p, &m, position[k] - position[k - 1]);
+            remember(p, &m, position[k] - position[k - 1], dt);
         force[k] = p->mass * a + p->damping * v + spring(p, position[k]) + other(p, &m, v);
+        force[k] += ageing(p, &m, position[k]);
         if (p->presliding == 0.0)
             force[k] += friction_level(p, v) * ((v > 0.0) - (v < 0.0));
     }
 }
 
 struct tank {
-    double area, coefficient, exponent, rim, caught;
+    double area, coefficient, exponent, rim, caught, back, leak, leak_time;
 };
 
+/* Where the next tank stands against the outlet, the difference of levels drives it. */
 static void flows(const struct tank *tank, ptrdiff_t count, double inflow,
-                  const double *level, double *rate)
+                  const double *level, const double *wet, double *rate)
 {
     for (ptrdiff_t i = 0; i < count; i++) {
-        double out = tank[i].coefficient * pow(fmax(level[i], 0.0), tank[i].exponent);
-        rate[i] = (inflow - out) / tank[i].area;
+        double head = fmax(level[i], 0.0), sign = 1.0;
+        if (tank[i].back != 0.0 && i + 1 < count) {
+            head = level[i] - level[i + 1];
+            sign = head < 0.0 ? -1.0 : 1.0;
+        }
+        double out = sign * tank[i].coefficient * pow(fabs(head), tank[i].exponent);
+        double lost = tank[i].leak * tank[i].coefficient * wet[i] * level[i];
+        rate[i] = (inflow - out - lost) / tank[i].area;
         inflow = out;
     }
 }
@@ -156,25 +190,27 @@ static void flows(const struct tank *tank, ptrdiff_t count, double inflow,
 /* One or two tanks, each emptied by coefficient level^exponent into the next, by the
    classical Runge-Kutta method. What stands above the rim runs over after each step,
    and of it the share caught falls into the next tank. The inflow is that of the
-   middle of a step, taken from both ends. */
+   middle of a step, taken from both ends. A seal leaks by the level and by how wet it
+   is, which follows the level slowly. */
 EXPORT void hc_tanks(ptrdiff_t n, ptrdiff_t count, double dt, const double *numbers,
                      const double *begun, const double *inflow, double *last)
 {
     const struct tank *tank = (const struct tank *)numbers;
     double h[2] = {begun[0], count > 1 ? begun[1] : 0.0}, g[2], r[4][2];
+    double wet[2] = {h[0], h[1]};
     last[0] = h[count - 1];
     for (ptrdiff_t k = 0; k + 1 < n; k++) {
         double middle = 0.5 * (inflow[k] + inflow[k + 1]);
-        flows(tank, count, inflow[k], h, r[0]);
+        flows(tank, count, inflow[k], h, wet, r[0]);
         for (ptrdiff_t i = 0; i < count; i++)
             g[i] = h[i] + 0.5 * dt * r[0][i];
-        flows(tank, count, middle, g, r[1]);
+        flows(tank, count, middle, g, wet, r[1]);
         for (ptrdiff_t i = 0; i < count; i++)
             g[i] = h[i] + 0.5 * dt * r[1][i];
-        flows(tank, count, middle, g, r[2]);
+        flows(tank, count, middle, g, wet, r[2]);
         for (ptrdiff_t i = 0; i < count; i++)
             g[i] = h[i] + dt * r[2][i];
-        flows(tank, count, inflow[k + 1], g, r[3]);
+        flows(tank, count, inflow[k + 1], g, wet, r[3]);
         double spilt = 0.0;
         for (ptrdiff_t i = 0; i < count; i++) {
             h[i] += dt / 6.0 * (r[0][i] + 2.0 * (r[1][i] + r[2][i]) + r[3][i]);
@@ -182,6 +218,8 @@ EXPORT void hc_tanks(ptrdiff_t n, ptrdiff_t count, double dt, const double *numb
             double over = fmax(h[i] - tank[i].rim, 0.0);
             h[i] -= over;
             spilt = tank[i].caught * over * tank[i].area;
+            if (tank[i].leak != 0.0)
+                wet[i] += dt / tank[i].leak_time * (h[i] - wet[i]);
         }
         last[k + 1] = h[count - 1];
     }

@@ -6,9 +6,5 @@ from hystbench.challenge.plant.kind import read_kinds
 IN_ACTUATOR, APART = read_kinds(
     "effects.yaml", drive, material, mechanics, sensor, unlisted
 )
-VOCABULARY = {
-    name: kind for name, kind in IN_ACTUATOR.items() if kind.use == "vocabulary"
-}
-UNLISTED = {
-    name: kind for name, kind in IN_ACTUATOR.items() if kind.use != "vocabulary"
-}
+VOCABULARY = {name: kind for name, kind in IN_ACTUATOR.items() if kind.listed}
+UNLISTED = {name: kind for name, kind in IN_ACTUATOR.items() if not kind.listed}

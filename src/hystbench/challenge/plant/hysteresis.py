@@ -302,8 +302,6 @@ DRAWS: dict[str, Callable[[np.random.Generator], PlantLoop]] = {
     "jiles-atherton": draw_jiles_atherton,
     "duhem": draw_duhem,
 }
-KEPT = ("duhem",)
-"""Families that no set but the transfer set holds."""
 
 
 def _cycle(hysteresis: PlantLoop, bias: float) -> FloatArray:

@@ -1,4 +1,4 @@
-"""What can be hidden in a machine: forces inside, and curves before and behind it.
+"""What can be hidden in a machine: forces inside, and what stands before and behind it.
 
 The effects and their forces stand in ``inside.yaml``.
 """
@@ -7,7 +7,9 @@ import sys
 
 import numpy as np
 
+from hystbench.challenge import kernels
 from hystbench.challenge.plant.kind import Parameters, Reach, read_kinds
+from hystbench.challenge.plant.machine import FINE
 from hystbench.record import FloatArray
 
 
@@ -23,16 +25,72 @@ def clip(u: FloatArray, p: Parameters, r: Reach) -> FloatArray:
     return np.asarray(np.clip(u, -limit, limit))
 
 
+def rounded_dead_zone(u: FloatArray, p: Parameters, r: Reach) -> FloatArray:
+    """Give little force near zero, without an edge."""
+    width = p["half_width"] * r.force
+    return np.asarray(u - width * np.tanh(u / width))
+
+
+def soft_clip(u: FloatArray, p: Parameters, r: Reach) -> FloatArray:
+    """Give less and less of a large force."""
+    limit = p["limit"] * r.force
+    return np.asarray(limit * np.tanh(u / limit))
+
+
 def bent(y: FloatArray, p: Parameters, r: Reach) -> FloatArray:
     """Bend the sensor's scale by a square and a cube."""
     z = y / r.output
     return np.asarray(y * (1.0 + p["quadratic"] * z + p["cubic"] * z**2))
 
 
+def sine(y: FloatArray, p: Parameters, r: Reach) -> FloatArray:
+    """Read the sine of an angle: a resolver beyond its small angles."""
+    reach = p["reach"] * r.output
+    return np.asarray(reach * np.sin(y / reach))
+
+
+def strained(y: FloatArray, p: Parameters, r: Reach) -> FloatArray:
+    """Read beside it the strain of a glued foil, which goes with the square and slips.
+
+    A play of the square over the largest output: a butterfly whose wings are no line.
+    """
+    square = (y / r.output) ** 2
+    carried = kernels.run("hc_joint", p["half_width"], over=square)
+    return np.asarray(y + p["weight"] * r.output * (square - carried))
+
+
+def flood_wave(u: FloatArray, p: Parameters, r: Reach) -> FloatArray:
+    """Let water run down an open channel: much of it comes sooner than little.
+
+    Of a wide channel the speed of a wave goes with the flow to the power 2/5 (Manning's
+    friction). Delays are those beyond the largest flow's; a wave that is overtaken is
+    lost in the other's front.
+    """
+    flow = np.clip(u / r.force, 0.05, 1.0)
+    late = FINE * p["delay"] * (flow**-0.4 - 1.0)
+    step = np.arange(len(u), dtype=np.float64)
+    arrival = np.maximum.accumulate(step + late)
+    return np.asarray(np.interp(step, arrival, u))
+
+
 IN_MACHINE, APART = read_kinds("inside.yaml", sys.modules[__name__])
-MACHINES = ("mass-spring", "free-mass", "pendulum", "impedance", "tank")
+MACHINES = (
+    *("mass-spring", "free-mass", "pendulum", "impedance"),
+    *("tank", "coupled-tanks"),
+)
 
 
-def hidden_in(family: str) -> tuple[str, ...]:
-    """Give the names of what can be hidden in a family of machines."""
-    return tuple(name for name, kind in IN_MACHINE.items() if family in kind.families)
+def hidden_in(family: str, listed: bool = True) -> tuple[str, ...]:
+    """Give the names of what can be hidden in a family of machines.
+
+    Parameters
+    ----------
+    family : str
+    listed : bool
+        Whether the vocabulary has a word for it.
+    """
+    return tuple(
+        name
+        for name, kind in IN_MACHINE.items()
+        if family in kind.families and kind.listed == listed
+    )

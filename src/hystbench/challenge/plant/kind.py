@@ -116,7 +116,8 @@ class Reach:
     Parameters
     ----------
     position, velocity, force, output : float
-        Of a tank ``position`` is the level of each, so far as they are alike.
+        Of a tank ``position`` is the level of each, so far as they are alike, ``force``
+        the inflow and ``velocity`` that level over the time in which it settles.
     stiffness : float
         That of the linear spring; where there is none, force over position.
     """
@@ -167,9 +168,6 @@ class Form:
         Inside a machine: gives the numbers of its part or of each tank.
     curve : callable, optional
         Before or behind a machine: gives the signal.
-    use : {"all", "transfer"}
-        ``transfer`` keeps the form back for that set, so that no solver is improved
-        on it.
     """
 
     act: Act = nothing
@@ -180,7 +178,6 @@ class Form:
     told: Callable[[Parameters], dict[str, Any]] = _same
     numbers: Inside | None = None
     curve: Curve | None = None
-    use: Literal["all", "transfer"] = "all"
 
 
 @dataclass(frozen=True)
@@ -198,7 +195,8 @@ class Kind:
     views : tuple of str
         Where in an actuator it shows.
     forms : mapping of str to Form
-    use : {"vocabulary", "development", "transfer"}
+    listed : bool
+        Whether the vocabulary has a word for it.
     families : tuple of str
         Machines that it may be in.
     """
@@ -208,7 +206,7 @@ class Kind:
     stage: Stage = "mechanics"
     views: tuple[View, ...] = ()
     forms: Mapping[str, Form] = field(default_factory=dict)
-    use: Literal["vocabulary", "development", "transfer"] = "vocabulary"
+    listed: bool = True
     families: tuple[str, ...] = ()
 
 

@@ -43,6 +43,13 @@ class MovingPart:
         Bouc-Wen's force: at most ``remembered``, and its slope on the way back.
     slider_stiffness, slip, clearance : float
         A spring that slips beyond ``slip`` and carries nothing within ``clearance``.
+    coil_width, coil_shift : float
+        What drives it has a force that falls by half at this distance from the middle
+        of its magnet; 0 for a force that is the same everywhere.
+    ripple, ripple_rate, ripple_phase : float
+        Share by which the linear spring swings in time, in rad/s and rad.
+    loose_stiffness, loose, wear : float
+        A spring behind a clearance that grows by ``wear`` times the way gone.
     """
 
     mass: float = 1.0
@@ -69,6 +76,14 @@ class MovingPart:
     slider_stiffness: float = 0.0
     slip: float = 0.0
     clearance: float = 0.0
+    coil_width: float = 0.0
+    coil_shift: float = 0.0
+    ripple: float = 0.0
+    ripple_rate: float = 0.0
+    ripple_phase: float = 0.0
+    loose_stiffness: float = 0.0
+    loose: float = 0.0
+    wear: float = 0.0
 
     @property
     def numbers(self) -> FloatArray:
@@ -130,6 +145,11 @@ class Tank:
         Level above which it runs over.
     caught : float
         Share of what runs over that falls into the next tank.
+    back : float
+        1 where the next tank's level stands against the outlet, else 0.
+    leak, leak_time : float
+        A seal lets through ``leak coefficient w h``, where ``w`` is how wet it is: it
+        follows the level with this time in seconds.
     """
 
     area: float
@@ -137,6 +157,9 @@ class Tank:
     exponent: float = 1.0
     rim: float = np.inf
     caught: float = 0.0
+    back: float = 0.0
+    leak: float = 0.0
+    leak_time: float = 1.0
 
 
 def fill(

@@ -1,8 +1,4 @@
-"""Physics that the vocabulary has no word for: the right answer is "unnamed".
-
-Some may be used while a solver is mended (``development``), the others only for the
-transfer score (``transfer``).
-"""
+"""Physics that the vocabulary has no word for: the right answer is "unnamed"."""
 
 import numpy as np
 

@@ -23,6 +23,7 @@ def blind_summary(
         "scale": held["scale"],
         "without": held["without"],
         "only": held["only"],
+        "kept": held["kept"],
         "transfer_scale": settings["transfer_scale"],
         "seeds": [min(seeds), max(seeds)],
         "seeds_used_while_mending": {
