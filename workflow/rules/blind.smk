@@ -112,6 +112,7 @@ rule blind_summary:
         settings=settings_text(
             {
                 "plan": blind_cases(CONTEST["set"]),
+                "transfer_set": TRANSFER,
                 "transfer_scale": CONTEST["transfer_scale"],
                 "solver": CONTEST["solver"],
             }

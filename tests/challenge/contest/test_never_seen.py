@@ -48,5 +48,13 @@ def test_a_form_a_family_and_an_unlisted_effect_have_a_row_each():
     assert rows["unlisted", "stick-slip"][:2] == (2, 0.5)
 
 
+def test_a_lost_case_is_no_right_answer():
+    lost = {"status": "exit status 2", "gap": None, "seconds": 1.0, "cpu_seconds": 1.0}
+    about = truth(effect("stick-slip", "only"), kind="unlisted")
+    missed = judge("mine", "case", about, lost, SCHEMA, lambda members: members)
+    ((*_, cases, right, _, _, _, _), _) = never_seen(frame([missed, CASES[5]]), kept=1)
+    assert (cases, right) == (2, 0.5)
+
+
 def test_there_may_be_no_transfer_set():
     assert list(never_seen(frame([]))) == []

@@ -62,6 +62,7 @@ ABOUT = {
     "set": "small",
     "scale": 0.5,
     "kept": 2,
+    "transfer_set": "transfer",
     "transfer_scale": 0.25,
     "seeds_used_while_mending": {"development": [1, 9], "earlier": [20, 29]},
 }

@@ -82,7 +82,12 @@ def _rows(cases: pd.DataFrame, names: pd.Series[Any]) -> Iterator[tuple[Any, ...
         said = names_that_count(group)
         hidden = [set(truth.split()) - set(NAMELESS) for truth in group["truth"]]
         both = list(zip(said, hidden, strict=True))
-        right = wilson(sum(set(given) == there for given, there in both), len(both))
+        # a lost case names nothing, but is no answer
+        told = zip(both, group["lost"], strict=True)
+        right = wilson(
+            sum(set(given) == there and not lost for (given, there), lost in told),
+            len(both),
+        )
         wrong = [
             {x: confidence for x, confidence in given.items() if x not in there}
             for given, there in both

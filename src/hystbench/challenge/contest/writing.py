@@ -42,9 +42,10 @@ def write_score(
     solver : str
         Whose score it is.
     about : mapping
-        What summary.json says of the contest: ``set``, ``scale``, ``transfer_scale``,
-        ``kept``, the group that all sets but the transfer set left out, its seeds and
-        ``seeds_used_while_mending`` (first and last, by what they were used for).
+        What summary.json says of the contest: ``set``, ``scale``, ``transfer_set``,
+        ``transfer_scale``, ``kept``, the group that all sets but the transfer set left
+        out, its seeds and ``seeds_used_while_mending`` (first and last, by what they
+        were used for).
     out : Path
         Folder for :data:`WRITTEN`.
     """
@@ -91,7 +92,7 @@ def _held(
     told: list[tuple[Any, ...]] = []
     for name, scale, judged in (
         (about["set"], about["scale"], cases),
-        ("transfer", about["transfer_scale"], transfer),
+        (about["transfer_set"], about["transfer_scale"], transfer),
     ):
         seeds = judged["seed"]
         if len(seeds):

@@ -24,6 +24,7 @@ def blind_summary(
         "without": held["without"],
         "only": held["only"],
         "kept": held["kept"],
+        "transfer_set": settings["transfer_set"],
         "transfer_scale": settings["transfer_scale"],
         "seeds": [min(seeds), max(seeds)],
         "seeds_used_while_mending": {
