@@ -15,7 +15,7 @@ from hystbench.yaml_files import load_yaml
 
 
 @dataclass(frozen=True)
-class Group:
+class KeptGroup:
     """What is left out together.
 
     Parameters
@@ -49,14 +49,14 @@ class Group:
 
 _TABLE: Mapping[str, Any] = load_yaml(Path(__file__).with_name("kept.yaml"))
 GROUPS = {
-    number: Group(**{key: tuple(names) for key, names in about.items()})
+    number: KeptGroup(**{key: tuple(names) for key, names in about.items()})
     for number, about in _TABLE["groups"].items()
 }
 KEPT: int = _TABLE["kept"]
 """The group that is left out now."""
 
 
-def group_of(number: int) -> Group:
+def group_of(number: int) -> KeptGroup:
     """Give a group.
 
     Raises

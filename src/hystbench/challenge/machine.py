@@ -97,7 +97,7 @@ class Machine:
         return move(part, command, self.dt, gains=self.gains)
 
     def driven(
-        self, item: Excitation, hidden: Sequence[HiddenEffect], reach: Reach
+        self, item: RecordCommand, hidden: Sequence[HiddenEffect], reach: Reach
     ) -> FloatArray:
         """Compute what a record's command becomes before it drives the machine."""
         command = self.command(item)
