@@ -1,11 +1,11 @@
 """A gap searched and written, as the command does it."""
 
-from hystbench.gap.run import closed_gap, will_write
+from hystbench.gap.run import Asked, closed_gap, will_write
 
 
-def close_gap(evidence, base, folder, *, report=True, **asked):
+def close_gap(evidence, base, folder, *, report=True, place="model", **asked):
     """Write the result to a folder; what stands in the way is refused before."""
     will_write(folder, evidence)
-    closed = closed_gap(evidence, base, **asked)
+    closed = closed_gap(evidence, base, Asked(**asked), place)
     closed.write(folder, report)
     return closed.decision

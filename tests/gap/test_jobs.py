@@ -16,7 +16,7 @@ from hystbench.gap.report.tables import (
     write_table,
 )
 from hystbench.gap.run import BASE as BASE_FILE
-from hystbench.gap.run import DECISION, decide_in, show_in
+from hystbench.gap.run import DECISION, Asked, decide_in, show_in
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model, load_model
 from hystbench.record import Channel
@@ -54,15 +54,15 @@ def test_nothing_of_hold_out_records_is_read_to_decide(decided, tmp_path):
 
 def test_effects_left_out_and_put_in_are_those_of_one_run(decided, tmp_path):
     _, data, base, _ = decided
-    asked = Vocabulary.of(["sensor-lag", "input-delay"], ["asymmetry"])
+    vocabulary = Vocabulary.of(["sensor-lag", "input-delay"], ["asymmetry"])
+    asked = Asked(vocabulary=vocabulary)
     model = load_model(base)
-    decide_in(tmp_path / "jobs", load_evidence(data, "fit"), model, vocabulary=asked)
+    decide_in(tmp_path / "jobs", load_evidence(data, "fit"), model, asked)
     begun = load_model(tmp_path / "jobs" / BASE_FILE)
     assert begun.name == "tiny-base with asymmetry"
     show_in(tmp_path / "jobs", load_evidence(data), begun)
-    close_gap(
-        load_evidence(data), model, tmp_path / "one", report=False, vocabulary=asked
-    )
+    all_of_it, one = load_evidence(data), tmp_path / "one"
+    close_gap(all_of_it, model, one, report=False, vocabulary=vocabulary)
     for file in ("gap.json", "model.yaml", "curves.json"):
         made = [(tmp_path / way / file).read_bytes() for way in ("jobs", "one")]
         assert made[0] == made[1], file

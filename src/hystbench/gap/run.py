@@ -46,6 +46,52 @@ RESULT = (*FILES, "holdout/*.csv")
 """Files of a folder, as names or patterns, that a later result replaces."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Asked:
+    """What a user asks of a search.
+
+    Parameters
+    ----------
+    limits : mapping of str to float, optional
+        What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
+        What is not given is taken from the fit records.
+    unnamed_share : float
+        Share of the power of the gap that may stay unnamed beside a name.
+    vocabulary : Vocabulary
+        Effects that may be named, and those that are in the model from the start.
+    say : callable
+        Told a line of progress at a time.
+    """
+
+    limits: Mapping[str, float] | None = None
+    unnamed_share: float = UNNAMED_SHARE
+    vocabulary: Vocabulary = EVERYTHING
+    say: Say = silent
+
+
+@dataclass(frozen=True)
+class Decided:
+    """What goes from the fit records to those that are held out.
+
+    Parameters
+    ----------
+    base : Model
+        As it was given, or identified: it tells what another state at the first sample
+        would do, as what stands for it may hold a place that no record forgets.
+    fitted : FitResult
+    content : mapping
+        What gap.json holds, but for what the hold-out records show.
+    vocabulary : Vocabulary
+    built_in : BuiltIn or None
+    """
+
+    base: Model
+    fitted: FitResult
+    content: Mapping[str, Any]
+    vocabulary: Vocabulary
+    built_in: BuiltIn | None
+
+
 @dataclass(frozen=True)
 class Closed:
     """A gap that was searched and shown on hold-out records; nothing is written yet.
@@ -88,21 +134,16 @@ class Closed:
                 write_report(fresh)
 
 
-def will_write(folder: Path, evidence: Evidence) -> None:
+def will_write(
+    folder: Path, evidence: Evidence, files: tuple[str, ...] = FILES
+) -> None:
     """Refuse a folder in which a result cannot stand, before the search is paid."""
     tables = (f"holdout/{record.name}.csv" for record in evidence.hold_out)
-    writes(*(folder / name for name in (*FILES, *tables)))
+    writes(*(folder / name for name in (*files, *tables)))
 
 
 def closed_gap(
-    evidence: Evidence,
-    base: Model,
-    *,
-    place: str = "model",
-    limits: Mapping[str, float] | None = None,
-    unnamed_share: float = UNNAMED_SHARE,
-    vocabulary: Vocabulary = EVERYTHING,
-    say: Say = silent,
+    evidence: Evidence, base: Model, asked: Asked = Asked(), place: str = "model"
 ) -> Closed:
     """Find what the base lacks, and show on hold-out records how the gap shrinks.
 
@@ -110,17 +151,9 @@ def closed_gap(
     ----------
     evidence : Evidence
     base : Model
+    asked : Asked
     place : str
         Where the base came from, for messages.
-    limits : mapping of str to float, optional
-        What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
-        What is not given is taken from the fit records.
-    unnamed_share : float
-        Share of the power of the gap that may stay unnamed beside a name.
-    vocabulary : Vocabulary
-        Effects that may be named, and those that are in the model from the start.
-    say : callable
-        Told a line of progress at a time.
 
     Raises
     ------
@@ -131,32 +164,21 @@ def closed_gap(
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.input_hold)
     keep_back(evidence)
-    decision, built_in = found_on_fit(
-        evidence, base, limits, say, unnamed_share, vocabulary
-    )
-    evidence, result = shown_on_hold_out(
-        evidence, base, decision, decision.content, vocabulary, built_in, say
-    )
+    decision, decided = decide(evidence, base, asked)
+    evidence, result = show(evidence, decided, asked.say)
     decision = replace(decision, model=result.model, content=result.content)
     return Closed(decision, result, evidence)
 
 
-def found_on_fit(
-    evidence: Evidence,
-    base: Model,
-    limits: Mapping[str, float] | None,
-    say: Say,
-    unnamed_share: float,
-    vocabulary: Vocabulary,
-) -> tuple[Decision, BuiltIn | None]:
+def decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Decided]:
     """Put in what is asked for, and find what the fit records say is missing.
 
-    Parameters are those of :func:`closed_gap`.
+    No other records are read.
     """
-    say = say_in_words(say)
+    say, first = say_in_words(asked.say), base
     about = base, evidence.input_hold, evidence.quantities, say
     evidence = replace(evidence, fit=without_leads(evidence.fit, *about))
-    vocabulary = vocabulary.in_device(evidence.device_kind)
+    vocabulary = asked.vocabulary.in_device(evidence.device_kind)
     base, built_in = build_in(base, evidence, vocabulary.fixed, say)
     decision = search(
         evidence.name,
@@ -164,40 +186,22 @@ def found_on_fit(
         base,
         evidence.input_hold,
         evidence.noise_rms,
-        limits,
+        asked.limits,
         say,
-        unnamed_share,
+        asked.unnamed_share,
         vocabulary.offered,
         quantities_if_linear(base, evidence),
     )
-    return decision, built_in
+    content = with_device(decision.content, evidence.device_kind, evidence.quantities)
+    return decision, Decided(first, decision, content, vocabulary, built_in)
 
 
-def shown_on_hold_out(
-    evidence: Evidence,
-    base: Model,
-    fitted: FitResult,
-    decided: Mapping[str, Any],
-    vocabulary: Vocabulary,
-    built_in: BuiltIn | None,
-    say: Say = silent,
+def show(
+    evidence: Evidence, decided: Decided, say: Say = silent
 ) -> tuple[Evidence, Outcome]:
     """Compare what was found with the hold-out records, for the first time.
 
     They choose nothing, and may take back what was named.
-
-    Parameters
-    ----------
-    evidence : Evidence
-    base : Model
-        As it was given, or identified: it tells what another state at the first sample
-        would do, as what stands for it may hold a place that no record forgets.
-    fitted : FitResult
-    decided : mapping
-        What gap.json holds, but for what the hold-out records show.
-    vocabulary : Vocabulary
-    built_in : BuiltIn or None
-    say : callable
 
     Returns
     -------
@@ -205,9 +209,11 @@ def shown_on_hold_out(
         Without the leads of hold-out records that begin in the middle of a motion.
     outcome : Outcome
     """
-    evidence = as_found(evidence, base, fitted, say_in_words(say))
-    vocabulary = vocabulary.in_device(evidence.device_kind)
-    return evidence, outcome(fitted, decided, evidence, vocabulary, built_in)
+    fitted, vocabulary = decided.fitted, decided.vocabulary
+    evidence = as_found(evidence, decided.base, fitted, say_in_words(say))
+    return evidence, outcome(
+        fitted, decided.content, evidence, vocabulary, decided.built_in
+    )
 
 
 def as_found(
@@ -284,37 +290,12 @@ DECIDED = ("curves.json", BASE, NAMED, DECISION)
 
 
 def decide_in(
-    folder: Path,
-    evidence: Evidence,
-    base: Model,
-    limits: Mapping[str, float] | None = None,
-    say: Say = silent,
-    unnamed_share: float = UNNAMED_SHARE,
-    vocabulary: Vocabulary = EVERYTHING,
+    folder: Path, evidence: Evidence, base: Model, asked: Asked = Asked()
 ) -> Decision:
-    """Decide on the fit records; write the decision and the curves to a folder.
-
-    Parameters
-    ----------
-    folder : Path
-    evidence : Evidence
-        Only its fit records are read.
-    base : Model
-    limits : mapping of str to float, optional
-        Of the next experiment; what is not given is taken from the fit records.
-    say : callable
-        Told a line of progress at a time.
-    unnamed_share : float
-        Share of the power of the gap that may stay unnamed beside a name.
-    vocabulary : Vocabulary
-        Effects that may be named, and those that are in the model from the start.
-    """
+    """Decide on the fit records; write the decision and the curves to a folder."""
     writes(*(folder / name for name in DECIDED))
-    decision, built_in = found_on_fit(
-        evidence, base, limits, say, unnamed_share, vocabulary
-    )
-    content = with_device(decision.content, evidence.device_kind, evidence.quantities)
-    decision = replace(decision, content=content)
+    decision, decided = decide(evidence, base, asked)
+    built_in = decided.built_in
     kept = {
         "floor": asdict(decision.floor),
         "leads": [record.lead for record in decision.state.records],
@@ -324,15 +305,15 @@ def decide_in(
             for item in decision.rungs
         ],
         "identified": base.to_mapping() if is_identified(base) else None,
-        "without": list(vocabulary.without),
-        "with": list(vocabulary.fixed),
+        "without": list(decided.vocabulary.without),
+        "with": list(decided.vocabulary.fixed),
         "built_in": None if built_in is None else built_in.mapping(),
     }
     with whole_folder(folder, DECIDED) as fresh:
         write_json(fresh / "curves.json", decision.curves)
         decision.base.save(fresh / BASE)
         write_json(fresh / NAMED, kept)
-        write_json(fresh / DECISION, decision.content)
+        write_json(fresh / DECISION, decided.content)
     return decision
 
 
@@ -348,19 +329,19 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     evidence : Evidence
     base : Model
     """
-    tables = (f"holdout/{record.name}.csv" for record in evidence.hold_out)
-    writes(*(folder / name for name in (*DECISIVE, *tables)))
-    kept = read_json(folder / NAMED)
+    will_write(folder, evidence, DECISIVE)
+    evidence, shown = show(evidence, _decided_in(folder, evidence, base))
+    with whole_folder(folder, SHOWN) as fresh:
+        write_shown(fresh, evidence.hold_out, shown)
+
+
+def _decided_in(folder: Path, evidence: Evidence, base: Model) -> Decided:
+    """Give back what :func:`decide_in` wrote."""
+    kept, content = read_json(folder / NAMED), read_json(folder / DECISION)
+    floor, own = Floor(**kept["floor"]), OwnValues.of_mapping(content["record_values"])
     leads = zip(evidence.fit, kept["leads"], strict=True)
-    evidence = replace(evidence, fit=tuple(replace(x, lead=n) for x, n in leads))
-    named = f"{folder / NAMED}: identified"
-    first = (
-        Model.from_mapping(kept["identified"], named) if kept["identified"] else base
-    )
-    floor = Floor(**kept["floor"])
-    decided = read_json(folder / DECISION)
-    own = OwnValues.of_mapping(decided["record_values"])
-    fit = own.taken_off(evidence.fit, evidence.input_hold)
+    fit = tuple(replace(record, lead=lead) for record, lead in leads)
+    fit = own.taken_off(fit, evidence.input_hold)
     restorer = Restorer(fit, base.chain)
     state = restorer.state(kept["state"])
     rungs = tuple(
@@ -368,11 +349,12 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     )
     start, _ = start_state(fit, base, evidence.input_hold, evidence.noise_rms)
     box = black_box(compared_records(start), floor.rms)
-    fitted = FitResult(base, state, floor, box, rungs, own)
+    first = base
+    if kept["identified"]:
+        named = f"{folder / NAMED}: identified"
+        first = Model.from_mapping(kept["identified"], named)
     vocabulary = Vocabulary.of(kept["without"], kept["with"])
+    vocabulary = vocabulary.in_device(evidence.device_kind)
     built_in = BuiltIn.of_mapping(kept["built_in"]) if kept["built_in"] else None
-    evidence, shown = shown_on_hold_out(
-        evidence, first, fitted, decided, vocabulary, built_in
-    )
-    with whole_folder(folder, SHOWN) as fresh:
-        write_shown(fresh, evidence.hold_out, shown)
+    fitted = FitResult(base, state, floor, box, rungs, own)
+    return Decided(first, fitted, content, vocabulary, built_in)

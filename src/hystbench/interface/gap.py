@@ -13,7 +13,7 @@ from hystbench.dataset import Dataset
 from hystbench.errors import refuse_unknown
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence, load_evidence
-from hystbench.gap.run import Closed, closed_gap
+from hystbench.gap.run import Asked, Closed, closed_gap
 from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.gap.vocabulary import Vocabulary, in_words
 from hystbench.model import Model
@@ -284,7 +284,12 @@ def find_gap(
     InputError
         If a file, a unit or a name is wrong, or the model does not run.
     """
-    vocabulary = Vocabulary.of(without, with_)
+    asked = Asked(
+        limits=limits,
+        unnamed_share=unnamed_share,
+        vocabulary=Vocabulary.of(without, with_),
+        say=say,
+    )
     if evidence is None:
         evidence = _evidence(dataset)
     place = str(dataset.path if isinstance(dataset, Dataset) else dataset)
@@ -295,15 +300,8 @@ def find_gap(
             str(model) if isinstance(model, Path) else model, evidence
         )
         say(note)
-        closed = closed_gap(
-            evidence,
-            base,
-            place=model.name if isinstance(model, Model) else str(model),
-            limits=limits,
-            unnamed_share=unnamed_share,
-            vocabulary=vocabulary,
-            say=say,
-        )
+        called = model.name if isinstance(model, Model) else str(model)
+        closed = closed_gap(evidence, base, asked, called)
     places = {
         "dataset": place,
         "model": "MODEL.yaml" if isinstance(model, Model) else str(model),

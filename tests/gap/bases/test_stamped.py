@@ -11,7 +11,7 @@ from hystbench.gap.bases.linear import identified_linear
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.effects import effects
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.run import closed_gap
+from hystbench.gap.run import Asked, closed_gap
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
@@ -109,7 +109,7 @@ def test_the_spring_is_named_beside_both():
     rivals = {"stop", "friction", "asymmetry", "input-delay"}
     others = set(effects()) - rivals - {"stiffness-hardening"}
     known = Vocabulary.of(sorted(others), ())
-    found = closed_gap(about, base, vocabulary=known).decision.content
+    found = closed_gap(about, base, Asked(vocabulary=known)).decision.content
     assert [item["name"] for item in found["effects"]] == ["stiffness-hardening"]
     assert found["verdict"] == "named"
     assert found["record_values"]["kinds"] == ["offset"]

@@ -8,7 +8,7 @@ import click
 from hystbench import options
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.records.evidence import check_units, load_evidence
-from hystbench.gap.run import decide_in, write_next_experiment
+from hystbench.gap.run import Asked, decide_in, write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.options import SearchOptions
 from hystbench.signature import DatasetFile, OutFolder, command, of_class
@@ -23,27 +23,23 @@ def gap_decide(
 
     Writes curves.json, and the base, what was named and the decision to OUT/stages.
     """
-    asked = SearchOptions(**search)
-    vocabulary = Vocabulary.of(
-        asked.without, asked.with_
-    )  # refuses, before a file is read
+    given = SearchOptions(**search)
+    asked = Asked(
+        limits=given.limits,
+        unnamed_share=given.unnamed_share,
+        # Refuses, before a file is read.
+        vocabulary=Vocabulary.of(given.without, given.with_),
+        say=lambda line: click.echo(line, err=True),
+    )
     evidence = load_evidence(dataset, "fit")
     base, note = load_base(model, evidence)
     if note:
         click.echo(note, err=True)
     check_units(evidence, base, model)
-    decision = decide_in(
-        out,
-        evidence,
-        base,
-        unnamed_share=asked.unnamed_share,
-        vocabulary=vocabulary,
-        limits=asked.limits,
-        say=lambda line: click.echo(line, err=True),
-    )
-    if asked.write_experiment is not None:
+    decision = decide_in(out, evidence, base, asked)
+    if given.write_experiment is not None:
         # The folder is a job's output, with the signal or without.
-        place = asked.write_experiment
+        place = given.write_experiment
         place.parent.mkdir(parents=True, exist_ok=True)
         told = write_next_experiment(decision, evidence.input, place)
         click.echo(told, err=True)
