@@ -11,11 +11,12 @@ from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.state import Free
 from hystbench.gap.naming import rank as module
-from hystbench.gap.naming.rank import (
+from hystbench.gap.naming import rivals
+from hystbench.gap.naming.rank import rank
+from hystbench.gap.naming.rivals import (
     above_noise_of_its_own,
     beside_their_own_shapes,
     beyond_simpler_laws,
-    rank,
     simplest_of_a_tie,
 )
 from hystbench.gap.naming.rounds import Candidate, best_forms
@@ -246,7 +247,7 @@ def test_those_that_score_alike_are_compared_beside_their_own_shapes(monkeypatch
     """The best of them keeps its score and gain; one that is far behind has no part."""
     state = state_of(LOOP, measured((OTHER,), NOISE, given=records() * 3))
     own = iter((70.0, 50.0))
-    monkeypatch.setattr(module, "above_noise_of_its_own", lambda *_: next(own))
+    monkeypatch.setattr(rivals, "above_noise_of_its_own", lambda *_: next(own))
     given = [
         Candidate(name, "drive", score=value, gain=300.0 - value, state=state)
         for name, value in (("delay", 100.0), ("lag", 110.0), ("far", 290.0))

@@ -1,0 +1,173 @@
+"""Candidates of one ranking held against each other, once each was judged by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.gap.effects import effects
+from hystbench.gap.fitting.model_score import directions_of, score_of
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.naming.rounds import Candidate, in_order
+from hystbench.gap.thresholds import AS_GOOD, CERTAIN, LOOSE, PAYS, SCALE
+
+
+def beyond_others(
+    candidates: Sequence[Candidate], state: ModelState, score: Score
+) -> list[Candidate]:
+    """Charge effects for their freedom to choose a law."""
+    return beyond_simpler_laws(by_all_their_laws(candidates), state, score)
+
+
+def by_all_their_laws(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Sum the evidence of all laws of each effect.
+
+    Each law is as likely as the others before anything was measured. So an effect of
+    which one law alone fits pays for the others, and one of which all fit alike pays
+    nothing: with ``s`` the scores of ``n`` laws and their places, the effect's score is
+    raised by ``-SCALE log(sum(exp((min(s) - s) / SCALE)) / n)``.
+    """
+
+    def summed(item: Candidate) -> Candidate:
+        if item.state is None or not item.variants:
+            return item
+        scores = np.array([x.score for x in item.variants])
+        likely = np.exp((scores.min() - scores) / SCALE)
+        dearer = -SCALE * float(np.log(np.mean(likely)))
+        return replace(item, score=item.score + dearer, gain=item.gain - dearer)
+
+    return in_order(summed(item) for item in candidates)
+
+
+def beyond_simpler_laws(
+    candidates: Sequence[Candidate], before: ModelState, score: Score
+) -> list[Candidate]:
+    """Charge what bends to much as a further effect, where a simpler law does nearly.
+
+    Two sorts do: a free form, such as a path or a correction of the hysteresis, which
+    is no rival of a law that leaves no more than may stay in all; and what a law has
+    beside an offset of the output, as a bias of the field has one when the sensor is
+    set to zero with it on, where an effect of no more numbers leaves hardly more of the
+    gap. Either may stand for what the simulation misses, so that it has to be beyond
+    doubt.
+    """
+    floor = score.floor
+    gap = before.power(floor)
+
+    def charged(item: Candidate) -> Candidate:
+        more = _may_leave_more(item)
+        if item.state is None or not more:
+            return item
+        for other in candidates:
+            if other.state is None or other.gain < PAYS or other.score <= item.score:
+                continue
+            simpler = item.state.freedom >= other.state.freedom
+            if simpler and item.state.share(other.state, floor, gap) < more:
+                dearer, gain = item.score + CERTAIN, item.gain - CERTAIN
+                return replace(item, score=dearer, gain=gain)
+        return item
+
+    return in_order(charged(item) for item in candidates)
+
+
+def _may_leave_more(item: Candidate) -> float:
+    """Give the share of the gap that a simpler law may leave more; none for most."""
+    effect = effects()[item.effect]
+    if item.form in effect.free_forms:
+        return LOOSE
+    return AS_GOOD if item.form in effect.offsets else 0.0
+
+
+def beside_their_own_shapes(
+    candidates: Sequence[Candidate],
+    alike: Sequence[str],
+    before: ModelState,
+    floor: float,
+) -> list[Candidate]:
+    """Compare candidates that score alike beside what a wrong shape does in each.
+
+    The base's hysteresis gets another input behind a lag, and its output goes through
+    what follows it: a wrong shape of it looks different with the effect than without.
+    The best keeps its score; the others are as far behind it as these scores say,
+    above that of noise, as the directions are not as many.
+
+    Parameters
+    ----------
+    candidates : sequence of Candidate
+    alike : sequence of str
+        Effects of those that are compared.
+    before : ModelState
+        Without them; where it has no hysteresis, nothing is to be compared.
+    floor : float
+        Mean square of the noise.
+    """
+    if len(alike) < 2 or not before.wrong_shape.shape[1]:
+        return list(candidates)
+    own = {
+        item.effect: above_noise_of_its_own(item.state, before, floor)
+        for item in candidates
+        if item.effect in alike and item.state is not None
+    }
+    if not own:
+        return list(candidates)
+    best = next(x for x in candidates if x.effect == min(own, key=lambda k: own[k]))
+    behind = {name: value - own[best.effect] for name, value in own.items()}
+    return in_order(
+        replace(
+            item,
+            score=best.score + behind[item.effect],
+            gain=best.gain - behind[item.effect],
+        )
+        if item.effect in behind
+        else item
+        for item in candidates
+    )
+
+
+def above_noise_of_its_own(
+    state: ModelState, before: ModelState, floor: float
+) -> float:
+    """Score a model above noise, beside what a wrong shape of its own could do.
+
+    Its numbers stay charged; effects that were there before may be of another form.
+    """
+    own = Score(state.sample, directions_of(state.wrong_shape, before), floor)
+    return score_of(state, own) - own.least()
+
+
+def simplest_of_a_tie(
+    candidates: Sequence[Candidate], exact: Collection[str], needs: float
+) -> list[Candidate]:
+    """Put what has the fewest numbers first, of those that cannot be told apart.
+
+    Scores stay as they are: a name that leads for that alone has a confidence of less
+    than a half.
+
+    Parameters
+    ----------
+    candidates : sequence of Candidate
+        What scores least, first.
+    exact : collection of str
+        Effects that were simulated exactly; others cannot lead.
+    needs : float
+        What an effect has to gain to be taken.
+    """
+    tied = [
+        item
+        for item in candidates
+        if item.state is not None
+        and item.effect in exact
+        and item.gain >= needs
+        and item.score < candidates[0].score + SCALE
+    ]
+    if len(tied) < 2:
+        return list(candidates)
+    first = min(tied, key=lambda item: (_freedom(item), item.score))
+    return [first, *(item for item in candidates if item is not first)]
+
+
+def _freedom(item: Candidate) -> float:
+    return np.inf if item.state is None else item.state.freedom
