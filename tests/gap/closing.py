@@ -1,6 +1,7 @@
 """A gap searched and written, as the command does it."""
 
-from hystbench.gap.run import Asked, closed_gap, will_write
+from hystbench.gap.asked import Asked
+from hystbench.gap.run import closed_gap, will_write
 
 
 def close_gap(evidence, base, folder, *, report=True, place="model", **asked):

@@ -22,9 +22,9 @@ from hystbench.gap.naming import add_effects as naming
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.records.floor import lone_share, noise_floor
 from hystbench.gap.records.scored_samples import Compared
-from hystbench.gap.search import search
 from hystbench.gap.thresholds import FOREIGN, PAYS, SCALE, SHAPE
 from tests.gap.halved import first_halves
+from tests.gap.searched import search
 
 SEED = 1
 

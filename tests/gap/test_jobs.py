@@ -9,6 +9,7 @@ import shutil
 import pytest
 
 from hystbench.errors import InputError
+from hystbench.gap.asked import Asked
 from hystbench.gap.example import slow_loop_model
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.report.tables import (
@@ -16,7 +17,7 @@ from hystbench.gap.report.tables import (
     write_table,
 )
 from hystbench.gap.run import BASE as BASE_FILE
-from hystbench.gap.run import DECISION, Asked, decide_in, show_in
+from hystbench.gap.run import DECISION, decide_in, show_in
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model, load_model
 from hystbench.record import Channel

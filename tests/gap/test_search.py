@@ -20,9 +20,10 @@ from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.judging.verdict import Left
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
-from hystbench.gap.search import judge_and_tell, search
+from hystbench.gap.search import judge_and_tell
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
+from tests.gap.searched import search
 from tests.gap.small import block, hysteresis, measured
 
 
@@ -123,7 +124,7 @@ def test_limits_that_no_input_fits_are_refused_before_the_search(alike, monkeypa
     searched = lambda *given: pytest.fail("searched")  # noqa: E731
     monkeypatch.setattr(search_module, "add_effects", searched)
     with pytest.raises(InputError, match="expected low < high"):
-        search("made", start.records, base, asked={"low": 1.0, "high": 0.5})
+        search("made", start.records, base, limits={"low": 1.0, "high": 0.5})
 
 
 def too_narrow(alike, names, monkeypatch):

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hystbench.blocks.calls import USED_UP, Calls, current
+from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.experiment.excitations import Limits
 from hystbench.gap.experiment.tell_apart import Experiment, tell_apart
 from hystbench.gap.fitting.augmented_model import augmented, blocks_of
@@ -37,10 +38,8 @@ from hystbench.gap.locate import curves, locate
 from hystbench.gap.locate.level import beside_level
 from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.ladder import contributions, rungs
-from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.floor import Floor, lone_share, unrepeated
 from hystbench.gap.records.scored_samples import Compared
-from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.model import Model
 
 
@@ -74,10 +73,9 @@ def judge_and_tell(
     start: ModelState,
     floor: Floor,
     named: Named,
-    say: Say = silent,
+    asked: Asked = USUAL,
     limits: Limits | None = None,
     own: OwnValues = NONE,
-    unnamed_share: float = UNNAMED_SHARE,
 ) -> Decision:
     """Locate the gap, and give the verdict on what was named.
 
@@ -90,15 +88,13 @@ def judge_and_tell(
         The base on the fit records.
     floor : Floor
     named : Named
-    say : callable
-        Told a line of progress at a time.
+    asked : Asked
     limits : Limits, optional
         Of the next experiment; those of the records where none are given.
     own : OwnValues
         What was taken off the records of ``start``, as it is their own.
-    unnamed_share : float
-        Share of the power of the gap that may stay unnamed beside a name.
     """
+    say, share = asked.say, asked.unnamed_share
     left = what_is_left(start, named.state, floor.rms)
     if named.state.added and left.little_named:
         say(f"{LITTLE}: none named")
@@ -111,7 +107,7 @@ def judge_and_tell(
         lone=lone_share([item.residual[item.record.counted] for item in after]),
         unrepeated=unrepeated(after, floor.rms),
     )
-    found = _judged(start, named, left, floor, before, own, unnamed_share)
+    found = _judged(start, named, left, floor, before, own, share)
     ladder = rungs(start, named)
     contributed = contributions(ladder) if found.verdict == "named" else ()
     where = locate(before, floor, contributed)
@@ -134,7 +130,7 @@ def judge_and_tell(
             "lone_share": left.lone,
             "unrepeated": left.unrepeated,
         },
-        "unnamed": found.unnamed.mapping(unnamed_share),
+        "unnamed": found.unnamed.mapping(share),
         "where": [view.to_mapping() for view in where],
         "ranking": ranking_rows(named),
         "record_values": own.mapping(unit),
@@ -181,12 +177,12 @@ def _judged(
     floor: Floor,
     before: Sequence[Compared],
     own: OwnValues,
-    unnamed_share: float,
+    share: float,
 ) -> _Judged:
     """Give the verdict on what was named, and say why."""
     state = named.state
     box = black_box(before, floor.rms)
-    unnamed = what_is_unnamed(start, state, floor.rms, unnamed_share)
+    unnamed = what_is_unnamed(start, state, floor.rms, share)
     verdict, why = judge(
         left,
         bool(state.added),
@@ -194,7 +190,7 @@ def _judged(
         bool(start.free),
         floor.method == "upper-bound",
         unnamed,
-        unnamed_share,
+        share,
         what_mends(start.records),
     )
     parts = (
@@ -205,7 +201,7 @@ def _judged(
         _predicts_nothing(state),
         _used_up(current()),
     )
-    trust = unnamed.trust(unnamed_share, left.may_be_of_base)
+    trust = unnamed.trust(share, left.may_be_of_base)
     reason = "; ".join(part for part in parts if part)
     return _Judged(verdict, reason, trust, unnamed, box)
 

@@ -12,6 +12,7 @@ from typing import Any
 
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.files import read_json, whole_folder, write_columns, write_json
+from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.fitting.augmented_model import augmented
@@ -31,8 +32,7 @@ from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence, check_units
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.search import search
-from hystbench.gap.thresholds import UNNAMED_SHARE
-from hystbench.gap.vocabulary import EVERYTHING, Vocabulary, say_in_words, with_device
+from hystbench.gap.vocabulary import Vocabulary, say_in_words, with_device
 from hystbench.model import Model
 from hystbench.record import Channel, FloatArray, Record
 from hystbench.written import writes
@@ -44,29 +44,6 @@ SHOWN = (*DECISIVE, "holdout/*.csv")
 FILES = (*DECISIVE, "curves.json", "report.html")
 RESULT = (*FILES, "holdout/*.csv")
 """Files of a folder, as names or patterns, that a later result replaces."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Asked:
-    """What a user asks of a search.
-
-    Parameters
-    ----------
-    limits : mapping of str to float, optional
-        What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
-        What is not given is taken from the fit records.
-    unnamed_share : float
-        Share of the power of the gap that may stay unnamed beside a name.
-    vocabulary : Vocabulary
-        Effects that may be named, and those that are in the model from the start.
-    say : callable
-        Told a line of progress at a time.
-    """
-
-    limits: Mapping[str, float] | None = None
-    unnamed_share: float = UNNAMED_SHARE
-    vocabulary: Vocabulary = EVERYTHING
-    say: Say = silent
 
 
 @dataclass(frozen=True)
@@ -143,7 +120,7 @@ def will_write(
 
 
 def closed_gap(
-    evidence: Evidence, base: Model, asked: Asked = Asked(), place: str = "model"
+    evidence: Evidence, base: Model, asked: Asked = USUAL, place: str = "model"
 ) -> Closed:
     """Find what the base lacks, and show on hold-out records how the gap shrinks.
 
@@ -175,23 +152,13 @@ def decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Dec
 
     No other records are read.
     """
-    say, first = say_in_words(asked.say), base
-    about = base, evidence.input_hold, evidence.quantities, say
-    evidence = replace(evidence, fit=without_leads(evidence.fit, *about))
     vocabulary = asked.vocabulary.in_device(evidence.device_kind)
-    base, built_in = build_in(base, evidence, vocabulary.fixed, say)
-    decision = search(
-        evidence.name,
-        evidence.fit,
-        base,
-        evidence.input_hold,
-        evidence.noise_rms,
-        asked.limits,
-        say,
-        asked.unnamed_share,
-        vocabulary.offered,
-        quantities_if_linear(base, evidence),
-    )
+    asked = replace(asked, vocabulary=vocabulary, say=say_in_words(asked.say))
+    about = base, evidence.input_hold, evidence.quantities, asked.say
+    evidence = replace(evidence, fit=without_leads(evidence.fit, *about))
+    first = base
+    base, built_in = build_in(base, evidence, vocabulary.fixed, asked.say)
+    decision = search(evidence, base, asked, quantities_if_linear(base, evidence))
     content = with_device(decision.content, evidence.device_kind, evidence.quantities)
     return decision, Decided(first, decision, content, vocabulary, built_in)
 
@@ -290,7 +257,7 @@ DECIDED = ("curves.json", BASE, NAMED, DECISION)
 
 
 def decide_in(
-    folder: Path, evidence: Evidence, base: Model, asked: Asked = Asked()
+    folder: Path, evidence: Evidence, base: Model, asked: Asked = USUAL
 ) -> Decision:
     """Decide on the fit records; write the decision and the curves to a folder."""
     writes(*(folder / name for name in DECIDED))

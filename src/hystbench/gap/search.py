@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 from hystbench.blocks.held import Hold
 from hystbench.blocks.store import Store
+from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import is_identified
-from hystbench.gap.effects import among
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.excitations import Limits
 from hystbench.gap.fitting.augmented_model import augmented
@@ -26,10 +25,10 @@ from hystbench.gap.inside.named_inside import (
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
 from hystbench.gap.naming.add_effects import add_effects
 from hystbench.gap.naming.with_own_values import named_apart
-from hystbench.gap.progress import Say, silent
-from hystbench.gap.records.evidence import own_offsets
+from hystbench.gap.progress import Say
+from hystbench.gap.records.evidence import Evidence, own_offsets
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.thresholds import LOOSE, UNNAMED_SHARE
+from hystbench.gap.thresholds import LOOSE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Record
@@ -44,38 +43,19 @@ a linear base it bends what drives the mass, as a valve does that opens more one
 
 
 def search(
-    dataset: str,
-    records: tuple[Record, ...],
+    evidence: Evidence,
     base: Model,
-    hold: Hold = "band-limited",
-    declared: float | None = None,
-    asked: Mapping[str, float] | None = None,
-    say: Say = silent,
-    unnamed_share: float = UNNAMED_SHARE,
-    offered: tuple[str, ...] | None = None,
+    asked: Asked = USUAL,
     quantities: Quantities | None = None,
 ) -> Decision:
     """Locate the gap, name what is missing and add it.
 
     Parameters
     ----------
-    dataset : str
-        Its name.
-    records : tuple of Record
-        The fit records; no other are read.
+    evidence : Evidence
+        Only its fit records are read.
     base : Model
-    hold : {"zero-order", "linear", "band-limited"}
-        How the input moves between samples.
-    declared : float, optional
-        RMS noise, where it is known.
-    asked : mapping of str to float, optional
-        Limits of the next experiment; the others are those of the records.
-    say : callable
-        Told a line of progress at a time.
-    unnamed_share : float
-        Share of the power of the gap that may stay unnamed beside a name.
-    offered : tuple of str, optional
-        Effects that may be named; all by default.
+    asked : Asked
     quantities : Quantities, optional
         What the device takes and gives, where forces are to be tried inside the
         dynamics too.
@@ -85,21 +65,23 @@ def search(
     InputError
         If the base does not run on the records, or no excitation fits the limits.
     """
-    limits = Limits.of(records, asked) if asked else None
+    records, hold, declared = evidence.fit, evidence.input_hold, evidence.noise_rms
+    offered, say, share = asked.vocabulary.offered, asked.say, asked.unnamed_share
+    limits = Limits.of(records, asked.limits) if asked.limits else None
     if any(record.decay_s is not None for record in records):
         closed = (*NOT_IN_WINDOWS, *(() if quantities else (OF_THE_PLACE,)))
-        offered = tuple(name for name in among(offered) if name not in closed)
+        offered = tuple(name for name in offered if name not in closed)
     start, floor = start_state(records, base, hold, declared, offered)
     first, chain, inside, own = start, None, None, NONE
     if places_between_halves(start.simulation):
         # The base itself says that there is a curve between two filters: a chain.
-        chain = add_effects(start, floor.rms, say, unnamed_share)
-        if quantities and _why_enough(start, chain.state, floor, unnamed_share):
+        chain = add_effects(start, floor.rms, asked)
+        if quantities and _why_enough(start, chain.state, floor, share):
             say("no force could gain what matters, so none is tried inside")
             quantities = None
     if quantities is not None:
         start, floor, inside, own = _with_forces(
-            base, start, floor, quantities, declared, say, unnamed_share
+            base, start, floor, quantities, declared, asked
         )
     if inside is not None and not betters(inside, start, floor.rms):
         say("inside: what stands for the base leaves more than the base does")
@@ -107,27 +89,23 @@ def search(
     enough = ""
     # A base that was given is re-tuned where it is a host: that may stand for a chain.
     if inside is not None and is_identified(base):
-        enough = _why_enough(inside.start, inside.named.state, floor, unnamed_share)
+        enough = _why_enough(inside.start, inside.named.state, floor, share)
     if enough:
         say(f"inside: {enough}, so no chain of effects is tried")
     else:
         if chain is None or start is not first:
-            chain = add_effects(start, floor.rms, say, unnamed_share)
+            chain = add_effects(start, floor.rms, asked)
         named, theirs = chain, own
         if inside is not None and not beats(inside, named, floor.rms, say):
             inside = None
         if not (own.records or _leaves_little(inside, floor)):
-            start, named, theirs = named_apart(
-                start, floor.rms, named, say, unnamed_share
-            )
+            start, named, theirs = named_apart(start, floor.rms, named, asked)
             if inside is not None and theirs.records:
                 inside = inside if beats(inside, named, floor.rms, say) else None
         own = theirs if inside is None else own
     if inside is not None:
         base, start, named = inside.base, inside.start, inside.named
-    found = judge_and_tell(
-        dataset, base, start, floor, named, say, limits, own, unnamed_share
-    )
+    found = judge_and_tell(evidence.name, base, start, floor, named, asked, limits, own)
     if inside is None:
         return found
     reason = f"{found.content['reason']}; {inside.sentence}"
@@ -140,8 +118,7 @@ def _with_forces(
     floor: Floor,
     quantities: Quantities,
     declared: float | None,
-    say: Say,
-    unnamed_share: float,
+    asked: Asked,
 ) -> tuple[ModelState, Floor, Inside | None, OwnValues]:
     """Look for forces inside the dynamics, beside what is a record's own.
 
@@ -154,11 +131,10 @@ def _with_forces(
     own : OwnValues
     """
     identified, records, hold = is_identified(base), start.records, start.hold
+    say = asked.say
 
     def look(start: ModelState) -> Inside | None:
-        return named_inside(
-            base, start, floor.rms, quantities, identified, say, unnamed_share
-        )
+        return named_inside(base, start, floor.rms, quantities, identified, asked)
 
     inside, own = look(start), NONE
     shorter = _without_leads(inside, base, records, hold, quantities, say)
@@ -203,7 +179,7 @@ def _leaves_little(inside: Inside | None, floor: Floor) -> bool:
 
 
 def _why_enough(
-    start: ModelState, state: ModelState, floor: Floor, unnamed_share: float
+    start: ModelState, state: ModelState, floor: Floor, share: float
 ) -> str:
     """Say why no further effect could gain what matters; or nothing.
 
@@ -214,6 +190,6 @@ def _why_enough(
     before, after = start.power(square), state.power(square)
     if after < square:
         return "less than the noise's own power is left above it"
-    if after <= unnamed_share * before:
+    if after <= share * before:
         return "no more is left than may stay unnamed"
     return ""

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from hystbench.dataset import Dataset
 from hystbench.errors import refuse_unknown
+from hystbench.gap.asked import Asked
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence, load_evidence
-from hystbench.gap.run import Asked, Closed, closed_gap
+from hystbench.gap.run import Closed, closed_gap
 from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.gap.vocabulary import Vocabulary, in_words
 from hystbench.model import Model

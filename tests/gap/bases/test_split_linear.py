@@ -13,11 +13,11 @@ from hystbench.gap.bases.wiener_hammerstein import Halves, HalvesError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.places import INSIDE
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.search import search
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model, load_model
 from hystbench.quantities import Quantities
 from tests.gap.made import CURRENT, DISPLACEMENT, multisine, record, steady
+from tests.gap.searched import search
 from tests.gap.small import block
 
 

@@ -7,11 +7,12 @@ the blocks. Its true numbers are told: two poles, no zero.
 import numpy as np
 import pytest
 
+from hystbench.gap.asked import Asked
 from hystbench.gap.bases.linear import identified_linear
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.effects import effects
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.run import Asked, closed_gap
+from hystbench.gap.run import closed_gap
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record

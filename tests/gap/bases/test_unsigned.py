@@ -10,8 +10,8 @@ from hystbench.gap.bases.linear import identified_linear
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.bases.unsigned import with_signs
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.search import search
 from hystbench.record import Channel, Record
+from tests.gap.searched import search
 
 DT, COUNT, NOISE = 0.02, 500, 0.02
 VOLTAGE, SPEED = Channel("voltage", "V"), Channel("speed", "rad/s")

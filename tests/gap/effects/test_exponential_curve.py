@@ -5,9 +5,9 @@ import pytest
 
 from hystbench.blocks.exponential_curve import ExponentialCurve
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.search import search
 from hystbench.model import Model
 from hystbench.record import Channel, Record
+from tests.gap.searched import search
 
 DT, COUNT, NOISE = 0.1, 800, 0.003
 OPENING, FLOW = Channel("opening", "1"), Channel("flow", "1")

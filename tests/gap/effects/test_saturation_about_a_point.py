@@ -6,8 +6,8 @@ import pytest
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.search import search
 from hystbench.record import Channel, Record
+from tests.gap.searched import search
 
 DT, COUNT, NOISE = 0.5, 1000, 0.02
 FLOW, ACID = Channel("flow", "l/min"), Channel("acid", "1")

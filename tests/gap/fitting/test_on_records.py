@@ -5,9 +5,9 @@ import pytest
 
 from hystbench.gap.fitting.on_records import free_numbers, start_state
 from hystbench.gap.fitting.refit import refit
-from hystbench.gap.search import search
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
+from tests.gap.searched import search
 from tests.gap.small import GPI, block, hysteresis, measured, plain_score
 
 NOISE = 0.02

@@ -21,11 +21,11 @@ from hystbench.gap.naming.with_own_values import SHARED, without
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import decide_in, show_in
 from hystbench.gap.schema import RECORD_VALUES
-from hystbench.gap.search import search
 from hystbench.model import Model
 from hystbench.schema import check_against_schema
 from tests.gap.closing import close_gap
 from tests.gap.made import CURRENT, DISPLACEMENT, record, write_folder
+from tests.gap.searched import search
 from tests.gap.small import block, state_of
 
 DT, COUNT, NOISE = 1e-3, 800, 0.02

@@ -8,6 +8,7 @@ import pytest
 
 from hystbench.gap import search as search_module
 from hystbench.gap.bases.load import load_base
+from hystbench.gap.effects import effects
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added
 from hystbench.gap.inside import hypotheses
@@ -15,14 +16,16 @@ from hystbench.gap.inside.named_inside import Inside, _rounds, chosen
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.free_mass import windows
+from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
+from tests.gap.searched import search
 from tests.gap.small import block
 
 
-def added(effects):
-    return [SimpleNamespace(effect=x, place="inside", form="") for x in effects]
+def added(names):
+    return [SimpleNamespace(effect=x, place="inside", form="") for x in names]
 
 
 def tried(score, *effects):
@@ -154,13 +157,13 @@ def test_where_no_more_is_left_than_may_stay_no_chain_is_tried(
         return add_effects(*args, **kwargs)
 
     monkeypatch.setattr(search_module, "add_effects", counted)
-    found = search_module.search(
+    found = search(
         "made",
         tuple(given),
         base,
         declared=1e-4,
         unnamed_share=share,
-        offered=("friction",),
+        vocabulary=Vocabulary.of(name for name in effects() if name != "friction"),
         quantities=kinds,
     )
     assert bool(calls) == chain
@@ -197,7 +200,7 @@ def test_forces_are_looked_for_again_without_the_starts_that_they_show(monkeypat
     monkeypatch.setattr(search_module, "named_inside", look)
     kinds = Quantities("force", "position")
     with pytest.raises(FarEnoughError):
-        search_module.search("made", given, base, declared=1e-3, quantities=kinds)
+        search("made", given, base, declared=1e-3, quantities=kinds)
     assert seen == [[0, 0], [0, 197]]
 
 
@@ -218,7 +221,7 @@ def test_what_drives_a_free_mass_may_be_bent(linear, monkeypatch):
     monkeypatch.setattr(search_module, "start_state", start_state)
     kinds = Quantities("voltage", "position") if linear else None
     with pytest.raises(FarEnoughError):
-        search_module.search("made", windows(record, 0.2), base, quantities=kinds)
+        search("made", windows(record, 0.2), base, quantities=kinds)
     assert ("asymmetry" in seen) == linear
     assert "dead-zone" in seen
     assert "sensor-nonlinearity" not in seen

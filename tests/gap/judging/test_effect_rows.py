@@ -21,11 +21,11 @@ from hystbench.gap.judging.verdict import Left
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook, in_order
 from hystbench.gap.schema import RANK
-from hystbench.gap.search import search
 from hystbench.model import Model, load_model
 from hystbench.model_content import Provenance
 from hystbench.schema import check_against_schema
 from tests.gap.made import CURRENT, DISPLACEMENT
+from tests.gap.searched import search
 from tests.gap.small import MODE, block, hysteresis, measured, state_of
 
 NOISE = 0.02

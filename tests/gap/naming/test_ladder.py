@@ -9,9 +9,9 @@ from hystbench.gap.holdout.show import score_hold_out
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.ladder import BASE, RETUNED, rungs
 from hystbench.gap.naming.rounds import Round
-from hystbench.gap.search import search
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
+from tests.gap.searched import search
 from tests.gap.small import block, measured, state_of
 
 

@@ -19,11 +19,11 @@ from hystbench.gap.effects.effect import Declined
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.run import write_next_experiment
-from hystbench.gap.search import search
 from hystbench.gap.simulation.reshape import reshapings
 from hystbench.gap.simulation.simulation import Simulation
 from tests.gap.halved import first_halves
 from tests.gap.made import CURRENT, record, sine
+from tests.gap.searched import search
 from tests.gap.small import block, hysteresis, measured, records
 
 SEED = 1

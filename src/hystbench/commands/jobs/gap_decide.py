@@ -6,9 +6,10 @@ from typing import Any
 import click
 
 from hystbench import options
+from hystbench.gap.asked import Asked
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.records.evidence import check_units, load_evidence
-from hystbench.gap.run import Asked, decide_in, write_next_experiment
+from hystbench.gap.run import decide_in, write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.options import SearchOptions
 from hystbench.signature import DatasetFile, OutFolder, command, of_class

@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from hystbench.blocks.attached import AttachedBlock
+from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.least_squares import Fitted
@@ -67,8 +68,7 @@ def named_inside(
     floor_rms: float,
     quantities: Quantities,
     identified: bool,
-    say: Say = silent,
-    share: float = UNNAMED_SHARE,
+    asked: Asked = USUAL,
 ) -> Inside | None:
     """Find effects inside the dynamics; None where no force pays.
 
@@ -85,11 +85,10 @@ def named_inside(
         What the device takes and gives: they tell which hosts there are.
     identified : bool
         Whether the base is the linear model that was identified from the records.
-    say : callable
-        Told a line of progress at a time.
-    share : float
-        Of the power of the gap: a further effect that takes less does not matter.
+    asked : Asked
+        A further effect that takes less than may stay unnamed does not matter.
     """
+    say, share = asked.say, asked.unnamed_share
     fewer = on_fewer(start, quantities)
     score, score_of_all = (Score.plain(x.sample, floor_rms**2) for x in (fewer, start))
     turns = start.records[0].output.unit.startswith("rad")

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
+from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.effects import among
 from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
@@ -23,7 +24,7 @@ from hystbench.gap.naming.removal import (
 )
 from hystbench.gap.naming.rounds import MOST, Candidate, Round, reasons
 from hystbench.gap.naming.second_looks import reconsidered
-from hystbench.gap.progress import Say, silent
+from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import (
     FURTHER,
     PAYS,
@@ -65,22 +66,12 @@ class Named:
 def add_effects(
     state: ModelState,
     floor_rms: float,
-    say: Say = silent,
-    share: float = UNNAMED_SHARE,
+    asked: Asked = USUAL,
 ) -> Named:
-    """Add effects to a model for as long as one pays.
-
-    Parameters
-    ----------
-    state : ModelState
-    floor_rms : float
-    say : callable
-        Told a line of progress at a time.
-    share : float
-        Of the power of the gap: once no more is left, nothing further is looked for.
-    """
+    """Add effects to a model for as long as one pays, or until little is left."""
+    say = asked.say
     foretell(state, say)
-    found = _path(state, floor_rms, say, share)
+    found = _path(state, floor_rms, say, asked.unnamed_share)
     try:
         return settled(found, state, floor_rms, say)
     except CallsUsedUp:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from hystbench.gap.asked import Asked
 from hystbench.gap.cache import records_digest
 from hystbench.gap.effects.drift import Drift, path
 from hystbench.gap.effects.variant import Beside, Values
@@ -18,8 +19,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.add_effects import Named, add_effects
-from hystbench.gap.progress import Say
-from hystbench.gap.thresholds import ABOVE_NOISE, PARAMETER, PAYS, UNNAMED_SHARE
+from hystbench.gap.thresholds import ABOVE_NOISE, PARAMETER, PAYS
 from hystbench.record import Record
 
 
@@ -27,8 +27,7 @@ def named_apart(
     start: ModelState,
     floor_rms: float,
     named: Named,
-    say: Say,
-    unnamed_share: float = UNNAMED_SHARE,
+    asked: Asked,
 ) -> tuple[ModelState, Named, OwnValues]:
     """Name anew beside what records have of their own, where that explains them better.
 
@@ -51,10 +50,8 @@ def named_apart(
     floor_rms : float
     named : Named
         What was named on the records as they are.
-    say : callable
-        Told a line of progress at a time.
-    unnamed_share : float
-        Of the power of the gap: where laws leave no more, records have nothing of their
+    asked : Asked
+        Where laws leave no more than may stay unnamed, records have nothing of their
         own that matters.
 
     Returns
@@ -65,9 +62,9 @@ def named_apart(
     own : OwnValues
     """
     found = (start, named, NONE)
-    square = floor_rms**2
+    square, share, say = floor_rms**2, asked.unnamed_share, asked.say
     paths = any(not values for _, values in named.state.beside)
-    if not paths and named.state.power(square) <= unnamed_share * start.power(square):
+    if not paths and named.state.power(square) <= share * start.power(square):
         return found
     score = make_score(start, floor_rms, forms=False)
     # A path is charged half a number in each record or more, an offset a whole one.
@@ -85,14 +82,14 @@ def named_apart(
         models.append((beside_offsets(named.state, start, score), ("offset",)))
     likely = _likely(start, models, score, least)
     # Beside more than that they cannot be told from what the simulator does wrong.
-    most = max(ABOVE_NOISE * square, unnamed_share * start.power(square))
+    most = max(ABOVE_NOISE * square, share * start.power(square))
     for _ in range(ROUNDS):
         value, own = next((item for item in likely if item[0] < least), (least, NONE))
         if not own.records:
             break
         say(f"records have {own.words} of their own: naming beside that")
         apart = on_records(start, own.taken_off(start.records, start.hold))
-        again = add_effects(apart, floor_rms, say, unnamed_share)
+        again = add_effects(apart, floor_rms, asked)
         value = score_of(again.state, score) + own.charge
         if value >= least:
             likely = []
@@ -106,12 +103,12 @@ def named_apart(
         if again.state.power(square) > most:
             say("too much is left beside that: it is not told")
             return start, named, NONE
-        share = apart.share(start, square, start.power(square))
-        if share <= 0:
+        taken = apart.share(start, square, start.power(square))
+        if taken <= 0:
             say("without them the base is further off: they stand for something else")
             break
         same = _names(again) == _names(found[1])
-        found, least = (apart, again, replace(own, share=share)), value
+        found, least = (apart, again, replace(own, share=taken)), value
         if same:
             break  # naming has told all that it can
         told = on_records(again.state, start.records)

@@ -1,0 +1,37 @@
+"""What a user asks of a search."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from hystbench.gap.progress import Say, silent
+from hystbench.gap.thresholds import UNNAMED_SHARE
+from hystbench.gap.vocabulary import EVERYTHING, Vocabulary
+
+
+@dataclass(frozen=True, kw_only=True)
+class Asked:
+    """Limits, shares and names, and who is told how far the search is.
+
+    Parameters
+    ----------
+    limits : mapping of str to float, optional
+        What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
+        What is not given is taken from the fit records.
+    unnamed_share : float
+        Share of the power of the gap that may stay unnamed beside a name.
+    vocabulary : Vocabulary
+        Effects that may be named, and those that are in the model from the start.
+    say : callable
+        Told a line of progress at a time.
+    """
+
+    limits: Mapping[str, float] | None = None
+    unnamed_share: float = UNNAMED_SHARE
+    vocabulary: Vocabulary = EVERYTHING
+    say: Say = silent
+
+
+USUAL = Asked()
+"""Nothing but what is usual."""
