@@ -204,6 +204,38 @@ def test_forces_are_looked_for_again_without_the_starts_that_they_show(monkeypat
     assert seen == [[0, 0], [0, 197]]
 
 
+def test_forces_are_looked_for_again_without_the_offsets_of_records(monkeypatch):
+    """Beside the spring that was found, one record is moved by 3 mm and no other is."""
+    host = block("mechanism", mass=1.0, damping=6.0, stiffness=100.0)
+    spring = block("stiffness", quadratic=0.0, cubic=70.0)
+    channels, t = (Channel("f", "N"), Channel("x", "mm")), 0.01 * np.arange(2000)
+    true, given = [], []
+    for k, offset in enumerate((0.0, 3.0, 0.0)):
+        u = 30 * np.sin((2.0 + 0.3 * k) * t) + 30 * np.sin(7.3 * t)
+        y = Model("plant", *channels, (host, spring)).simulate(u, 0.01)
+        record = Record(f"{k}", 0.01, u, y, *channels, "measured", "fit")
+        true.append(y)
+        given.append(replace(record, y=y + offset))
+    base = Model("made", *channels, (host,))
+    seen = []
+
+    def look(base, start, *_):
+        seen.append([record.y for record in start.records])
+        if len(seen) > 1:
+            raise FarEnoughError
+        added = Added("stiffness-hardening", "inside", "", (1,), {}, 1.0)
+        state = replace(start, chain=(host, spring), added=(added,)).settled()
+        return Inside(base, start, Named(state), "")
+
+    monkeypatch.setattr(search_module, "named_inside", look)
+    kinds = Quantities("force", "position")
+    with pytest.raises(FarEnoughError):
+        search("made", given, base, declared=1e-3, quantities=kinds)
+    np.testing.assert_allclose(seen[0][1] - true[1], 3.0)
+    for found, y in zip(seen[1], true, strict=True):
+        np.testing.assert_allclose(found, y, atol=1e-6)
+
+
 @pytest.mark.parametrize("linear", [True, False])
 def test_what_drives_a_free_mass_may_be_bent(linear, monkeypatch):
     """No curve over its place has a meaning in a window, but one before it has."""
