@@ -9,6 +9,7 @@ import shutil
 import pytest
 
 from hystbench.errors import InputError
+from hystbench.gap import run
 from hystbench.gap.asked import Asked
 from hystbench.gap.example import slow_loop_model
 from hystbench.gap.records.evidence import load_evidence
@@ -51,6 +52,21 @@ def test_nothing_of_hold_out_records_is_read_to_decide(decided, tmp_path):
     close_gap(load_evidence(data), load_model(base), tmp_path, report=False)
     for file in ("gap.json", "model.yaml", "curves.json", "holdout/unseen.csv"):
         assert (out / file).read_bytes() == (tmp_path / file).read_bytes(), file
+
+
+def test_the_search_is_given_no_record_that_is_held_out(decided, monkeypatch):
+    class SearchedError(Exception):
+        pass
+
+    def search(evidence, *_):
+        assert evidence.fit
+        assert evidence.hold_out == ()
+        raise SearchedError
+
+    monkeypatch.setattr(run, "search", search)
+    _, data, base, out = decided
+    with pytest.raises(SearchedError):
+        close_gap(load_evidence(data), load_model(base), out)
 
 
 def test_effects_left_out_and_put_in_are_those_of_one_run(decided, tmp_path):

@@ -150,12 +150,13 @@ def closed_gap(
 def decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Decided]:
     """Put in what is asked for, and find what the fit records say is missing.
 
-    No other records are read.
+    The search is given no other records.
     """
     vocabulary = asked.vocabulary.in_device(evidence.device_kind)
     asked = replace(asked, vocabulary=vocabulary, say=say_in_words(asked.say))
     about = base, evidence.input_hold, evidence.quantities, asked.say
-    evidence = replace(evidence, fit=without_leads(evidence.fit, *about))
+    fit = without_leads(evidence.fit, *about)
+    evidence = replace(evidence, fit=fit, hold_out=())
     first = base
     base, built_in = build_in(base, evidence, vocabulary.fixed, asked.say)
     decision = search(evidence, base, asked, quantities_if_linear(base, evidence))
