@@ -19,7 +19,9 @@ from hystbench.model import load_model
 from hystbench.written import ENTRIES
 from tests.gap.closing import close_gap
 
-READ_LAST = ("gap", "records", "ladder", "black_box", "shortfall", "reason")
+READ_LAST = (
+    *("gap", "records", "ladder", "black_box", "shortfall", "reason", "warnings"),
+)
 """Keys of gap.json that the hold-out records fill; their figure leads the reason."""
 
 
