@@ -149,7 +149,7 @@ def test_what_the_input_does_not_explain_is_added(name):
 
 @pytest.mark.parametrize("name", BLOCKS)
 def test_only_hysteresis_can_be_wrapped(name):
-    own = {"gpi", "hysteresis", "jiles-atherton", "prandtl-ishlinskii"}
+    own = {"bouc-wen", "gpi", "hysteresis", "jiles-atherton", "prandtl-ishlinskii"}
     assert example(name).hysteretic == (name in own | {"preisach", "rdgpi"})
 
 

@@ -232,7 +232,7 @@ def test_the_loop_widens_with_the_rate(block):
     assert area(10.0) > 1.05 * area(1.0)
 
 
-@pytest.mark.parametrize("name", ["preisach", "jiles-atherton", "rdgpi"])
+@pytest.mark.parametrize("name", ["bouc-wen", "preisach", "jiles-atherton", "rdgpi"])
 def test_excess_field_drives_any_hysteresis(name):
     inner = registry()[name].from_mapping(EXAMPLES[name])
     v = 0.5 * np.sin(np.arange(300) / 9)

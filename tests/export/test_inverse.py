@@ -51,6 +51,7 @@ EXACT = {
     "two hystereses": (PI, ("gain", {"value": 0.1}), GPI),
     "a field that lags": (PI, rate("acting-field", "linear")),
     "relays": (("preisach", EXAMPLES["preisach"] | {"cells": 12}),),
+    "a loop that yields": (("bouc-wen", EXAMPLES["bouc-wen"]),),
     "domains": (("jiles-atherton", EXAMPLES["jiles-atherton"]),),
     "plays whose output falls": (
         ("prandtl-ishlinskii", PLAIN | {"weights": [-1.5, -0.3, -0.2]}),

@@ -112,6 +112,10 @@ def mixed():
             ("preisach", EXAMPLES["preisach"] | {"cells": 10}),
             faster("acting-field", "band-limited"),
         ),
+        "field around a loop that yields": chain_of(
+            ("bouc-wen", EXAMPLES["bouc-wen"]),
+            faster("acting-field", "linear"),
+        ),
         "field around domains": chain_of(
             ("jiles-atherton", EXAMPLES["jiles-atherton"]),
             faster("excess-field", "linear"),

@@ -26,6 +26,15 @@ static double hb_prandtl_ishlinskii(int count, const double *thresholds,
     return y;
 }
 
+static double hb_bouc_wen_beside(double weight, double softens, double stiffens,
+                                 double *before, double *h, double v)
+{
+    double integral;
+    *h = hb_bouc_wen(*h, v - *before, softens, stiffens, &integral);
+    *before = v;
+    return v + weight * *h;
+}
+
 /* What is added to the hysteresis inside. */
 static double hb_hysteresis_shape(int count, const double *thresholds,
                                   const double *weights, const double *square_weights,
