@@ -10,7 +10,7 @@ import numpy as np
 
 from hystbench.envelope import Envelope
 from hystbench.gap.effects.effect import Declined, Effect
-from hystbench.gap.effects.variant import Values, Variant
+from hystbench.gap.effects.variant import Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
 OPERATORS = 8
@@ -18,24 +18,31 @@ BEND = 0.5
 """Argument of the hyperbolic tangent at the largest input, where the search starts."""
 PLAYS = "prandtl-ishlinskii"
 FORM = "plays"
-"""Of plain plays beside a linear path; the other form is of generalized ones."""
+"""Of plain plays beside a linear path; another is of generalized ones."""
+BOUC_WEN = "bouc-wen"
+NEAREST, FARTHEST = 0.03, 10.0
+"""Yield distance, in halves of the input's range: nearer it switches as a relay does,
+farther a loop grows by the square of the way and only the weight over it shows."""
+SHARINGS = np.array([0.1, 0.4, 0.8])
+DAHL, ELASTIC = 0.01, 1.0
+"""Ends of the sharing: Dahl's loop, and a curve without one."""
 
 
 class Hysteresis(Effect):
-    """Play operators before everything else, plain ones or generalized ones.
+    """Play operators or a loop of Bouc and Wen before everything else.
 
     Plain plays lie beside a linear path: the chain has its gain already. Their weights
-    may have any sign. Generalized ones have envelopes, from nearly straight and alike
-    ones on; the refit bends them.
+    may have any sign, as may that of the loop. Generalized plays have envelopes, from
+    nearly straight and alike ones on; the refit bends them.
     """
 
     name = "hysteresis"
     shows = "branch"
     place = "material"
-    laws: ClassVar = (PLAYS,)
+    laws: ClassVar = (PLAYS, BOUC_WEN)
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
-        """Offer operators over the range of the input."""
+        """Offer operators over the range of the input, and a loop that yields in it."""
         if simulation.hysteresis is not None:
             raise Declined("the chain has a hysteresis already")
         if simulation.loop is not None and simulation.chain[simulation.loop].reruns:
@@ -44,6 +51,7 @@ class Hysteresis(Effect):
             raise Declined("the input does not move")
         yield self._generalized(simulation)
         yield self._plays(simulation)
+        yield self._bouc_wen(simulation)
 
     def _plays(self, simulation: Simulation) -> Variant:
         """Plays beside a linear path.
@@ -66,6 +74,26 @@ class Hysteresis(Effect):
             form=FORM,
             unit=dict.fromkeys(names, 1e-3),
             free=("weights",),
+        )
+
+    def _bouc_wen(self, simulation: Simulation) -> Variant:
+        """Bouc and Wen's loop beside a linear path: no few plays are one."""
+        _, half = simulation.middle_and_half(0)
+        return self.inserted(
+            simulation,
+            0,
+            law=BOUC_WEN,
+            form="Bouc-Wen",
+            grids={
+                "yield_distance": half * logarithmic(0.1, 3.0),
+                "sharing": SHARINGS,
+            },
+            unit={"weight": 1e-3},
+            limits={
+                "yield_distance": (NEAREST * half, FARTHEST * half),
+                "sharing": (DAHL, ELASTIC),
+            },
+            refused={"sharing": "upper"},
         )
 
     def _generalized(self, simulation: Simulation) -> Variant:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hystbench.gap.effects.effect import Declined, Effect
-from hystbench.gap.effects.hysteresis import PLAYS
+from hystbench.gap.effects.hysteresis import Hysteresis
 from hystbench.gap.effects.variant import Variant
 from hystbench.gap.simulation.simulation import Simulation
 
@@ -25,7 +25,8 @@ class HysteresisShape(Effect):
         """Offer the correction of the chain's hysteresis."""
         if simulation.hysteresis is None:
             raise Declined("the chain has no hysteresis whose shape could be wrong")
-        if simulation.chain[simulation.hysteresis].name in ("hysteresis", PLAYS):
+        own = (Hysteresis.name, *Hysteresis.laws)
+        if simulation.chain[simulation.hysteresis].name in own:
             raise Declined("the shape of an added hysteresis is fitted with it")
         amplitude = simulation.largest(simulation.hysteresis)
         thresholds = [amplitude * k / OPERATORS for k in range(1, OPERATORS)]
