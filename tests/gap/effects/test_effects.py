@@ -425,6 +425,8 @@ SCALES = {
     "frequency_hz": 1 / SLOWER,
     "damping_ratio": 1.0,
     "half_width": LARGER,
+    "yield_distance": LARGER,
+    "sharing": 1.0,
     "limit": LARGER,
     "curvature": 1 / LARGER,
     "level": LARGER,

@@ -75,6 +75,11 @@ HIDDEN = {
         ),
     ),
     "plays": ("hysteresis", (GAIN,), (PLAYS, GAIN)),
+    "Bouc-Wen": (
+        "hysteresis",
+        (GAIN,),
+        (block("bouc-wen", weight=0.2, yield_distance=0.3, sharing=0.4), GAIN),
+    ),
     "acting-field, 0.5": (
         "rate-dependent-hysteresis",
         (LOOP,),
