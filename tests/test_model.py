@@ -84,7 +84,7 @@ def test_a_staircase_ends_at_the_first_dynamic_block():
         (
             [],
             r"block 1 \(hysteresis-shape\): expected hysteresis just before it "
-            r"\(gpi, .*rdgpi\), got none",
+            r"\(bouc-wen, gpi, .*rdgpi\), got none",
         ),
         (["gain"], r"block 2 .*got gain"),
         (["gpi", "gain"], r"block 3 .*got gain"),
