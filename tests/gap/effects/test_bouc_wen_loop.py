@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.search import search
 from hystbench.model import Model
 from hystbench.record import Channel, Record
+from tests.gap.searched import search
 
 DT, COUNT, NOISE = 1e-3, 3000, 0.004
 FINE = 40

@@ -7,6 +7,7 @@ import pytest
 
 from hystbench.blocks import registry
 from hystbench.blocks.exponential_curve import ExponentialCurve
+from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
@@ -495,6 +496,17 @@ def test_a_curve_before_a_mass_leaves_what_drives_all_as_strong():
     assert with_law(state, "asymmetry", law).residual.std() > 1.5 * before
     even = evened(with_law(state, "asymmetry", law)).residual.std()
     assert even == pytest.approx(before, rel=0.25)
+
+
+def test_a_force_beside_next_to_no_motion_leaves_the_host_as_it_is():
+    """The damper that is nearest to it is larger than a block can hold."""
+    u = 1e-35 * np.sin(2 * np.pi * 1.3 * TIME)
+    given = (record("run", u, u, ("N", "mm")),)
+    mass = Mechanism(mass=1.0, damping=0.1, stiffness=0.0, hold="linear")
+    state = ModelState((mass,), given, ScoredSamples.of(given), hold="linear")
+    dry = FrictionForce(coulomb=1.0, presliding_distance=1e-45)
+    begun = with_law(state, "friction", Law("dry", dry, ("coulomb",)))
+    assert evened(begun).chain == begun.chain
 
 
 def test_a_spring_whose_acceleration_is_measured_is_no_friction():

@@ -167,6 +167,8 @@ def evened(state: ModelState) -> ModelState:
         return state
     scaled = square / np.outer(sizes, sizes)
     spring, damper, _ = np.linalg.lstsq(scaled, product / sizes, rcond=1e-9)[0] / sizes
+    if max(abs(spring), abs(damper)) > HUGE:
+        return state  # the host all but runs away
     chain[number] = replace(
         host,
         stiffness=max(host.stiffness - spring, REMAINS * host.stiffness),
