@@ -79,6 +79,47 @@ def test_half_the_step_makes_a_quarter_of_the_error(name, output):
     assert (ratios < 4.7).all()
 
 
+def contact(q, v):
+    return 500 * np.sign(q) * np.maximum(np.abs(q) - 0.1, 0)
+
+
+def gives_way(t):
+    """Friction of 20 over a way of .05, as a third state that slides at its ends."""
+
+    def moves(at, state):
+        q, v, held = state
+        slides = abs(held) >= 20 and held * v > 0
+        spring = MACHINE.damping * v + MACHINE.stiffness * q + np.clip(held, -20, 20)
+        return [v, (drive(at) - spring) / MACHINE.mass, 0.0 if slides else 400 * v]
+
+    exact = {"rtol": 1e-9, "atol": 1e-11, "max_step": 2e-3}
+    return solve_ivp(
+        moves, (t[0], t[-1]), (0, 0, 0), t_eval=t, method="DOP853", **exact
+    ).y[0]
+
+
+CORNERED = {
+    "stop": (force("stop", contact_stiffness=500.0, gap=0.1),
+             lambda t: solved(contact, t)[0]),
+    "friction": (force("friction-force", coulomb=20.0, presliding_distance=0.05),
+                 gives_way),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CORNERED)
+def test_corners_of_a_force_leave_the_order_as_it_is(name):
+    law, exactly = CORNERED[name]
+    errors = []
+    for count in (200, 400, 800):
+        t = np.linspace(0, 2, count + 1)
+        wanted = exactly(t)
+        found = run(MACHINE, [law], drive(t), t[1])
+        errors.append(np.abs(found - wanted).max() / np.ptp(wanted))
+    assert errors[-1] < 1e-3
+    ratios = np.array(errors[:-1]) / errors[1:]
+    assert ratios == pytest.approx([4, 4], abs=0.5)
+
+
 @pytest.mark.parametrize("hold", ["zero-order", "linear", "band-limited"])
 def test_without_a_force_it_is_the_transfer_function(hold):
     # Both are exact for staircases and straight lines. A smooth input is taken as lines

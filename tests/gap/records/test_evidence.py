@@ -108,7 +108,8 @@ def test_an_output_that_really_saturates_is_taken_where_the_dataset_says_so(
     assert "c.csv: row" in said
     assert said.endswith(
         "expected a channel that is not clipped; if it is real, say "
-        "'stands_still: [output]' of this record in dataset.yaml"
+        "'stands_still: [output]' of this record in dataset.yaml; if the recorder did "
+        "it, leave this record out"
     )
     found = load_evidence(say(folder, ["output"], "c"))
     (taken,) = (item for item in (*found.fit, *found.hold_out) if item.name == "c")

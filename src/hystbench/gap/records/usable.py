@@ -24,7 +24,10 @@ PARTS = 12
 """That a stretch is cut into; their means are free of noise and of fast ringing."""
 MOVES = 0.1
 """Of the output's range, that it goes meanwhile."""
-REAL = "; if it is real, say 'stands_still: [{}]' of this record in dataset.yaml"
+REAL = (
+    "; if it is real, say 'stands_still: [{}]' of this record in dataset.yaml; if the "
+    "recorder did it, leave this record out"
+)
 """What a refusal ends with: only who measured can know."""
 
 
