@@ -122,7 +122,7 @@ def test_an_input_that_is_really_limited_is_taken_where_the_dataset_says_so(tmp_
     said = message(lambda: load_evidence(folder))
     assert "a.csv: row" in said
     assert "current is" in said
-    assert said.endswith("'stands_still: [input]' of this record in dataset.yaml")
+    assert "'stands_still: [input]' of this record in dataset.yaml" in said
     found = load_evidence(say(folder, ["input"]))
     np.testing.assert_array_equal(found.fit[0].u, np.clip(U, -0.6, 0.6))
 
