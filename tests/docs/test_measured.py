@@ -38,6 +38,9 @@ def test_a_device_has_its_verdict_pictures_literature_and_what_is_not_known(name
     pictures = re.findall(
         rf"<!-- picture results/gap/{name}/(\w+\.svg) -->\n!\[.+\]\((.+)\)", text
     )
-    assert [made for made, _ in pictures] == ["model.svg", "residual.svg"]
+    made = [each for each, _ in pictures]
+    # Modes were measured at several levels of one device.
+    levels = ["where.svg"] if name == "f16-ground-vibration" else []
+    assert made == ["model.svg", "residual.svg", *levels]
     for _, place in pictures:
         assert 0 < (PAGE.parent / place).stat().st_size < SMALL

@@ -183,6 +183,9 @@ rule gap_show:
         " --out {params.folder:q} 2> {log:q}"
 
 
+PICTURES = ("model", "residual", "where")
+
+
 # The page; and what a page of several devices shows of each.
 rule gap_report:
     input:
@@ -197,7 +200,8 @@ rule gap_report:
         page=f"{GAP_CASE}/report.html",
         verdict=f"{GAP_CASE}/verdict.md",
         pictures=multiext(
-            f"{GAP_CASE}/", "model.svg", "model.png", "residual.svg", "residual.png"
+            f"{GAP_CASE}/",
+            *(f"{name}.{kind}" for name in PICTURES for kind in ("svg", "png")),
         ),
     log:
         f"{RESULTS}/logs/gap/{{case}}/report.log",

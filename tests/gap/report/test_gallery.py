@@ -1,15 +1,19 @@
 """What a page of several devices shows of each."""
 
 import csv
+from dataclasses import asdict
 
 import pytest
 
 from hystbench.errors import InputError
+from hystbench.gap.locate.picture import Axis, Panel, ViewPicture
 from hystbench.gap.report.tables import write_gallery, write_table
+from hystbench.gap.report.where_pictures import first_picture
 from hystbench.gap.report.words import verdict_text
 from tests.gap.report.test_report import GAP, write_folder
 
-PICTURES = ("model.svg", "model.png", "residual.svg", "residual.png")
+NAMES = ("model", "residual", "where")
+PICTURES = [f"{name}.{kind}" for name in NAMES for kind in ("svg", "png")]
 #: SVG that a page can carry several of.
 SMALL = 150_000
 
@@ -29,6 +33,16 @@ def test_pictures_are_there_and_small(folder, name):
         assert len(content) < SMALL
     else:
         assert content.startswith(b"\x89PNG")
+
+
+def test_modes_by_level_come_first_where_they_are_seen():
+    panel = Panel(Axis("input", "N"), Axis("output", "m"))
+    others = asdict(ViewPicture("spectrum", "a", (panel,)))
+    levels = asdict(ViewPicture("levels", "b", (panel, panel)))
+    for pictures, panels in (([others, levels], 2), ([others], 1), ([], 0)):
+        drawn = first_picture({"pictures": pictures, "not_drawn": []})
+        assert len(drawn.axes) == panels
+    assert first_picture(None).texts
 
 
 def test_the_verdict_is_told_with_its_reason(folder):

@@ -13,7 +13,7 @@ from hystbench.errors import InputError
 from hystbench.figures import style
 from hystbench.files import write_csv, write_text
 from hystbench.gap.fitting.parameter_units import unit_at
-from hystbench.gap.report import diagram, pictures, words
+from hystbench.gap.report import diagram, pictures, where_pictures, words
 from hystbench.gap.report.page import with_optional
 from hystbench.gap.report.read import Content, read_content
 from hystbench.model import Model
@@ -159,11 +159,12 @@ FORMATS = ("svg", "png")
 
 
 def write_gallery(folder: str | Path) -> None:
-    """Write verdict.md and, as SVG and PNG, the pictures ``model`` and ``residual``.
+    """Write verdict.md and pictures as SVG and PNG: ``model``, ``residual``, ``where``.
 
-    They are made of gap.json, model.yaml and holdout/. ``model`` is the block diagram;
-    ``residual`` is what is left, before and after, of the hold-out record that the base
-    misses most.
+    They are made of gap.json, model.yaml, holdout/ and curves.json. ``model`` is the
+    block diagram; ``residual`` is what is left, before and after, of the hold-out
+    record that the base misses most; ``where`` is how modes move with the level of the
+    input, or else the first picture of where the gap is.
 
     Parameters
     ----------
@@ -183,6 +184,7 @@ def write_gallery(folder: str | Path) -> None:
         drawn = {
             "model": diagram.figure_of(content.model, content.gap),
             "residual": _residual(content, place),
+            "where": where_pictures.first_picture(content.curves),
         }
         for name, figure in drawn.items():
             for suffix in FORMATS:

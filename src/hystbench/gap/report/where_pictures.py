@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
 
 from hystbench.errors import InputError
 from hystbench.figures.style import (
@@ -16,6 +17,7 @@ from hystbench.figures.style import (
     GREEN,
     GREY,
     ORANGE,
+    PAGE,
     VERMILION,
     legend_above,
     unit_text,
@@ -23,6 +25,8 @@ from hystbench.figures.style import (
 from hystbench.gap.report.pictures import BARS, EmbeddedPicture, bars, draw, logarithmic
 
 Content = Mapping[str, Any]
+LEVELS = "levels"
+"""Name of the picture of modes by level."""
 
 #: Colour, line and mark of what a series is.
 LOOKS: dict[str, tuple[str, str, str]] = {
@@ -67,25 +71,45 @@ def pictures_of(curves: Content | None) -> tuple[list[EmbeddedPicture], list[str
         ) from error
 
 
+def first_picture(curves: Content | None) -> Figure:
+    """Draw how modes move with the level, where that is seen; else the first picture.
+
+    Without any, the figure says so.
+    """
+    pictures = [] if curves is None else curves["pictures"]
+    levels = [one for one in pictures if one["name"] == LEVELS]
+    for picture in (*levels, *pictures):
+        panels = picture["panels"]
+        figure = Figure(figsize=(PAGE, max(map(_height, panels))))
+        _fill(figure.subplots(1, len(panels), squeeze=False)[0], picture)
+        return figure
+    figure = Figure(figsize=(PAGE, LEAST))
+    figure.text(0.5, 0.5, "no picture of where the gap is", ha="center", va="center")
+    return figure
+
+
 def _drawn(picture: Content) -> EmbeddedPicture:
     panels = picture["panels"]
-
-    def paint(axes: Any) -> None:
-        for panel, content in zip(axes, panels, strict=True):
-            _paint(panel, content)
-        handles = {
-            label: handle
-            for panel in axes
-            for handle, label in zip(*panel.get_legend_handles_labels(), strict=True)
-            if label
-        }
-        if handles:
-            legend_above(axes[0].figure, list(handles.values()))
-
-    tall = (_height(panel) for panel in panels)
+    tall = max(_height(panel) for panel in panels)
     return draw(
-        paint, words=picture["words"], height=max(tall), panels=(1, len(panels))
+        lambda axes: _fill(axes, picture),
+        words=picture["words"],
+        height=tall,
+        panels=(1, len(panels)),
     )
+
+
+def _fill(axes: Any, picture: Content) -> None:
+    for panel, content in zip(axes, picture["panels"], strict=True):
+        _paint(panel, content)
+    handles = {
+        label: handle
+        for panel in axes
+        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True)
+        if label
+    }
+    if handles:
+        legend_above(axes[0].figure, list(handles.values()))
 
 
 def _height(panel: Content) -> float:
