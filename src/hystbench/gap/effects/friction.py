@@ -17,8 +17,9 @@ HOLDS = 1e-7
 so little."""
 SOON = 1e-3
 """The same where it gives way along a curve."""
-VISCOUS = 2.0
-"""Of the fastest velocity: the tangent of a half bends by 8 % of a straight line."""
+VISCOUS = 1.0
+"""Of the fastest velocity: there the tangent is a quarter below a straight line. What
+bends less is as much as viscous."""
 
 
 class Friction(Effect):
