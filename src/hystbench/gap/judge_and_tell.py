@@ -112,7 +112,7 @@ def judge_and_tell(
     contributed = contributions(ladder) if found.verdict == "named" else ()
     where = locate(before, floor, contributed)
     say(where[0].sentence)
-    moved = beside_level(where, [item.effect for item in state.added])
+    moved = beside_level(where, [(item.effect, item.place) for item in state.added])
     reason = "; ".join(part for part in (found.reason, moved) if part)
     say(f"{found.verdict}: {reason}")
     experiment, why_none = tell_apart(base, named, start.records, floor.rms, limits)

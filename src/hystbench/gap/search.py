@@ -80,12 +80,13 @@ def search(
             say("no force could gain what matters, so none is tried inside")
             quantities = None
     if quantities is not None:
+        whole = start, floor
         start, floor, inside, own = _with_forces(
             base, start, floor, quantities, declared, asked
         )
-    if inside is not None and not betters(inside, start, floor.rms):
-        say("inside: what stands for the base leaves more than the base does")
-        inside = None
+        if inside is not None and not betters(inside, start, floor.rms):
+            say("inside: what stands for the base leaves more than the base does")
+            (start, floor), inside, own = whole, None, NONE
     enough = ""
     # A base that was given is re-tuned where it is a host: that may stand for a chain.
     if inside is not None and is_identified(base):

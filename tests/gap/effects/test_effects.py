@@ -664,6 +664,16 @@ def test_a_slew_limit_moves_the_middle_of_a_step_by_a_sample():
     assert fastest > size / (4 * interval)
 
 
+@pytest.mark.parametrize("samples", [6.3, 4.5, 3.0])
+def test_a_fast_tone_is_no_step(samples):
+    """Of the same size from sample to sample, or nearly: all rates are offered."""
+    u = np.sin(2 * np.pi * np.arange(1000) / samples + 0.3)
+    state = state_of((block("gain", value=1.0),), (record(u, y=u, dt=1e-3),))
+    (variant,) = effects()["slew-limit"].variants(state.simulation)
+    _, fastest = variant.ends("rate")
+    assert fastest == pytest.approx(0.98 * np.abs(np.diff(u)).max() / 1e-3)
+
+
 def test_a_slew_limit_may_be_as_slow_as_the_record():
     """What a step within a sample is divided by says nothing of the drive."""
     slowest, _ = slew_limit_beside_steps().ends("rate")

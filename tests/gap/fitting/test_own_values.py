@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import lfilter
 
+from hystbench.gap.cache import Remembered, remembering
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.own_values import (
@@ -18,6 +19,7 @@ from hystbench.gap.fitting.own_values import (
     values_of_record,
 )
 from hystbench.gap.naming.with_own_values import SHARED, without
+from hystbench.gap.progress import silent
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import decide_in, show_in
 from hystbench.gap.schema import RECORD_VALUES
@@ -153,6 +155,17 @@ def test_zeros_of_each_record_are_no_drift_beside_an_effect():
     (effect,) = content["effects"]
     assert effect["name"] in ("sensor-lag", "drive-lag", "creep")
     assert content["record_values"]["kinds"] == ["offset"]
+
+
+def test_what_was_found_with_zeros_of_each_record_is_looked_up(tmp_path):
+    """Constants beside the laws are no form of an effect, and are kept all the same."""
+    owns = [(0, 1, zero) for zero in (3, -2, 1, 0, -4)]
+    found = []
+    for _ in range(2):
+        with remembering(Remembered(tmp_path, silent)):
+            found.append(search("made", made(owns, LAG_S), rig(), declared=NOISE))
+    first, again = (item.content["effects"] for item in found)
+    assert [item["name"] for item in first] == [item["name"] for item in again]
 
 
 def test_zeros_are_found_together_with_a_creep_that_looks_like_them():

@@ -84,10 +84,12 @@ def test_a_base_that_a_constant_beats_on_hold_out_records_is_told():
     fit = record(u, [2.0, 4.0, 2.0, 4.0], name="a")
     held = record(u, [4.0, 2.0, 4.0, 2.0], name="b", use="hold-out")
     evidence = Evidence("rig", (fit,), (held,))
-    (told,) = worse_than_a_constant(1.5, evidence)
+    (told,) = worse_than_a_constant(1.5, evidence, 0.1)
     assert "leaves 1.5 um rms, and a constant" in told
     assert " 1 um" in told
-    assert worse_than_a_constant(0.9, evidence) == []
+    assert worse_than_a_constant(0.9, evidence, 0.1) == []
+    # As much noise would leave of a record at rest.
+    assert worse_than_a_constant(1.5, evidence, 1.0) == []
 
 
 @pytest.fixture(scope="module")

@@ -168,16 +168,20 @@ def test_a_mode_that_stays_is_no_evidence(oscillators):
     views = locate(compared, noise_floor(compared))
     (view,) = (item for item in views if item.view == "level")
     assert view.p_value > 0.05
-    assert beside_level(views, ["friction"]) == ""
+    assert beside_level(views, [("friction", "inside")]) == ""
 
 
 def test_named_effects_are_held_against_how_modes_move(oscillators):
     compared = records(oscillators["hysteresis"])
     views = locate(compared, noise_floor(compared))
-    told = beside_level(views, ["sensor-lag", "hysteretic-force"])
+    told = beside_level(
+        views, [("sensor-lag", "behind"), ("hysteretic-force", "inside")]
+    )
     assert "micro-slip" in told
-    assert told.endswith(": hysteretic-force does so")
-    assert beside_level(views, ["drag"]).endswith(": no named effect does so")
+    assert told.endswith(": hysteretic-force can do so")
+    for named in (("drag", "inside"), ("friction", "mechanics")):
+        told = beside_level(views, [named])
+        assert told.endswith(": no named effect can do so")
     assert beside_level(views, []) == ""
 
 

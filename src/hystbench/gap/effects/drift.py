@@ -42,6 +42,11 @@ class Drift(Effect):
             beside = Beside(self.name, FORMS[form], path)
             yield self.added(simulation, beside, form=form, charge=charge)
 
+    @classmethod
+    def levels(cls) -> Beside:
+        """Give a constant in each record: an offset of its own, and no drift."""
+        return Beside(cls.name, 0, path)
+
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, float]:
         """Give the block's slope: the mean one, of a path that of its ramp."""
         return {"slope": float(np.mean(amplitudes[:, 0]))}

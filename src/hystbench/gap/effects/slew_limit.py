@@ -16,9 +16,9 @@ from hystbench.gap.simulation.simulation import Simulation
 class SlewLimit(Effect):
     """A rate below the fastest of the records' inputs.
 
-    The fastest is taken over three sample intervals. Where the input steps within one,
-    a limit that makes three of it moves the middle of the step by one, and the moment
-    of a step is known to a sample.
+    Where the input steps within a sample interval and rests on both sides, the fastest
+    is a third of that: a limit that makes three intervals of the step moves its middle
+    by one, and the moment of a step is known to a sample.
     """
 
     name = "slew-limit"
@@ -35,7 +35,7 @@ class SlewLimit(Effect):
         """
         share = expit(np.linspace(logit(0.02), logit(0.98), 16))
         for place in places_in_drive(simulation):
-            rates = simulation.fastest(place, over=3) * share
+            rates = _fastest(simulation, place) * share
             _, half = simulation.middle_and_half(place)
             slowest = min(float(rates[0]), 2 * half / simulation.span)
             yield self.inserted(
@@ -44,3 +44,18 @@ class SlewLimit(Effect):
                 grids={"rate": rates},
                 limits={"rate": (slowest, float(rates[-1]))},
             )
+
+
+STEP = 0.25
+"""Of a step, that the signal moves in both intervals beside it together at most."""
+
+
+def _fastest(simulation: Simulation, place: int) -> float:
+    """Largest rate of a signal, of a step within one interval a third."""
+    rates = []
+    for z, record in zip(simulation.at(place), simulation.records, strict=True):
+        moves = np.abs(np.diff(z))
+        beside = np.convolve(moves, [1.0, 0.0, 1.0], mode="same")
+        is_step = beside < STEP * moves
+        rates.append(float(np.max(moves / np.where(is_step, 3, 1))) / record.dt)
+    return max(rates)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from hystbench.blocks.calls import CallsUsedUp
 from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError
 from hystbench.gap.fitting.model_score import make_score, score_of
@@ -58,6 +59,8 @@ def scanned(state: ModelState, floor_rms: float) -> ModelState:
         def at(number: float, from_: ModelState = found, k: int = k) -> float:
             try:
                 return score_of(from_.with_chain(from_.chain_at({k: number})), score)
+            except CallsUsedUp:  # half a look decides nothing
+                raise
             except InputError:  # out of what the simulator takes: no candidate
                 return np.inf
 

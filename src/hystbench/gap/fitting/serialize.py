@@ -20,6 +20,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.simulator import Simulator
 from hystbench.gap.cache import Result, records_digest, remembered
 from hystbench.gap.effects import effects
+from hystbench.gap.effects.drift import Drift
 from hystbench.gap.effects.variant import Beside
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.records.scored_samples import ScoredSamples
@@ -215,5 +216,7 @@ def _chain_mapping(chain: Sequence[Block]) -> list[Mapped]:
 
 def _beside(effect: str, order: int, simulation: Simulation) -> Beside:
     """Give the shapes of what lies beside, as its effect offers them."""
+    if (effect, order) == (Drift.name, 0):
+        return Drift.levels()  # no effect, but fitted beside laws as one is
     offered = (variant.beside for variant in effects()[effect].variants(simulation))
     return next(item for item in offered if item is not None and item.order == order)

@@ -52,7 +52,9 @@ def outcome(
         **shown.content,
         "warnings": [
             *evidence.warnings,
-            *worse_than_a_constant(shown.content["gap"]["before"], evidence),
+            *worse_than_a_constant(
+                shown.content["gap"]["before"], evidence, fitted.floor.rms
+            ),
         ],
     }
     taken = withdrawal(content)
@@ -74,7 +76,7 @@ def outcome(
     return replace(shown, content=content)
 
 
-def worse_than_a_constant(before: float, evidence: Evidence) -> list[str]:
+def worse_than_a_constant(before: float, evidence: Evidence, floor: float) -> list[str]:
     """Say that the mean output of the fit records does better than the base.
 
     Parameters
@@ -82,6 +84,8 @@ def worse_than_a_constant(before: float, evidence: Evidence) -> list[str]:
     before : float
         RMS residual of the base on the hold-out records.
     evidence : Evidence
+    floor : float
+        RMS of the noise: a record at rest shows no more, and nothing of the base.
 
     Returns
     -------
@@ -91,7 +95,8 @@ def worse_than_a_constant(before: float, evidence: Evidence) -> list[str]:
     mean = np.mean(np.concatenate([record.y for record in evidence.fit]))
     outputs = np.concatenate([record.y for record in evidence.hold_out])
     still = float(np.sqrt(np.mean((outputs - mean) ** 2)))
-    if before <= still:
+    noisy = still**2 <= (1 + AS_GOOD) * floor**2
+    if noisy or before**2 <= (1 + AS_GOOD) * still**2:
         return []
     unit = evidence.fit[0].output.unit
     return [

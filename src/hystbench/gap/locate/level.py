@@ -64,6 +64,11 @@ MOVES = {
     ),
 }
 """Effects that move a mode as a class says."""
+IN_A_CHAIN = (
+    *("stiffness-hardening", "backlash"),
+    *MOVES["a static curve before or behind"],
+)
+"""Those of them that do so in a chain as well."""
 
 SURE = 3.0
 """Standard errors by which a number has to move."""
@@ -289,7 +294,7 @@ def level(samples: ViewSamples) -> View | None:
     )
 
 
-def beside_level(views: Sequence[View], names: Sequence[str]) -> str:
+def beside_level(views: Sequence[View], named: Sequence[tuple[str, str]]) -> str:
     """Hold the named effects against how modes move with the level.
 
     That is seen without any of their laws.
@@ -297,8 +302,9 @@ def beside_level(views: Sequence[View], names: Sequence[str]) -> str:
     Parameters
     ----------
     views : sequence of View
-    names : sequence of str
-        The named effects.
+    named : sequence of (str, str)
+        The named effects and their places. A force moves a mode inside the dynamics
+        alone.
 
     Returns
     -------
@@ -308,11 +314,14 @@ def beside_level(views: Sequence[View], names: Sequence[str]) -> str:
     found = [view for view in views if view.kinds and view.p_value < SIGNIFICANT]
     kinds = [kind for view in found for kind in view.kinds if kind in MOVES]
     told = []
-    for kind in kinds if names else []:
-        fit = [name for name in names if name in MOVES[kind]]
+    for kind in kinds if named else []:
+        fit = [
+            name
+            for name, place in named
+            if name in MOVES[kind] and (place == "inside" or name in IN_A_CHAIN)
+        ]
         who = " and ".join(fit) or "no named effect"
-        does = "do" if len(fit) > 1 else "does"
-        told.append(f"a mode moves with the level as of {WORDS[kind]}: {who} {does} so")
+        told.append(f"a mode moves with the level as of {WORDS[kind]}: {who} can do so")
     return "; ".join(told)
 
 

@@ -10,6 +10,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import among
 from hystbench.gap.effects.effect import Declined
 from hystbench.gap.effects.variant import Variant
+from hystbench.gap.fitting.scan import LOOKS
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.tried import records_at_a_glance
 from hystbench.gap.fitting.variant_search import MANY
@@ -61,7 +62,7 @@ def calls_of_a_round(state: ModelState) -> int:
             before += 1
             names.add(item.effect)
     finalists = min(FINALISTS, len(names))
-    return grids + count * (AROUND * before + REFITS * finalists)
+    return grids + count * (AROUND * before + REFITS * finalists + LOOKS)
 
 
 def keep_back(evidence: Evidence) -> None:

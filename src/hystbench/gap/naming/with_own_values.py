@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from hystbench.gap.asked import Asked
 from hystbench.gap.cache import records_digest
-from hystbench.gap.effects.drift import Drift, path
+from hystbench.gap.effects.drift import Drift
 from hystbench.gap.effects.variant import Beside, Values
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
@@ -38,10 +38,10 @@ def named_apart(
     what the records have of their own, and so on while the score falls and the names
     change. The whole has to lower the score of the first names by as much as a first
     effect has to lower it, all numbers charged; of names that are themselves new in
-    every record, such as a drift, it only has to be the better one. And no more may be
+    every record, such as a drift, it only has to be the better one, where an offset in
+    place of a path is charged as little as a path. And no more may be
     left than noise, or than may stay unnamed: numbers of one record stand in for any
-    law that its rate or its amplitude brings out. Nor may the base be further off
-    without them.
+    law that its rate or its amplitude brings out.
 
     Parameters
     ----------
@@ -67,12 +67,16 @@ def named_apart(
     if not paths and named.state.power(square) <= share * start.power(square):
         return found
     score = make_score(start, floor_rms, forms=False)
-    # A path is charged half a number in each record or more, an offset a whole one.
-    half = PARAMETER * len(start.records) / 2
-    least = score_of(named.state, score) + (half if paths else -PAYS)
+    least = score_of(named.state, score) - (0.0 if paths else PAYS)
     if least <= score.least(start.freedom + 1):
         return found  # noise alone, and what is their own charged, scores no less
     kinds = kinds_of(start)
+    # A path is charged half a number in each record or more, an offset a whole one.
+    half = PARAMETER * len(start.records) / 2 if paths else 0.0
+
+    def charge(own: OwnValues) -> float:
+        return own.charge - (half if own.kinds == ("offset",) else 0.0)
+
     # Beside a delay, a gain or an offset that all records share it would not be seen
     # that each has its own.
     states = dict.fromkeys((named.state, without(named.state, SHARED), start))
@@ -80,7 +84,7 @@ def named_apart(
     if paths:
         # A path follows an offset, so that it may stand for that of each record.
         models.append((beside_offsets(named.state, start, score), ("offset",)))
-    likely = _likely(start, models, score, least)
+    likely = _likely(start, models, score, least, charge)
     # Beside more than that they cannot be told from what the simulator does wrong.
     most = max(ABOVE_NOISE * square, share * start.power(square))
     for _ in range(ROUNDS):
@@ -90,29 +94,26 @@ def named_apart(
         say(f"records have {own.words} of their own: naming beside that")
         apart = on_records(start, own.taken_off(start.records, start.hold))
         again = add_effects(apart, floor_rms, asked)
-        value = score_of(again.state, score) + own.charge
+        value = score_of(again.state, score) + charge(own)
         if value >= least:
             likely = []
             if own.kinds == ("offset",):
                 told = beside_offsets(again.state, start, score)
-                likely = _likely(start, [(told, own.kinds)], score, least)
+                likely = _likely(start, [(told, own.kinds)], score, least, charge)
             if any(item[0] < least for item in likely):
                 continue
             say("that scores no better: they have none of their own")
             break
         if again.state.power(square) > most:
             say("too much is left beside that: it is not told")
-            return start, named, NONE
-        taken = apart.share(start, square, start.power(square))
-        if taken <= 0:
-            say("without them the base is further off: they stand for something else")
             break
+        taken = apart.share(start, square, start.power(square))
         same = _names(again) == _names(found[1])
         found, least = (apart, again, replace(own, share=taken)), value
         if same:
             break  # naming has told all that it can
         told = on_records(again.state, start.records)
-        likely = _likely(start, [(told, kinds)], score, least)
+        likely = _likely(start, [(told, kinds)], score, least, charge)
     return found
 
 
@@ -140,7 +141,7 @@ def beside_offsets(state: ModelState, start: ModelState, score: Score) -> ModelS
     """
     paths = {one.effect for one, values in state.beside if not values}
     laws = on_records(without(state, paths), start.records)
-    level: tuple[Beside, Values] = Beside(Drift.name, 0, path), {}
+    level: tuple[Beside, Values] = Drift.levels(), {}
     fitted, _ = finished(replace(laws, beside=(*laws.beside, level)).settled(), score)
     return replace(fitted, beside=fitted.beside[:-1])
 
@@ -154,6 +155,7 @@ def _likely(
     models: Sequence[tuple[ModelState, Sequence[str]]],
     score: Score,
     least: float,
+    charge: Callable[[OwnValues], float],
 ) -> list[tuple[float, OwnValues]]:
     """Find what records have of their own beside models, and the scores with it.
 
@@ -169,9 +171,9 @@ def _likely(
                 break
             bare = own.taken_off(start.records, start.hold)
             apart, value = finished(on_records(state, bare), score)
-            if value + own.charge >= best[0] - ENOUGH:
+            if value + charge(own) >= best[0] - ENOUGH:
                 break
-            best = value + own.charge, own
+            best = value + charge(own), own
             if best[0] > least + PAYS:
                 break  # found again beside it they gain less than that
             state = on_records(apart, start.records)

@@ -244,18 +244,10 @@ class Simulation:
         high = max(float(z.max()) for z in self.at(place))
         return (low + high) / 2, (high - low) / 2
 
-    def fastest(self, place: int = 0, over: int = 1) -> float:
-        """Largest mean rate of the signal before a block over some sample intervals.
-
-        In its unit a second.
-        """
+    def fastest(self, place: int = 0) -> float:
+        """Largest rate of the signal before a block, in its unit a second."""
         pairs = zip(self.at(place), self.records, strict=True)
-        return float(
-            max(
-                np.abs(z[over:] - z[:-over]).max() / (over * record.dt)
-                for z, record in pairs
-            )
-        )
+        return float(max(np.abs(np.diff(z)).max() / record.dt for z, record in pairs))
 
 
 class _Known:
