@@ -293,7 +293,7 @@ def test_the_group_that_was_left_out_is_told_and_scored(tmp_path):
     write_score(frame([]), frame(away), "s", ABOUT, tmp_path)
     groups = {line["group"]: line for line in table(tmp_path / "kept.csv")}
     assert [n for n, line in groups.items() if line["left out"] == "yes"] == ["2"]
-    assert groups["2"]["families"] == "preisach, pendulum"
+    assert groups["2"]["families"] == "preisach, impedance"
     assert json.loads((tmp_path / "summary.json").read_text())["kept"] == 2
     # the fractional creep belongs to another group
     seen = table(tmp_path / "never-seen.csv")
