@@ -325,8 +325,8 @@ def test_right_answers_in_plain_words_failures_among_them(tmp_path):
     write_score(frame(home), frame(away), "s", ABOUT, tmp_path)
     told = [tuple(line.values()) for line in table(tmp_path / "in-words.csv")]
     assert told == [
-        ("one effect 20 dB above the noise, base exact", "75 %", "50 %"),
-        ("nothing", "75 %", ""),  # one false alarm of four
+        ("one effect 20 dB above the noise, base exact", "75 % of 4", "50 % of 2"),
+        ("nothing", "75 % of 4", ""),  # one false alarm of four
     ]
 
 

@@ -130,12 +130,12 @@ def _in_words(
 ) -> Iterator[tuple[str, str, str]]:
     """Tell in plain words how often the answer was right, failures among it."""
     here, there = (
-        {item.figure: item.reached for item in reach(judged, NOTHING)}
+        {item.figure: item for item in reach(judged, NOTHING)}
         for judged in (cases, transfer)
     )
     for row in table("in_words"):
         figure, wrong = row["figure"], row.get("wrong", False)
-        if here[figure] is not None:
+        if here[figure].reached is not None:
             yield (
                 row["words"],
                 _rightly(here[figure], wrong),
@@ -143,11 +143,12 @@ def _in_words(
             )
 
 
-def _rightly(share: float | None, wrong: bool) -> str:
-    """Give a share of right answers in percent; nothing where there are no cases."""
-    if share is None:
+def _rightly(asked: Asked, wrong: bool) -> str:
+    """Give right answers in percent of so many cases; nothing where there are none."""
+    if asked.reached is None:
         return ""
-    return f"{100 * (1 - share if wrong else share):.0f} %"
+    share = 1 - asked.reached if wrong else asked.reached
+    return f"{100 * share:.0f} % of {asked.cases}"
 
 
 def _off(carried: Sequence[tuple[Any, ...]]) -> Iterator[Asked]:
