@@ -67,6 +67,8 @@ def test_the_crate_lists_what_it_holds(pack, tmp_path):
         assert (out / name).read_bytes() == (ROOT / name).read_bytes()
     (run,) = (x for x in content["@graph"] if x["@type"] == "CreateAction")
     assert {each["@id"] for each in run["result"]} == made
+    # nothing can tell that the results were made with them
+    assert entities["config.yaml"]["name"] == "Settings as given"
 
 
 def test_it_is_a_crate_of_a_workflow(pack, tmp_path):

@@ -28,6 +28,8 @@ BESIDE = (
 )
 #: Python's own table: that of the machine takes Snakemake's .smk for a video.
 SORTS = MimeTypes()
+#: Nothing checks that the results were made with it.
+GIVEN = {"name": "Settings as given"}
 _NAME = re.compile(r"[\w.-]+")
 
 
@@ -41,9 +43,9 @@ def crate(
 ) -> None:
     """Pack what hystbench wrote into RESULTS as an RO-Crate, for an archive.
 
-    OUT is a new folder. It gets these files, the settings in CONFIG, the workflow and
-    licence of PROJECT, and ro-crate-metadata.json: what each is, who made it, with
-    which versions. Needs the package rocrate.
+    OUT is a new folder. It gets these files, the settings in CONFIG as given, the
+    workflow and licence of PROJECT, and ro-crate-metadata.json: what each is, who made
+    it, with which versions. Needs the package rocrate.
     """
     rocrate = library("rocrate.rocrate", "rocrate", "crate", "crate")
     if out.exists():
@@ -56,7 +58,7 @@ def crate(
         raise InputError(f"{results}: no file in it that hystbench wrote")
     packed = rocrate.ROCrate(version=RO_CRATE)
     workflow = _about(packed, project)
-    settings = _add(packed, config, "config.yaml", {"name": "Settings of the run"})
+    settings = _add(packed, config, "config.yaml", GIVEN)
     top = results.resolve().name
     found = [_add(packed, x, f"{top}/{x.relative_to(results)}") for x in made]
     run = {"name": "Run of the workflow"}
@@ -82,7 +84,8 @@ def _about(packed: Any, project: Path) -> Any:
     root, terms = packed.root_dataset, cited["license"]
     root["name"] = f"Results of {cited['title']}"
     root["description"] = (
-        f"What the workflow of hystbench {cited['version']} wrote, with its settings"
+        f"What the workflow of hystbench {cited['version']} wrote, and settings "
+        "as given"
     )
     place = f"https://spdx.org/licenses/{terms}"
     root["license"] = _entity(packed, place, "CreativeWork", name=terms)
