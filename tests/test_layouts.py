@@ -197,8 +197,8 @@ def searched():
     """Replace the search; count how often it was paid."""
     calls = []
 
-    def find(name, records, base, *others):
-        calls.append(name)
+    def find(evidence, base, *others):
+        calls.append(evidence.name)
         return Found(
             base=base,
             model=base,
@@ -295,6 +295,7 @@ READ = {
     ("docs", "pages"),
     ("report", "compare"),
     ("report", "captions"),
+    ("crate", "results"),
     ("clean", "folders"),
 }
 

@@ -110,7 +110,7 @@ def figures(name: str) -> list[Figure]:
 TOP1_20 = Figure("transfer top1 20 dB", "top1", "single", "all", 20.0, ">=")
 
 
-class Asked(NamedTuple):
+class AskedFigure(NamedTuple):
     """A figure that was asked for, and what was reached."""
 
     figure: str
@@ -159,7 +159,7 @@ def summary(cases: pd.DataFrame) -> dict[str, Any]:
     }
 
 
-def reach(cases: pd.DataFrame, transfer: pd.DataFrame) -> list[Asked]:
+def reach(cases: pd.DataFrame, transfer: pd.DataFrame) -> list[AskedFigure]:
     """Hold a solver's score against what the project asks of its own.
 
     Parameters
@@ -171,7 +171,7 @@ def reach(cases: pd.DataFrame, transfer: pd.DataFrame) -> list[Asked]:
     if len(transfer):
         here, there = TOP1_20.of(cases).share, TOP1_20.of(transfer)
         if here is None or there.share is None:
-            found.append(Asked(TOP1_20.name, "", None, None, None, there.cases, None))
+            found.append(AskedFigure(TOP1_20.name, "", None, None, None, there.cases, None))
         else:
             asked = TOP1_20._replace(bound=here - 0.05)
             words = f">= {asked.bound:.3f}"
@@ -227,5 +227,5 @@ _SUMS: dict[str, Callable[[pd.DataFrame, str], Any]] = {
 }
 
 
-def _asked(figure: Figure, reached: Share) -> Asked:
-    return Asked(figure.name, figure.asked, *reached, figure.met(reached.share))
+def _asked(figure: Figure, reached: Share) -> AskedFigure:
+    return AskedFigure(figure.name, figure.asked, *reached, figure.met(reached.share))

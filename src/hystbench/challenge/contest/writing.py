@@ -9,7 +9,7 @@ import pandas as pd
 from hystbench.challenge.contest import table, tables
 from hystbench.challenge.contest.frames import frame, write_frame
 from hystbench.challenge.contest.never_seen import never_seen
-from hystbench.challenge.contest.summary import Asked, further, reach, summary
+from hystbench.challenge.contest.summary import AskedFigure, further, reach, summary
 from hystbench.challenge.kept import GROUPS
 from hystbench.files import write_csv, write_json
 
@@ -143,7 +143,7 @@ def _in_words(
             )
 
 
-def _rightly(asked: Asked, wrong: bool) -> str:
+def _rightly(asked: AskedFigure, wrong: bool) -> str:
     """Give right answers in percent of so many cases; nothing where there are none."""
     if asked.reached is None:
         return ""
@@ -151,13 +151,13 @@ def _rightly(asked: Asked, wrong: bool) -> str:
     return f"{100 * share:.0f} % of {asked.cases}"
 
 
-def _off(carried: Sequence[tuple[Any, ...]]) -> Iterator[Asked]:
+def _off(carried: Sequence[tuple[Any, ...]]) -> Iterator[AskedFigure]:
     """Count the shares that are more than 5 points off on the transfer set."""
     told = [within for *_, within in carried if within is not None]
     if told:
         off = told.count(False)
         figure = "transfer: shares more than 5 points off"
-        yield Asked(figure, "<= 0", float(off), None, None, len(told), not off)
+        yield AskedFigure(figure, "<= 0", float(off), None, None, len(told), not off)
 
 
 def _rivals(
