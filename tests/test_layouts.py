@@ -296,6 +296,7 @@ READ = {
     ("report", "compare"),
     ("report", "captions"),
     ("crate", "results"),
+    ("crate", "project"),
     ("clean", "folders"),
 }
 
