@@ -171,7 +171,9 @@ def reach(cases: pd.DataFrame, transfer: pd.DataFrame) -> list[AskedFigure]:
     if len(transfer):
         here, there = TOP1_20.of(cases).share, TOP1_20.of(transfer)
         if here is None or there.share is None:
-            found.append(AskedFigure(TOP1_20.name, "", None, None, None, there.cases, None))
+            found.append(
+                AskedFigure(TOP1_20.name, "", None, None, None, there.cases, None)
+            )
         else:
             asked = TOP1_20._replace(bound=here - 0.05)
             words = f">= {asked.bound:.3f}"
