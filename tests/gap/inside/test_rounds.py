@@ -175,6 +175,21 @@ class FarEnoughError(Exception):
     """The search has come to what is tested."""
 
 
+def spring_found_once(host, spring, key):
+    """What records are when forces are looked for, and a look that finds a spring."""
+    seen = []
+
+    def look(base, start, *_):
+        seen.append([getattr(record, key) for record in start.records])
+        if len(seen) > 1:
+            raise FarEnoughError
+        added = Added("stiffness-hardening", "inside", "", (1,), {}, 1.0)
+        state = replace(start, chain=(host, spring), added=(added,)).settled()
+        return Inside(base, start, Named(state), "")
+
+    return seen, look
+
+
 def test_forces_are_looked_for_again_without_the_starts_that_they_show(monkeypatch):
     """A linear base is too far off to show that a record begins in a motion."""
     host = block("mechanism", mass=1.0, damping=6.0, stiffness=100.0)
@@ -187,16 +202,7 @@ def test_forces_are_looked_for_again_without_the_starts_that_they_show(monkeypat
         for k in (0, 530)
     )
     base = Model("linear", *channels, (host,), ("mechanism.mass",))
-    seen = []
-
-    def look(base, start, *_):
-        seen.append([record.lead for record in start.records])
-        if len(seen) > 1:
-            raise FarEnoughError
-        added = Added("stiffness-hardening", "inside", "", (1,), {}, 1.0)
-        state = replace(start, chain=(host, spring), added=(added,)).settled()
-        return Inside(base, start, Named(state), "")
-
+    seen, look = spring_found_once(host, spring, "lead")
     monkeypatch.setattr(search_module, "named_inside", look)
     kinds = Quantities("force", "position")
     with pytest.raises(FarEnoughError):
@@ -217,16 +223,7 @@ def test_forces_are_looked_for_again_without_the_offsets_of_records(monkeypatch)
         true.append(y)
         given.append(replace(record, y=y + offset))
     base = Model("made", *channels, (host,))
-    seen = []
-
-    def look(base, start, *_):
-        seen.append([record.y for record in start.records])
-        if len(seen) > 1:
-            raise FarEnoughError
-        added = Added("stiffness-hardening", "inside", "", (1,), {}, 1.0)
-        state = replace(start, chain=(host, spring), added=(added,)).settled()
-        return Inside(base, start, Named(state), "")
-
+    seen, look = spring_found_once(host, spring, "y")
     monkeypatch.setattr(search_module, "named_inside", look)
     kinds = Quantities("force", "position")
     with pytest.raises(FarEnoughError):
