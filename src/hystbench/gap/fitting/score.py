@@ -201,32 +201,28 @@ class Score:
         forms = np.concatenate([found.grams, [within, found.charge]])
         forms = forms.reshape(len(forms), -1)
         d = max(self.directions.shape[1], 1)
-        best = (np.inf, np.eye(1, k + 1)[0])
-        # The sum of logarithms may have a valley where the directions do much and one
-        # where they do nothing: the search begins in each.
-        for begins_small in (False, True):
-            full, last = np.eye(1, k + 1)[0], np.inf
-            for number in range(ROUNDS + 1):
-                squares = forms @ (full[:, None] * full).ravel()
-                charged = float(squares[-1])
-                squares = np.maximum(squares[:-1], 0.0)
-                power = float(squares[-1])
-                squares = squares[:-1] / self._counts
-                value = self._value(squares, power, freedom) + charged
-                if value < best[0]:
-                    best = (value, full)
-                if abs(last - value) < STILL:
-                    break
-                last = value
-                weights = self.weight / (self._counts * np.maximum(squares, self.floor))
-                small = begins_small and number == 0
-                of_inside = 1 / self.floor if small else d / max(power, d * self.floor)
-                normal = np.concatenate([weights, [of_inside, 1.0]]) @ forms
-                normal = normal.reshape(k + 1, k + 1)
-                matrix = normal[1:, 1:]
-                matrix.flat[:: k + 1] *= 1 + 1e-12
-                beta = _solve(matrix, normal[1:, 0], positive)
-                full = np.concatenate([[1.0], -beta])
+        full, last = np.eye(1, k + 1)[0], np.inf
+        best = (np.inf, full)
+        for _ in range(ROUNDS + 1):
+            squares = forms @ (full[:, None] * full).ravel()
+            charged = float(squares[-1])
+            squares = np.maximum(squares[:-1], 0.0)
+            power = float(squares[-1])
+            squares = squares[:-1] / self._counts
+            value = self._value(squares, power, freedom) + charged
+            if value < best[0]:
+                best = (value, full)
+            if abs(last - value) < STILL:
+                break
+            last = value
+            weights = self.weight / (self._counts * np.maximum(squares, self.floor))
+            of_inside = d / max(power, d * self.floor)
+            normal = np.concatenate([weights, [of_inside, 1.0]]) @ forms
+            normal = normal.reshape(k + 1, k + 1)
+            matrix = normal[1:, 1:]
+            matrix.flat[:: k + 1] *= 1 + 1e-12
+            beta = _solve(matrix, normal[1:, 0], positive)
+            full = np.concatenate([[1.0], -beta])
         return Amplitudes(-best[1][1 : own + 1] / scale, best[0])
 
     def shared(self, columns: FloatArray, stiffness: FloatArray) -> Shared:
