@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from hystbench.blocks.dead_zone import DeadZone
 from hystbench.blocks.drive_saturation import DriveSaturation
-from hystbench.blocks.input_delay import InputDelay
+from hystbench.blocks.input_delay import InputDelay, later
 from hystbench.blocks.slew_limit import SlewLimit
 
 DT = 1e-3
@@ -106,3 +106,11 @@ def test_before_the_record_the_start_value_is_held():
     z = 1.5 + np.sin(np.arange(100) / 5)
     v = InputDelay(delay_s=10.5 * DT).simulate(z, z, DT)
     np.testing.assert_array_equal(v[:11], z[0])
+
+
+def test_a_lead_leaves_a_signal_at_rest_behind_its_last_sample():
+    z = np.sin(np.linspace(0.0, 3.0, 60))
+    led = later(z, -2.25)
+    # What comes 2.25 samples early has reached the last value three samples before.
+    np.testing.assert_array_equal(led[-2:], z[-1])
+    np.testing.assert_allclose(led[30], np.interp(32.25, np.arange(60), z), atol=1e-3)

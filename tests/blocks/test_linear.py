@@ -379,3 +379,17 @@ def test_states_that_do_not_last_an_interval_are_weighed_with_the_window():
     # What is as quick as that follows its input.
     assert parts[1][1:] == pytest.approx(v[1:], abs=0.2)
     assert parts[1][0] == 0.0
+
+
+@pytest.mark.parametrize("hold", ["zero-order", "linear", "band-limited"])
+@pytest.mark.parametrize("name", ["resonance", "eddy-diffusion"])
+def test_many_records_at_once_are_as_one_by_one(name, hold):
+    mode = Resonance(frequency_hz=65.0, damping_ratio=0.03, participation=0.4)
+    block = {"resonance": mode, "eddy-diffusion": EddyDiffusion(time_constant_s=0.01)}
+    block = replace(block[name], hold=hold)
+    rng = np.random.default_rng(0)
+    signals = [rng.standard_normal(n) for n in (300, 1, 50, 120)]
+    rates = [DT, 2 * DT, DT, 3 * DT]
+    together = block.simulate_records(signals, rates)
+    for z, dt, y in zip(signals, rates, together, strict=True):
+        np.testing.assert_array_equal(y, block.simulate(z, z, dt))

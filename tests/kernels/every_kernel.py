@@ -137,6 +137,10 @@ def models(x):
 
 def blocks(x):
     """Outputs of the blocks that have a kernel of their own."""
+    lag = Resonance(
+        frequency_hz=300.0, damping_ratio=0.05, participation=0.4, hold="linear"
+    )
+    yield "records", lag.simulate_records([x, 0.5 * x[::-1]], [DT, 2 * DT])
     each = (
         SlewLimit(rate=50.0),
         StiffnessHardening(

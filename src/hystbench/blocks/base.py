@@ -170,11 +170,15 @@ class PolynomialBlock(Block):
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the polynomial by Horner's scheme."""
-        *lower, highest = self.coefficients
-        y: FloatArray = np.full(len(z), highest)
-        for coefficient in reversed(lower):
-            y = y * z + coefficient
-        return y
+        constant, *higher = self.coefficients
+        if not higher:
+            return np.full(len(z), constant)
+        *between, highest = higher
+        y: FloatArray = highest * z
+        for coefficient in reversed(between):
+            y += coefficient
+            y *= z
+        return y + constant if constant else y
 
     def step(self, sampling: Sampling) -> Step:
         """Give the polynomial."""

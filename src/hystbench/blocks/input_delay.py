@@ -99,9 +99,12 @@ def later(z: FloatArray, samples: float) -> FloatArray:
         Below zero it comes earlier.
     """
     whole = floor(samples)
-    places = np.clip(np.arange(len(z)) - whole, 0, len(z) - 1)
+    last = len(z) - 1
+    at = np.arange(len(z)) - whole
+    places = np.clip(at, 0, last)
     if whole == samples:
         return z[places]
     taps = value_at(POINTS, whole - samples - AHEAD)
     between: FloatArray = weighed(z, taps[np.newaxis])[0][places]
+    between[at > last] = z[last]
     return between

@@ -1,9 +1,11 @@
 """Linear blocks: what a state-space system answers to an input, for a stated hold."""
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import NamedTuple
+from itertools import accumulate
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -36,6 +38,18 @@ class Loop(NamedTuple):
     fixed: tuple[kernels.Fixed, ...]
     d: float
     following: FloatArray  # padded
+    direct: kernels.Fixed  # d again, for a kernel that is told where all lies
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Vectors of states, and states; 0 where A is diagonal."""
+        return self.sizes[0], self.sizes[1] if len(self.sizes) > 1 else 0
+
+    @property
+    def places(self) -> tuple[int, ...]:
+        """Where the system lies, and what follows the input at once."""
+        fixed = (item.place for item in self.fixed)
+        return (*fixed, self.direct.place, kernels.address(self.following))
 
 
 class CurveLoop(NamedTuple):
@@ -78,6 +92,20 @@ class LinearBlock(HeldBlock):
         path, before = path_from(z, self.start)
         moves = respond(self.continuous(), path - before, dt, self.holding)
         return (moves + self.static_gain * before)[len(path) - len(z) :]
+
+    def simulate_records(
+        self, signals: Sequence[FloatArray], dts: Sequence[float]
+    ) -> list[FloatArray]:
+        """Compute the responses to signals of many records, as :meth:`simulate` does.
+
+        Where the signals move straight or as a staircase, from rest, all take one call
+        of a kernel: of short ones calls are most of the time.
+        """
+        if self.start != "rest" or self.holding == "band-limited":
+            pairs = zip(signals, dts, strict=True)
+            return [self.simulate(z, z, dt) for z, dt in pairs]
+        loops = {dt: cast(Loop, _loop_of(self, dt, False)) for dt in set(dts)}
+        return _moved_records([loops[dt] for dt in dts], signals)
 
     def step(self, sampling: Sampling) -> Step:
         """Move the state over the interval that has passed."""
@@ -160,6 +188,23 @@ def _moved(loop: Loop | CurveLoop, v: FloatArray) -> FloatArray:
         kernels.call("hb_weighed", n, POINTS, 1, loop.passing, path, passed)
         y[1:] += passed[1:]
     return y
+
+
+def _moved_records(
+    loops: Sequence[Loop], signals: Sequence[FloatArray]
+) -> list[FloatArray]:
+    """Send signals through loops of one system at their rates, each from rest."""
+    signals = [np.asarray(v, dtype=np.float64, order="C") for v in signals]
+    ends = list(accumulate(map(len, signals)))
+    out = np.empty(ends[-1])
+    moved = [out[end - len(v) : end] for end, v in zip(ends, signals, strict=True)]
+    rows = [
+        (len(v), kernels.address(v), kernels.address(y), *loop.places)
+        for loop, v, y in zip(loops, signals, moved, strict=True)
+    ]
+    places = np.array(rows, dtype=np.intp)
+    kernels.call("hb_records", len(rows), *loops[0].size, places.ctypes.data)
+    return moved
 
 
 def states_of(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> FloatArray:
@@ -339,4 +384,5 @@ def _loop(a: bytes, b: bytes, c: bytes, d: float, dt: float, hold: Hold) -> Loop
         phi = _padded_columns(square(steps.phi))
     fixed = (phi, kernels.pad(steps.b), kernels.pad(steps.c))
     places = tuple(map(kernels.Fixed, fixed))
-    return Loop(kernel, sizes, places, steps.d, kernels.pad(steps.following))
+    direct = kernels.Fixed(np.array([steps.d]))
+    return Loop(kernel, sizes, places, steps.d, kernels.pad(steps.following), direct)

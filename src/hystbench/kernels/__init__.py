@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.libraries import SIZE, Loops, address
+from hystbench.libraries import SIZE, Loops
 from hystbench.libraries import Fixed as Fixed
+from hystbench.libraries import address as address
 from hystbench.record import FloatArray
 
 WIDTH = 8
@@ -36,6 +37,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_lms_volterra": (SIZE, "iiiaaffffaaaaa"),
     "hb_state_space": (None, "iiiaaafaaa"),
     "hb_modes": (SIZE, "iiaaafaaa"),
+    "hb_records": (SIZE, "iiia"),
     "hb_states": (SIZE, "iiaa"),
     "hb_weighed": (None, "iiiaaa"),
     "hb_decimated": (None, "iiiaaa"),

@@ -164,6 +164,30 @@ EXPORT index_t hb_modes(index_t n, index_t wide, const double *factors,
 #undef CALL
 }
 
+/* Systems of one size, each on a record of its own: rows of places hold the length of a
+ * record, and where its input, its output, the system (a, b, c, d) and following lie.
+ * Each begins at -following u(0), as the input was zero before. Where states is 0 a is
+ * the diagonal. */
+EXPORT index_t hb_records(index_t records, index_t wide, index_t states,
+                          const index_t *places)
+{
+    double state[wide * WIDTH] ALIGNED;
+    for (const index_t *row = places; row < places + 8 * records; row += 8) {
+        const index_t n = row[0];
+        const double *u = (const double *)row[1], *a = (const double *)row[3];
+        const double *b = (const double *)row[4], *c = (const double *)row[5];
+        const double d = *(const double *)row[6];
+        const double *following = (const double *)row[7];
+        double *y = (double *)row[2];
+        for (index_t i = 0; i < wide * WIDTH; i++) state[i] = -following[i] * u[0];
+        if (states)
+            hb_state_space(n, wide, states, a, b, c, d, u, state, y);
+        else
+            hb_modes(n, wide, a, b, c, d, u, state, y);
+    }
+    return 0;
+}
+
 INLINE index_t states(index_t n, const double *a, double *out, index_t vectors)
 {
     const index_t size = vectors * LANES;

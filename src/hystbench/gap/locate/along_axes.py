@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from hystbench.blocks.curve import AHEAD
+from hystbench.blocks.input_delay import later
 from hystbench.blocks.linear import low_pass
 from hystbench.gap.locate.forms import (
     FACTS,
@@ -45,6 +47,9 @@ STARTS = 61
 """Delays that are tried, of both signs, before the best is refined."""
 ROUGHLY = 4
 """Of the samples of a view, one of so many chooses a start."""
+NEWTON, FINER = 8, 1e-4
+"""Steps of Gauss and Newton from there, at most, and the share of a step of the grid to
+which a delay is found."""
 PERIODS = 1.5
 """Of the fastest input: further a shift is not told from those by whole periods."""
 QUIET = 1.5
@@ -187,34 +192,61 @@ def delay(samples: ViewSamples) -> View:
 
 
 def fit_delay(samples: ViewSamples) -> tuple[float, FloatArray]:
-    """Find the delay in seconds, and what it changes: on a grid, then refined."""
-    from scipy.interpolate import CubicSpline  # late: both take long to load
-    from scipy.optimize import minimize_scalar
+    """Find the delay in seconds, and what it changes: on a grid, then refined.
 
-    paths = [CubicSpline(item.record.time, item.simulated) for item in samples.compared]
-
-    def change(shift: float, every: int = 1) -> FloatArray:
-        moved = [
-            path(np.clip(samples.time[part][::every] - shift, *path.x[[0, -1]]))
-            - samples.simulated[part][::every]
-            for path, part in zip(paths, samples.slices, strict=True)
-        ]
-        return np.concatenate(moved)
-
-    def missed(shift: float, every: int = 1) -> float:
-        there = [samples.residual[part][::every] for part in samples.slices]
-        return float(np.mean((np.concatenate(there) - change(shift, every)) ** 2))
-
-    longest = 4 * max(item.record.dt for item in samples.compared)
+    Where a record begins and ends it is not known what a delay brings in: samples
+    there do not count.
+    """
+    runs = [(item.simulated, item.record.dt) for item in samples.compared]
+    longest = 4 * max(dt for _, dt in runs)
     most = max(PERIODS / float(np.max(samples.main_frequencies)), longest)
+    inner = []
+    for (signal, dt), at in zip(runs, samples.places, strict=True):
+        ends = min(int(most / dt) + AHEAD, len(signal) // 4)
+        inner.append((at >= ends) & (at < len(signal) - ends))
+    counted = np.concatenate(inner)
+
+    def roughly(shift: float) -> float:
+        missed = 0.0
+        for (signal, dt), at, part, own in zip(
+            runs, samples.places, samples.slices, inner, strict=True
+        ):
+            few = at[own][::ROUGHLY]
+            late = np.interp(few - shift / dt, np.arange(len(signal)), signal)
+            rest = samples.residual[part][own][::ROUGHLY] - (late - signal[few])
+            missed += float(rest @ rest)
+        return missed
+
+    def change(shift: float) -> FloatArray:
+        return samples.thinned(
+            [later(signal, shift / dt) - signal for signal, dt in runs]
+        )
+
+    def missed(moved: FloatArray) -> float:
+        return float(np.sum((samples.residual - moved)[counted] ** 2))
+
     starts = np.linspace(-most, most, STARTS).tolist()
-    start = min(starts, key=lambda shift: missed(shift, ROUGHLY))
     step = 2 * most / (STARTS - 1)
-    ends = (start - step, start + step)
-    search = minimize_scalar(missed, bounds=ends, options={"xatol": 1e-4 * step})
-    # A record that tells nothing has no delay.
-    shift = float(search.x) if missed(float(search.x)) < missed(0.0) else 0.0
-    return shift, change(shift)
+
+    def refined(shift: float) -> tuple[float, float, FloatArray]:
+        low, high, moved = shift - step, shift + step, change(shift)
+        for _ in range(NEWTON):
+            slope = (change(shift + FINER * step) - moved)[counted] / (FINER * step)
+            power = float(slope @ slope) or np.inf
+            there = shift + float(slope @ (samples.residual - moved)[counted]) / power
+            there = float(np.clip(there, low, high))
+            after, by = change(there), abs(there - shift)
+            if missed(after) >= missed(moved):
+                break
+            shift, moved = there, after
+            if by < FINER * step:
+                break
+        return missed(moved), shift, moved
+
+    # Where records tell next to nothing the best is near none.
+    found = [refined(shift) for shift in (0.0, min(starts, key=roughly))]
+    _, shift, moved = min(found, key=lambda item: item[0])
+    return shift, moved
 
 
 def record(samples: ViewSamples) -> View:

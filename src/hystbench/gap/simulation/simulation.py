@@ -14,6 +14,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.curve import SHORT_STEPS, finer
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import HeldBlock, Hold
+from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.stiffness_hardening import StiffnessHardening
 from hystbench.blocks.store import Store
@@ -97,18 +98,25 @@ class Simulation:
         repeating = any(getattr(block, "start", "") == "repeating" for block in blocks)
         if repeating and not all(record.repeats for record in self.records):
             begun = self._steps([_begun_once(block) for block in blocks])
-        out = []
         finely = self.fine and self.hold == LIMITED
-        for z, record in zip(signals, self.records, strict=True):
-            for step in steps if record.repeats else begun:
-                if finely and (isinstance(step, Wrapped) or step.hysteretic):
-                    z = _finely(step, z, record.dt, SHORT_STEPS)
-                elif self.quick and _takes_short_steps(step):
-                    z = _finely(step, z, record.dt, QUICK)
-                else:
-                    z = self._known(step, z).simulate(z, record.u, record.dt)
-            out.append(z)
-        return tuple(out)
+        dts = [record.dt for record in self.records]
+        for step, first in zip(steps, begun, strict=True):
+            if step is first and isinstance(step, LinearBlock):
+                signals = tuple(step.simulate_records(signals, dts))
+                continue
+            signals = tuple(
+                self._sent(step if record.repeats else first, z, record, finely)
+                for z, record in zip(signals, self.records, strict=True)
+            )
+        return signals
+
+    def _sent(self, step: Any, z: FloatArray, record: Record, finely: bool) -> Any:
+        """Send one signal through one step."""
+        if finely and (isinstance(step, Wrapped) or step.hysteretic):
+            return _finely(step, z, record.dt, SHORT_STEPS)
+        if self.quick and _takes_short_steps(step):
+            return _finely(step, z, record.dt, QUICK)
+        return self._known(step, z).simulate(z, record.u, record.dt)
 
     def _steps(self, blocks: Sequence[Block]) -> list[Any]:
         quick: Any = [_quick(block) for block in blocks] if self.quick else blocks
