@@ -10,7 +10,7 @@ costs nothing to offer it; one that explains something is charged for its freedo
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dtrtri
@@ -60,12 +60,15 @@ class ColumnProducts:
         Sum of squares of the signal.
     rows : int
         Samples of the signal.
+    sizes : ndarray, shape (k,)
+        By which the columns were divided.
     """
 
     gram: FloatArray
     across: FloatArray
     power: float
     rows: int
+    sizes: FloatArray
 
     @classmethod
     def of(
@@ -88,7 +91,13 @@ class ColumnProducts:
             columns.T @ signal / size,
             float(signal @ signal),
             len(signal),
+            size,
         )
+
+    def of_another(self, columns: FloatArray, signal: FloatArray) -> ColumnProducts:
+        """Give the products of the same columns with another signal."""
+        across = columns.T @ signal / self.sizes
+        return replace(self, across=across, power=float(signal @ signal))
 
     def explained(self, groups: Sequence[Sequence[int]]) -> Grouped:
         """Find the variances of groups and of the noise, by evidence.

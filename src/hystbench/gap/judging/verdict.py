@@ -239,6 +239,14 @@ def judge(
                 f"what is left on the fit records, {100 * share:.2g} % of the output's "
                 "rms, is no more than a slightly wrong shape of the base could leave"
             )
+        follows_nothing = unnamed.by_chance and (explained_by_box or 0.0) < 0
+        if follows_nothing and not left.foreign:
+            return "no-gap", (
+                f"what is left on the fit records, {left.after:.2g} times the power of "
+                "the noise floor, follows the input no more than when it is moved in "
+                "time against it, and a black box makes it worse on folds: it is noise "
+                "of another colour, or has a cause that is in no record"
+            )
         return "unnamed", (
             f"on the fit records a gap of {left.after:.2g} times the noise power is "
             "there and no effect of the vocabulary pays; "
