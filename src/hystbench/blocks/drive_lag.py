@@ -14,7 +14,7 @@ class DriveLag(LinearBlock, name="drive-lag", place="drive"):
        Press, 2000: a coil driven through its resistance.
     """
 
-    time_constant_s: float = number("s", "tau", 1e-7, 1e3)
+    time_constant_s: float = number("s", "tau", 1e-12, 1e3)
 
     def continuous(self) -> StateSpace:
         """Return the lag with its output as the state."""

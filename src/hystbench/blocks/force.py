@@ -40,7 +40,12 @@ class Dynamics(HeldBlock):
 
     @abstractmethod
     def motions(
-        self, z: FloatArray, dt: float, forces: tuple[Force, ...], others: Others
+        self,
+        z: FloatArray,
+        dt: float,
+        forces: tuple[Force, ...],
+        others: Others,
+        pieces: int = 1,
     ) -> list[Motion]:
         """Compute how the coordinate moves, and how others with numbers near do.
 
@@ -53,6 +58,8 @@ class Dynamics(HeldBlock):
         forces : tuple of Force
         others : sequence of (Driven, ndarray)
             Each with what drives it.
+        pieces : int
+            Steps in place of each, where a simulation takes its own.
         """
 
     @abstractmethod
@@ -63,13 +70,17 @@ class Dynamics(HeldBlock):
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
         """Say what it does at one sample with forces inside."""
 
-    def motion(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> Motion:
+    def motion(
+        self, z: FloatArray, dt: float, forces: tuple[Force, ...], pieces: int = 1
+    ) -> Motion:
         """Compute how the coordinate moves; arguments are those of :meth:`motions`."""
-        return self.motions(z, dt, forces, ())[0]
+        return self.motions(z, dt, forces, (), pieces)[0]
 
-    def driven(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> FloatArray:
+    def driven(
+        self, z: FloatArray, dt: float, forces: tuple[Force, ...], pieces: int = 1
+    ) -> FloatArray:
         """Compute the output with forces inside; NaN from where it has run away."""
-        return self.given(self.motion(z, dt, forces))
+        return self.given(self.motion(z, dt, forces, pieces))
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output without a force inside."""
@@ -195,6 +206,7 @@ class Driven:
 
     host: Dynamics
     forces: tuple[Force, ...] = ()
+    pieces: int = 1
 
     hysteretic = False
     name: ClassVar[str] = "mechanism"
@@ -205,13 +217,13 @@ class Driven:
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output, as :meth:`Block.simulate` does."""
-        return self.host.driven(z, dt, self.forces)
+        return self.host.driven(z, dt, self.forces, self.pieces)
 
     def near(
         self, z: FloatArray, u: FloatArray, dt: float, others: Others
     ) -> list[FloatArray]:
         """Compute the output, and those of others with numbers near."""
-        motions = self.host.motions(z, dt, self.forces, others)
+        motions = self.host.motions(z, dt, self.forces, others, self.pieces)
         hosts = (self.host, *(other.host for other, _ in others))
         return [host.given(motion) for host, motion in zip(hosts, motions, strict=True)]
 

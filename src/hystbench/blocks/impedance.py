@@ -111,7 +111,12 @@ class Impedance(Dynamics, name="impedance", place="base"):
         )
 
     def motions(
-        self, z: FloatArray, dt: float, forces: tuple[Force, ...], others: Others
+        self,
+        z: FloatArray,
+        dt: float,
+        forces: tuple[Force, ...],
+        others: Others,
+        pieces: int = 1,
     ) -> list[Motion]:
         """Give the motion and the forces that it meets, and those of others.
 

@@ -18,7 +18,7 @@ from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 OUTPUTS = ("position", "velocity", "acceleration", "force")
-PHASE = 0.2
+PHASE = 0.1
 """Largest angle, in radians, by which the linear coordinate turns in one step."""
 MOST = 40
 """Steps of an interval, at most: the linear part is exact however fast it is."""
@@ -89,7 +89,12 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
             return motion.acceleration + self.blend * motion.velocity
 
     def motions(
-        self, z: FloatArray, dt: float, forces: tuple[Force, ...], others: Others
+        self,
+        z: FloatArray,
+        dt: float,
+        forces: tuple[Force, ...],
+        others: Others,
+        pieces: int = 1,
     ) -> list[Motion]:
         """Compute how the coordinate moves, and how others with numbers near do.
 
@@ -101,7 +106,8 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
         numbers = np.array([rows(each.forces) for each in every])
         path, before = path_from(z, self.start)
         lines, fine = held_lines(path, self.holding)
-        n, step, parts = len(lines), dt / fine, self._parts(dt / fine, forces)
+        n, step = len(lines), dt / fine
+        parts = pieces * self._parts(step, forces)
         gain, bias, mass, damping, stiffness = np.array(
             [[x.gain, x.bias, x.mass, x.damping, x.stiffness] for x in hosts]
         ).T[..., None]

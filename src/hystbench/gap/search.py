@@ -23,7 +23,7 @@ from hystbench.gap.inside.named_inside import (
     named_inside,
 )
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
-from hystbench.gap.naming.add_effects import add_effects
+from hystbench.gap.naming.add_effects import add_effects, beside_forces
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence, own_offsets
@@ -105,7 +105,8 @@ def search(
                 inside = inside if beats(inside, named, floor.rms, say) else None
         own = theirs if inside is None else own
     if inside is not None:
-        base, start, named = inside.base, inside.start, inside.named
+        base, start = inside.base, inside.start
+        named = beside_forces(inside.named, start, floor.rms, share, say)
     found = judge_and_tell(evidence.name, base, start, floor, named, asked, limits, own)
     if inside is None:
         return found

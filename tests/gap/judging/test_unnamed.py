@@ -367,3 +367,46 @@ def test_a_longer_run_has_the_larger_random_walk():
     np.testing.assert_allclose(local[0] / local[9], 10.0)
     many = state_of((GAIN,), given * 50, count=200)
     assert random_walks(many)[0].shape[1] == 1000
+
+
+def broad(change, seed):
+    """The gain's output over broad inputs, changed, with a little noise."""
+    rng, found = np.random.default_rng(seed), []
+    for k in range(4):
+        u = low_pass(rng.standard_normal(1600), 1.0, 3.0, 0.0)
+        one = record(u, name=f"broad-{k}", dt=1 / 800)
+        y = 12.0 * u + change(k, one) + NOISE * rng.standard_normal(len(u))
+        found.append(record(u, y, name=one.name, dt=one.dt))
+    return tuple(found)
+
+
+def coloured(seed, samples):
+    """Noise with a memory of fifty samples."""
+    white = np.random.default_rng(seed).standard_normal(samples)
+    return low_pass(white, 1.0, 50.0, 0.0) * 10
+
+
+def test_coloured_noise_follows_known_signals_only_by_chance():
+    told = []
+    for seed in range(8):
+        given = broad(lambda k, one, s=seed: coloured(50 + 10 * s + k, len(one)), seed)
+        start = state_of((GAIN,), given, count=800)
+        found = what_is_unnamed(start, start, NOISE)
+        told.append(found.by_chance)
+        if found.by_chance:
+            assert found.structured == 0.0
+            assert found.sort() == "unrelated"
+            assert found.unrelated > LOOSE
+    # A test at 5 %: two of eight fail in one of twenty times.
+    assert sum(told) >= 6
+
+
+@pytest.mark.parametrize("inputs_of", [broad, lambda change, seed: with_output(change)])
+def test_a_strength_that_changes_in_time_is_more_than_chance(inputs_of):
+    def fading(k, one):
+        return 2.0 * one.u * np.cos(np.pi * one.time / one.time[-1])
+
+    start = state_of((GAIN,), inputs_of(fading, 0), count=800)
+    found = what_is_unnamed(start, start, NOISE)
+    assert not found.by_chance
+    assert found.structured > 0.5

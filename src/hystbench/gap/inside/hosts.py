@@ -23,6 +23,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.cache import records_digest
 from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
+from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.modes import frequency_of, modes, shows_a_pole
@@ -35,7 +36,7 @@ from hystbench.gap.inside.one_coordinate import (
 from hystbench.gap.inside.stores import in_other_order, stores
 from hystbench.gap.inside.two_masses import further_modes_of, two_masses
 from hystbench.gap.records.scored_samples import ScoredSamples
-from hystbench.gap.thresholds import AS_GOOD, PAYS
+from hystbench.gap.thresholds import AS_GOOD, FURTHER, PAYS
 from hystbench.quantities import Quantities
 from hystbench.record import Record
 
@@ -60,12 +61,15 @@ class Host:
     other : ModelState, optional
         What forces are put in instead: as good while linear, and not fitted, as a fit
         would come back.
+    charge : float
+        For numbers of a given base that are fitted though nobody set them free.
     """
 
     alone: ModelState
     fitted: Fitted
     words: str
     other: ModelState | None = None
+    charge: float = 0.0
 
 
 def hosts(
@@ -121,18 +125,33 @@ def hosts(
             words = (
                 "a model of one coordinate that simulates the same stands for the base"
             )
-            yield Host(same, fitted(same, score), words)
+            yield from _as_given(same, score, words)
     if quantities.causality not in ("force to motion", "unknown"):
         return
     known = quantities.output in MOTIONS
     split = modes(start, quantities.output if known else "position", identified)
     for mode in itertools.islice(split, TRIED):
-        best, block = fitted(mode, score), mode.chain[0]
+        block = mode.chain[0]
         assert isinstance(block, Mechanism)  # noqa: S101  (for the type checker)
         words = (
             f"the base's mode at {frequency_of(block):.3g} Hz is a mechanism of its own"
         )
-        yield Host(best.state if identified else mode, best, words)
+        if identified:
+            best = fitted(mode, score)
+            yield Host(best.state, best, words)
+        else:
+            yield from _as_given(mode, score, words)
+
+
+def _as_given(state: ModelState, score: Score, words: str) -> Iterator[Host]:
+    """Give a host that does what a given base does, then the same fitted to records.
+
+    The numbers of a given base are known, if it does not say that they are free. That
+    they are off all the same has to pay as a further effect does.
+    """
+    held = replace(state, free=())
+    yield Host(held, Fitted(held, score_of(held, score)), words)
+    yield Host(state, fitted(state, score), words, charge=FURTHER)
 
 
 def best_host(states: Sequence[ModelState], score: Score) -> Fitted | None:

@@ -109,14 +109,15 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
     """Put a law into a chain, with its numbers free.
 
     A force goes behind the host, a filter before all or behind all. What a force stands
-    for goes out of the host's spring. Of several hosts it is the last one.
+    for goes out of the host's spring, if that may change. Of several hosts it is the
+    last one.
     """
     base: list[Any] = list(state.chain)
     place = 0 if law.place == "before" else len(base)
     if law.place == "inside":
         host = host_of(state)
         place = host + 1
-        if law.stands_for:
+        if law.stands_for and _is_free(state, host):
             spring = (1.0 - law.stands_for) * base[host].stiffness
             base[host] = replace(base[host], stiffness=spring)
     chain = (*base[:place], law.block, *base[place:])
@@ -136,7 +137,8 @@ def evened(state: ModelState) -> ModelState:
 
     Along the way that the host goes without the force: the spring and the damper that
     are nearest to the force there, in least squares (statistical linearization [1]_).
-    So the mode that the force is put into stays where it was.
+    So the mode that the force is put into stays where it was. A host that is known
+    stays as it is.
 
     References
     ----------
@@ -147,6 +149,8 @@ def evened(state: ModelState) -> ModelState:
     law, chain = state.chain[place], list(state.chain)
     number = host_of(state)
     host = chain[number]
+    if not _is_free(state, number):
+        return state
     if isinstance(host, Mechanism) and place < number:
         return _as_strong(state, place)
     if not (isinstance(law, Force) and isinstance(host, Mechanism)):
@@ -193,6 +197,11 @@ def _as_strong(state: ModelState, place: int) -> ModelState:
             up = tuple(x / times for x in block.numerator)
             chain[k] = replace(block, numerator=up)
     return state.with_chain(tuple(chain))
+
+
+def _is_free(state: ModelState, place: int) -> bool:
+    """Tell whether numbers of a block may change."""
+    return any(free.block == place for free in state.free)
 
 
 def host_of(state: ModelState) -> int:

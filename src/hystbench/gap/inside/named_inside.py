@@ -28,7 +28,7 @@ from hystbench.gap.inside.further_modes import (
     in_further_modes,
     with_modes,
 )
-from hystbench.gap.inside.hosts import hosts
+from hystbench.gap.inside.hosts import Host, hosts
 from hystbench.gap.inside.hypotheses import may_gain, singles, together
 from hystbench.gap.inside.laws import laws_for
 from hystbench.gap.naming.add_effects import Named
@@ -37,7 +37,7 @@ from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.memory import may_have_hysteresis
-from hystbench.gap.thresholds import LOOSE, PAYS, SCALE, UNNAMED_SHARE
+from hystbench.gap.thresholds import FURTHER, LOOSE, PAYS, SCALE, UNNAMED_SHARE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 
@@ -104,11 +104,11 @@ def named_inside(
         return None
 
     # Together forces are tried in the host that does best with one.
-    def charge_of(found: Sequence[Fitted]) -> float:
+    def charge_of(host: Host, found: Sequence[Fitted]) -> float:
         best = chosen(found, score.floor, share)
-        return charged(best, found, score.floor, share)
+        return host.charge + charged(best, found, score.floor, share)
 
-    host, found = min(tried, key=lambda item: charge_of(item[1]))
+    host, found = min(tried, key=lambda item: charge_of(*item))
     found = together(found, offer, score, say)
     best, alone = chosen(found, score.floor, share), host.alone
     if not best.effects:
@@ -225,14 +225,16 @@ def betters(inside: Inside, start: ModelState, floor_rms: float) -> bool:
 def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> bool:
     """Tell whether effects inside do better than those in a chain.
 
-    They have to lower the score on folds by as much as any effect. Both
-    models are refitted without those records.
+    They have to lower the score on folds by as much as any effect; what the chain
+    has to pay for each effect more than they are counts. Both models are refitted
+    without those records.
     """
     state, chain = inside.named.state, named.state
     score = Score.plain(state.sample, floor_rms**2)
     gain = gain_held_back(chain, state, score) - gain_held_back(chain, chain, score)
     say(f"inside: gain {gain:.1f} on folds")
-    return gain >= PAYS
+    more = len(chain.added) - len(state.added)
+    return gain + FURTHER * max(more, 0) >= PAYS
 
 
 def charged(

@@ -20,6 +20,7 @@ from hystbench.gap.naming.rank import rank
 from hystbench.gap.naming.removal import (
     TakenOut,
     is_shape_that_matters,
+    without_unknown,
     without_what_goes,
 )
 from hystbench.gap.naming.rounds import MOST, Candidate, Round, reasons
@@ -32,6 +33,8 @@ from hystbench.gap.thresholds import (
     UNNAMED_SHARE,
 )
 
+TONE = "mains-pickup"
+"""The effect that is a tone beside all others."""
 LITTLE = "what the effects leave of a slightly wrong shape is most of it"
 
 
@@ -111,6 +114,45 @@ def settled(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Name
         # Its own numbers are found without what other forms of it could do.
         state, _ = finished(state, make_score(state, floor_rms, forms=False))
     return Named(state, rounds, gone)
+
+
+def beside_forces(
+    named: Named, start: ModelState, floor_rms: float, share: float, say: Say
+) -> Named:
+    """Take out forces of unknown size, and add the tone that no force does.
+
+    Where forces were named in the dynamics no chain is tried behind them; but what the
+    input does not explain is beside any of them, if it pays and matters.
+
+    Parameters
+    ----------
+    named : Named
+        Forces inside, by rounds.
+    start : ModelState
+        What stands for the base, without them.
+    floor_rms : float
+    share : float
+        Of the gap, that may stay unnamed.
+    say : callable
+    """
+    floor = floor_rms**2
+    state, gone = without_unknown(named.state, floor_rms, say)
+    named = replace(named, state=state, gone=(*named.gone, *gone))
+    known = [item for item in among(state.offered).values() if item.name == TONE]
+    if not known or TONE in names(state):
+        return named
+    score = make_score(state, floor_rms)
+    ranking = rank(state, score, known, needs=FURTHER)
+    first = ranking[0]
+    gap = max(start.power(floor), floor)
+    if not _pays(first, state, floor, SoFar(state, gap, share)):
+        return named
+    assert first.state is not None  # noqa: S101  (for the type checker)
+    say(f"inside: beside it {TONE}: gain {first.gain:.1f}")
+    one = Round(state, first.score + first.gain, ranking, True)
+    # Forces were fitted with the tone in what is left.
+    state, _ = finished(first.state, make_score(first.state, floor_rms, forms=False))
+    return replace(named, state=state, rounds=(*named.rounds, one))
 
 
 def names(state: ModelState) -> set[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
@@ -47,12 +48,28 @@ def without_what_goes(
     gone : tuple of TakenOut
         In the order in which they went.
     """
+    state, needless_ones = _without(
+        partial(needless, floor_rms=floor_rms, gap=gap), state, say
+    )
+    state, unknown_ones = without_unknown(state, floor_rms, say)
+    return state, (*needless_ones, *unknown_ones)
+
+
+def without_unknown(
+    state: ModelState, floor_rms: float, say: Say
+) -> tuple[ModelState, tuple[TakenOut, ...]]:
+    """Take out what is not known alone; arguments as of :func:`without_what_goes`."""
+    return _without(partial(unknown, floor_rms=floor_rms), state, say)
+
+
+def _without(
+    look: Callable[[ModelState], Without | None], state: ModelState, say: Say
+) -> tuple[ModelState, tuple[TakenOut, ...]]:
     gone: tuple[TakenOut, ...] = ()
-    for look in (partial(needless, gap=gap), unknown):
-        while len(state.added) > 1 and (found := look(state, floor_rms)) is not None:
-            one, state = found
-            say(f"{one.name} goes: {one.reason}")
-            gone = (*gone, one)
+    while len(state.added) > 1 and (found := look(state)) is not None:
+        one, state = found
+        say(f"{one.name} goes: {one.reason}")
+        gone = (*gone, one)
     return state, gone
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from hystbench.blocks.attached import AttachedBlock, attached, through_near
 from hystbench.blocks.base import Block
 from hystbench.blocks.curve import SHORT_STEPS, finer
+from hystbench.blocks.force import Driven
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.linear import LinearBlock
@@ -114,6 +115,8 @@ class Simulation:
         """Send one signal through one step."""
         if finely and (isinstance(step, Wrapped) or step.hysteretic):
             return _finely(step, z, record.dt, SHORT_STEPS)
+        if self.fine and isinstance(step, Driven):
+            return replace(step, pieces=PIECES).simulate(z, record.u, record.dt)
         if self.quick and _takes_short_steps(step):
             return _finely(step, z, record.dt, QUICK)
         return self._known(step, z).simulate(z, record.u, record.dt)
@@ -322,6 +325,8 @@ LIMITED = "band-limited"
 NOT_LINEAR = (Mechanism, Store, StiffnessHardening)
 LONG = 0.3
 """Radians of a mode in a step, by which a ten-thousandth of its phase is missed."""
+PIECES = 4
+"""Of a step, where forces act inside: what it misses falls to a sixteenth."""
 QUICK = 2
 """Steps of an interval for hysteresis that depends on the rate, where quick."""
 
