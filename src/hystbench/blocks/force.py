@@ -45,7 +45,7 @@ class Dynamics(HeldBlock):
         dt: float,
         forces: tuple[Force, ...],
         others: Others,
-        pieces: int = 1,
+        pieces: float = 1.0,
     ) -> list[Motion]:
         """Compute how the coordinate moves, and how others with numbers near do.
 
@@ -58,8 +58,8 @@ class Dynamics(HeldBlock):
         forces : tuple of Force
         others : sequence of (Driven, ndarray)
             Each with what drives it.
-        pieces : int
-            Steps in place of each, where a simulation takes its own.
+        pieces : float
+            Steps in place of each that a simulation takes by itself.
         """
 
     @abstractmethod
@@ -71,13 +71,13 @@ class Dynamics(HeldBlock):
         """Say what it does at one sample with forces inside."""
 
     def motion(
-        self, z: FloatArray, dt: float, forces: tuple[Force, ...], pieces: int = 1
+        self, z: FloatArray, dt: float, forces: tuple[Force, ...], pieces: float = 1.0
     ) -> Motion:
         """Compute how the coordinate moves; arguments are those of :meth:`motions`."""
         return self.motions(z, dt, forces, (), pieces)[0]
 
     def driven(
-        self, z: FloatArray, dt: float, forces: tuple[Force, ...], pieces: int = 1
+        self, z: FloatArray, dt: float, forces: tuple[Force, ...], pieces: float = 1.0
     ) -> FloatArray:
         """Compute the output with forces inside; NaN from where it has run away."""
         return self.given(self.motion(z, dt, forces, pieces))
@@ -206,7 +206,7 @@ class Driven:
 
     host: Dynamics
     forces: tuple[Force, ...] = ()
-    pieces: int = 1
+    pieces: float = 1.0
 
     hysteretic = False
     name: ClassVar[str] = "mechanism"

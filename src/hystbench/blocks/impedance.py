@@ -116,7 +116,7 @@ class Impedance(Dynamics, name="impedance", place="base"):
         dt: float,
         forces: tuple[Force, ...],
         others: Others,
-        pieces: int = 1,
+        pieces: float = 1.0,
     ) -> list[Motion]:
         """Give the motion and the forces that it meets, and those of others.
 

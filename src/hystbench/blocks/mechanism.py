@@ -94,7 +94,7 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
         dt: float,
         forces: tuple[Force, ...],
         others: Others,
-        pieces: int = 1,
+        pieces: float = 1.0,
     ) -> list[Motion]:
         """Compute how the coordinate moves, and how others with numbers near do.
 
@@ -107,7 +107,7 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
         path, before = path_from(z, self.start)
         lines, fine = held_lines(path, self.holding)
         n, step = len(lines), dt / fine
-        parts = pieces * self._parts(step, forces)
+        parts = ceil(pieces * self._parts(step, forces))
         gain, bias, mass, damping, stiffness = np.array(
             [[x.gain, x.bias, x.mass, x.damping, x.stiffness] for x in hosts]
         ).T[..., None]

@@ -13,7 +13,7 @@ from hystbench.blocks.stiffness import Stiffness
 from hystbench.gap.effects.law import Law
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.fewer import OnAll, on_fewer
 from hystbench.gap.inside.laws import evened, with_law
 from hystbench.gap.records.coarser import ENOUGH
@@ -30,6 +30,11 @@ MOVED = Quantities("force", "position")
 def state(record, chain=(MACHINE,)):
     records = (record,)
     return ModelState(chain, records, ScoredSamples.of(records))
+
+
+def free(record, machine=MACHINE):
+    numbers = Free(0, "stiffness"), Free(0, "damping")
+    return replace(state(record, (machine,)), free=numbers)
 
 
 def periodic(start, periods=2):
@@ -52,7 +57,7 @@ def test_a_cubic_spring_on_a_sine_begins_as_its_describing_function():
     record = Record("r", DT, drive, drive, *channels, "measured")
     machine = replace(MACHINE, damping=20.0)  # soon in a steady motion
     law = Law("cubic", Stiffness(quadratic=0.0, cubic=1e5), ("cubic",))
-    begun = evened(with_law(state(record, (machine,)), "stiffness-hardening", law))
+    begun = evened(with_law(free(record, machine), "stiffness-hardening", law))
     out = 800.0 - begun.chain[0].stiffness
     assert out == pytest.approx(0.75 * a**2 * 1e5, rel=0.03)
     assert begun.chain[0].damping == pytest.approx(20.0, rel=0.05)
@@ -61,8 +66,15 @@ def test_a_cubic_spring_on_a_sine_begins_as_its_describing_function():
 def test_a_friction_takes_no_more_than_there_is():
     record = periodic("rest", 1)
     law = Law("dry", FrictionForce(coulomb=1e5, presliding_distance=1e-6), ("coulomb",))
-    begun = evened(with_law(state(record), "friction", law))
+    begun = evened(with_law(free(record), "friction", law))
     assert 0.0 < begun.chain[0].damping < 0.1 * MACHINE.damping
+
+
+def test_a_host_that_is_known_stays_as_it_is():
+    record = periodic("rest", 1)
+    law = Law("cubic", Stiffness(quadratic=0.0, cubic=1e5), ("cubic",))
+    begun = evened(with_law(state(record), "stiffness-hardening", law))
+    assert begun.chain[0] == MACHINE
 
 
 @pytest.mark.parametrize("start", ["rest", "repeating"])

@@ -122,8 +122,13 @@ class Simulation:
         return self._known(step, z).simulate(z, record.u, record.dt)
 
     def _steps(self, blocks: Sequence[Block]) -> list[Any]:
-        quick: Any = [_quick(block) for block in blocks] if self.quick else blocks
-        return attached(quick)
+        if not self.quick:
+            return attached(blocks)
+        steps = attached([cast(Block, _quick(block)) for block in blocks])
+        return [
+            replace(step, pieces=LONG_PIECES) if isinstance(step, Driven) else step
+            for step in steps
+        ]
 
     def near(self, chains: Sequence[Sequence[Block]]) -> tuple[FloatArray, ...]:
         """Simulate the chain and others near it: the same blocks, other numbers.
@@ -325,8 +330,9 @@ LIMITED = "band-limited"
 NOT_LINEAR = (Mechanism, Store, StiffnessHardening)
 LONG = 0.3
 """Radians of a mode in a step, by which a ten-thousandth of its phase is missed."""
-PIECES = 4
-"""Of a step, where forces act inside: what it misses falls to a sixteenth."""
+PIECES, LONG_PIECES = 4, 0.5
+"""Steps in place of each where forces act inside, fine and quick: what a step misses
+goes with its square."""
 QUICK = 2
 """Steps of an interval for hysteresis that depends on the rate, where quick."""
 
