@@ -59,8 +59,6 @@ class Left:
     unrepeated : float or None
         Power of what is left that differs between periods of the same input, above the
         floor and in floors; none where no record repeats.
-    loop : bool
-        Whether the base has a hysteresis, or may hold one unseen.
     """
 
     before: float
@@ -70,7 +68,6 @@ class Left:
     output: float = 0.0
     lone: float = 0.0
     unrepeated: float | None = None
-    loop: bool = True
 
     @property
     def slight(self) -> bool:
@@ -138,10 +135,9 @@ class Left:
     def may_be_of_base(self) -> bool:
         """Whether what names leave may all be the base's own error.
 
-        With nothing named it would be no gap, so it cannot speak against a name. A base
-        without hysteresis has no shape of it that could be wrong.
+        With nothing named it would be no gap, so it cannot speak against a name.
         """
-        return self.loop and self.slight and not self.foreign
+        return self.slight and not self.foreign
 
     @property
     def foreign(self) -> str:
@@ -174,7 +170,6 @@ def what_is_left(base: ModelState, state: ModelState, floor_rms: float) -> Left:
         base.power(floor) / floor,
         state.power(floor) / floor,
         float(np.var(base.measured)) / floor,
-        loop=base.simulation.loop is not None,
     )
 
 
