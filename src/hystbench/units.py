@@ -36,6 +36,11 @@ def plain(unit: str) -> str:
     return _MICRO.sub("u", unit.strip())
 
 
+def sized(value: float, unit: str) -> str:
+    """Print a number to three digits, with its unit if it has one."""
+    return f"{value:.3g}" if unit in NONE else f"{value:.3g} {unit}"
+
+
 def check_known(place: str, unit: str) -> None:
     """Refuse what is no unit.
 

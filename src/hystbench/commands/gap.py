@@ -78,6 +78,7 @@ def gap(
         given = found.closed.decision, evidence.input, asked.write_experiment
         click.echo(write_next_experiment(*given))
     effects = [in_words(effect.name) for effect in found.effects]
-    named = f": {', '.join(effects)}" if effects else ""
+    like = "nearest " if found.verdict == "unnamed" else ""
+    named = f": {like}{', '.join(effects)}" if effects else ""
     put_in = f" (you put in {', '.join(asked.with_)})" if asked.with_ else ""
     click.echo(f"{out / 'gap.json'}: {found.verdict}{named}{put_in}")

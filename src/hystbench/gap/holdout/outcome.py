@@ -23,6 +23,7 @@ from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.nuisance import left_rms
 from hystbench.gap.thresholds import AS_GOOD
 from hystbench.gap.vocabulary import Vocabulary, with_device
+from hystbench.units import sized
 
 
 def outcome(
@@ -100,8 +101,8 @@ def worse_than_a_constant(before: float, evidence: Evidence, floor: float) -> li
         return []
     unit = evidence.fit[0].output.unit
     return [
-        f"on the hold-out records the base leaves {before:.3g} {unit} rms, and a "
-        f"constant, the mean output of the fit records, {still:.3g} {unit}: it is no "
+        f"on the hold-out records the base leaves {sized(before, unit)} rms, and a "
+        f"constant, the mean output of the fit records, {sized(still, unit)}: it is no "
         "model of this device"
     ]
 
@@ -129,7 +130,7 @@ def first_figure(content: Mapping[str, Any]) -> str:
         What gap.json holds.
     """
     gap, unit = content["gap"], content["unit"]
-    sizes = f"{gap['before']:.3g} to {gap['after']:.3g} {unit} rms"
+    sizes = f"{gap['before']:.3g} to {sized(gap['after'], unit)} rms"
     share = gap["explained"]
     if share is None:
         return f"on the hold-out records the base leaves no more than noise: {sizes}"
@@ -169,9 +170,8 @@ def withdrawal(content: Mapping[str, Any]) -> dict[str, Any] | None:
         lost = " and ".join(item["record"] for item in content["runs_away"])
         shown = f"with it the model cannot be run to the end of {lost}"
     else:
-        shown = (
-            f"with it the gap grows there, from {before:.3g} to {after:.3g} {unit} rms"
-        )
+        grown = f"{before:.3g} to {sized(after, unit)} rms"
+        shown = f"with it the gap grows there, from {grown}"
     return {
         "names": names,
         "verdict": content["verdict"],
@@ -246,8 +246,8 @@ def with_built_in(
         "after": after,
         "sentence": (
             f"You put {names} into the simulator; on the hold-out records the residual "
-            f"of the simulator alone is {alone:.3g} {unit} rms, with {names} "
-            f"{after:.3g} {unit}. Nothing of that counts as found."
+            f"of the simulator alone is {sized(alone, unit)} rms, with {names} "
+            f"{sized(after, unit)}. Nothing of that counts as found."
         ),
     }
     ladder = [

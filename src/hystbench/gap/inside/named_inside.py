@@ -40,6 +40,7 @@ from hystbench.gap.simulation.memory import may_have_hysteresis
 from hystbench.gap.thresholds import FURTHER, LOOSE, PAYS, SCALE, UNNAMED_SHARE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
+from hystbench.units import sized
 
 
 @dataclass(frozen=True)
@@ -127,7 +128,7 @@ def named_inside(
     state = replace(best.state, offered=start.offered).settled()
     alone = with_modes(replace(alone, offered=start.offered), modes).settled()
     left = (float(np.sqrt(max(x.power(floor_rms**2), 0.0))) for x in (start, alone))
-    before, after = (f"{rms:.3g} {base.output.unit}" for rms in left)
+    before, after = (sized(rms, base.output.unit) for rms in left)
     sentence = (
         f"{host.words}{further_words(alone)}, and effects act inside it (without them "
         f"it leaves {after} rms of the fit records above the noise floor, the base "
