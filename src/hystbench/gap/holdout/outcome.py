@@ -21,7 +21,7 @@ from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.nuisance import left_rms
-from hystbench.gap.thresholds import AS_GOOD
+from hystbench.gap.thresholds import ABOVE_NOISE, AS_GOOD
 from hystbench.gap.vocabulary import Vocabulary, with_device
 from hystbench.units import sized
 
@@ -56,6 +56,7 @@ def outcome(
             *worse_than_a_constant(
                 shown.content["gap"]["before"], evidence, fitted.floor.rms
             ),
+            *more_than_on_fit_records({**decided, **shown.content}),
         ],
     }
     taken = withdrawal(content)
@@ -75,6 +76,31 @@ def outcome(
         content = with_built_in(content, built_in, _alone(built_in, fitted, evidence))
     content = with_device(content, evidence.device_kind, evidence.quantities)
     return replace(shown, content=content)
+
+
+def more_than_on_fit_records(content: Mapping[str, Any]) -> list[str]:
+    """Say that hold-out records show a gap where the fit records show none.
+
+    Parameters
+    ----------
+    content : mapping
+        What gap.json holds.
+
+    Returns
+    -------
+    list of str
+        One sentence, or none.
+    """
+    before, floor = content["gap"]["before"], content["gap"]["noise_floor"]
+    if content["verdict"] != "no-gap" or before is None:
+        return []
+    if before**2 <= (1 + ABOVE_NOISE) * max(floor, content["fit"]["after"] or 0.0) ** 2:
+        return []
+    return [
+        f"on the hold-out records the base leaves {sized(before, content['unit'])} "
+        f"rms, and the noise floor is {sized(floor, content['unit'])}: no fit record "
+        "shows that gap; a zero of a record's own would be one"
+    ]
 
 
 def worse_than_a_constant(before: float, evidence: Evidence, floor: float) -> list[str]:
