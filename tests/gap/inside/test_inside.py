@@ -18,7 +18,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.hosts import best_host, hosts, is_seen_moving, same_as
 from hystbench.gap.inside.hypotheses import (
@@ -490,6 +490,7 @@ def test_a_curve_before_a_mass_leaves_what_drives_all_as_strong():
     beside = OtherModes(numerator=(0.5,), denominator=(1.0, 1.0, 400.0), hold="linear")
     records = (record("run", u, np.zeros(1600), ("N", "m")),)
     state = ModelState((host, force, beside), records, ScoredSamples.of(records))
+    state = replace(state, free=(Free(0, "stiffness"),))
     strong = ExponentialCurve(curvature=0.8)
     law = Law("exponential", strong, ("curvature",), "before")
     before = state.residual.std()

@@ -16,7 +16,7 @@ from hystbench.blocks.attached import AttachedBlock
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
-from hystbench.gap.fitting.least_squares import Fitted
+from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
 from hystbench.gap.fitting.score import Score
@@ -124,8 +124,8 @@ def named_inside(
         found = on_all.hypotheses(found, way)
         best = found[place]
         alone = found[0].state if identified else on_all.state(alone)
-    fitted = found[0].state
-    state = replace(best.state, offered=start.offered).settled()
+    re_tuned = found[0].state
+    state = in_short_steps(replace(best.state, offered=start.offered), score_of_all)
     alone = with_modes(replace(alone, offered=start.offered), modes).settled()
     left = (float(np.sqrt(max(x.power(floor_rms**2), 0.0))) for x in (start, alone))
     before, after = (sized(rms, base.output.unit) for rms in left)
@@ -135,9 +135,9 @@ def named_inside(
         f"{before})"
     )
     if not identified:
-        sentence += re_tuning(alone, fitted, floor_rms**2)
+        sentence += re_tuning(alone, re_tuned, floor_rms**2)
     # The first rung is the host re-tuned, so that no effect has the credit of that.
-    rounds = _rounds(replace(fitted, offered=start.offered).settled(), best, found)
+    rounds = _rounds(replace(re_tuned, offered=start.offered).settled(), best, found)
     model = Model(base.name, base.input, base.output, alone.chain)
     labels = [label for label, _ in model.labelled()]
     free = [f"{labels[item.block]}.{item.parameter}" for item in alone.free]
@@ -147,6 +147,20 @@ def named_inside(
         Named(state, tuple(rounds)),
         sentence,
     )
+
+
+def in_short_steps(state: ModelState, score: Score) -> ModelState:
+    """Fit the numbers of forces anew by short steps; long ones make up for themselves.
+
+    What the long steps miss is taken from where the numbers are, so twice is enough.
+    """
+    state = state.settled()
+    for _ in range(2):
+        again = fitted(state, score, QUICK).state.settled()
+        if score_of(again, score) >= score_of(state, score):
+            break
+        state = again
+    return state
 
 
 def re_tuning(alone: ModelState, fitted: ModelState, floor: float) -> str:

@@ -330,7 +330,7 @@ LIMITED = "band-limited"
 NOT_LINEAR = (Mechanism, Store, StiffnessHardening)
 LONG = 0.3
 """Radians of a mode in a step, by which a ten-thousandth of its phase is missed."""
-PIECES, LONG_PIECES = 4, 0.5
+PIECES, LONG_PIECES = 2, 0.25
 """Steps in place of each where forces act inside, fine and quick: what a step misses
 goes with its square."""
 QUICK = 2
