@@ -19,8 +19,10 @@ from hystbench.record import FloatArray
 
 OUTPUTS = ("position", "velocity", "acceleration", "force")
 PHASE = 0.05
-"""Largest angle, in radians, by which the linear coordinate turns in one step. Steps miss
-a thousandth of the motion of a mode that hardens threefold."""
+"""Largest angle, in radians, by which the linear coordinate turns in one step.
+
+Steps miss a thousandth of the motion of a mode that hardens threefold.
+"""
 MOST = 40
 """Steps of an interval, at most: the linear part is exact however fast it is."""
 CONTACT = 10
