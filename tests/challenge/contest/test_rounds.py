@@ -38,7 +38,7 @@ def collect(tmp_path):
 
     def run(*folders):
         done = run_hystbench(
-            "job", "blind-rounds", *map(str, folders), "--out", str(out)
+            "job", "blind-rounds", *map(str, folders), "--to", str(out)
         )
         assert done.returncode == 0, done.stderr
         with out.open(newline="") as stream:
@@ -63,6 +63,16 @@ def test_the_same_cases_are_scored_once(tmp_path, collect):
     again = score(tmp_path / "b", 1, 100, 0.75)
     machines = score(tmp_path / "c", 1, 300, 1.0, "mechanisms")
     assert collect(again, machines) == [
+        ("published", "1", "100", "0.5"),
         ("mechanisms", "1", "300", "1.0"),
-        ("published", "1", "100", "0.75"),
     ]
+
+
+def test_a_table_of_other_columns_is_left_alone(tmp_path):
+    out = tmp_path / "rounds.csv"
+    out.write_text("a,b\n1,2\n")
+    folder = score(tmp_path / "a", 1, 100, 0.5)
+    done = run_hystbench("job", "blind-rounds", str(folder), "--to", str(out))
+    assert done.returncode == 2
+    assert "expected the columns set, group" in done.stderr
+    assert out.read_text() == "a,b\n1,2\n"

@@ -2,23 +2,38 @@
 
 import csv
 from pathlib import Path
-from typing import Any
+from typing import Annotated
 
-from hystbench.files import read_json, write_csv
-from hystbench.signature import Folder, Out, command
+import click
+
+from hystbench.errors import InputError
+from hystbench.files import read_json
+from hystbench.signature import Folder, command
+
+Table = Annotated[
+    Path, click.Path(dir_okay=False, path_type=Path), "Table to add rows to."
+]
 
 
 @command
-def blind_rounds(scores: tuple[Folder, ...], *, out: Out) -> None:
-    """Add the SCORES, folders as results/blind, to the table of all rounds."""
-    from hystbench.challenge.contest.rounds import COLUMNS, collected  # late: pandas
+def blind_rounds(scores: tuple[Folder, ...], *, to: Table) -> None:
+    """Add the SCORES, folders as results/blind, to the table of all rounds.
 
-    rows: list[Any] = _rows(out) if out.is_file() else []
+    Rows that are there stay as they are.
+    """
+    from hystbench.challenge.contest.rounds import COLUMNS, further  # late: pandas
+
+    if not to.exists():
+        to.write_text(",".join(COLUMNS) + "\n", encoding="utf-8")
+    rows = _rows(to)
+    if rows and tuple(rows[0]) != COLUMNS:
+        raise InputError(f"{to}: expected the columns {', '.join(COLUMNS)}")
     for folder in scores:
         summary = read_json(folder / "summary.json")
-        found = collected(rows, summary, _rows(folder / "never-seen.csv"))
-        rows = [dict(zip(COLUMNS, row, strict=True)) for row in found]
-    write_csv(out, COLUMNS, (tuple(row.values()) for row in rows))
+        added = further(rows, summary, _rows(folder / "never-seen.csv"))
+        rows += [dict(zip(COLUMNS, row, strict=True)) for row in added]
+        with to.open("a", newline="", encoding="utf-8") as stream:
+            csv.writer(stream, lineterminator="\n").writerows(added)
 
 
 def _rows(path: Path) -> list[dict[str, str]]:
