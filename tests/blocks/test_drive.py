@@ -111,6 +111,8 @@ def test_before_the_record_the_start_value_is_held():
 def test_a_lead_leaves_a_signal_at_rest_behind_its_last_sample():
     z = np.sin(np.linspace(0.0, 3.0, 60))
     led = later(z, -2.25)
-    # What comes 2.25 samples early has reached the last value three samples before.
+    # What comes 2.25 samples early has reached the last value two samples before it.
     np.testing.assert_array_equal(led[-2:], z[-1])
+    # What comes as much late has not left the first one three samples behind it.
+    np.testing.assert_array_equal(later(z, 2.25)[:3], z[0])
     np.testing.assert_allclose(led[30], np.interp(32.25, np.arange(60), z), atol=1e-3)

@@ -120,7 +120,8 @@ class Impedance(Dynamics, name="impedance", place="base"):
     ) -> list[Motion]:
         """Give the motion and the forces that it meets, and those of others.
 
-        What moves alike moves once, and meets forces that are the same once.
+        What moves alike moves once, and meets forces that are the same once. The motion
+        is given, so that ``pieces`` of steps change nothing.
         """
         path = np.ascontiguousarray(z, dtype=np.float64)
         still = Motion(*self._moved(path, dt), np.zeros(len(path)))

@@ -106,5 +106,6 @@ def later(z: FloatArray, samples: float) -> FloatArray:
         return z[places]
     taps = value_at(POINTS, whole - samples - AHEAD)
     between: FloatArray = weighed(z, taps[np.newaxis])[0][places]
+    between[at <= 0] = z[0]
     between[at > last] = z[last]
     return between

@@ -196,12 +196,14 @@ def _moved_records(
     """Send signals through loops of one system at their rates, each from rest."""
     signals = [np.asarray(v, dtype=np.float64, order="C") for v in signals]
     ends = list(accumulate(map(len, signals)))
-    out = np.empty(ends[-1])
+    out = np.empty(sum(map(len, signals)))
     moved = [out[end - len(v) : end] for end, v in zip(ends, signals, strict=True)]
     rows = [
         (len(v), kernels.address(v), kernels.address(y), *loop.places)
         for loop, v, y in zip(loops, signals, moved, strict=True)
     ]
+    if not rows:
+        return []
     places = np.array(rows, dtype=np.intp)
     kernels.call("hb_records", len(rows), *loops[0].size, places.ctypes.data)
     return moved

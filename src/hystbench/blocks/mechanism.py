@@ -110,7 +110,7 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
         path, before = path_from(z, self.start)
         lines, fine = held_lines(path, self.holding)
         n, step = len(lines), dt / fine
-        parts = ceil(pieces * self._parts(step, forces))
+        parts = self._parts(step, forces, pieces)
         gain, bias, mass, damping, stiffness = np.array(
             [[x.gain, x.bias, x.mass, x.damping, x.stiffness] for x in hosts]
         ).T[..., None]
@@ -187,7 +187,7 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
         kernels.call("hb_settle", self.stiffness, p, len(numbers), numbers, memory, q)
         return float(q[0])
 
-    def _parts(self, dt: float, forces: tuple[Force, ...]) -> int:
+    def _parts(self, dt: float, forces: tuple[Force, ...], pieces: float = 1.0) -> int:
         """Steps of an interval: one without forces, as the linear part is exact.
 
         With forces they are short for the linear coordinate, and for a contact. Of a
@@ -200,7 +200,7 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
             self._rate(k) for k in (self.stiffness, self.stiffness + contact)
         )
         swings = max(linear, *(item.swings for item in forces))
-        smooth, met = (ceil(dt * rate / PHASE) for rate in (swings, stiff))
+        smooth, met = (ceil(pieces * dt * rate / PHASE) for rate in (swings, stiff))
         return max(1, min(smooth, MOST), min(met, CONTACT))
 
     def _rate(self, stiffness: float) -> float:

@@ -151,6 +151,7 @@ UNNAMED = _object(
     {
         "allowed": NUMBER,
         "structured": NUMBER,
+        "by_chance": NUMBER,
         "changing": OPTIONAL,
         "unrelated": NUMBER,
         "sort": _one_of("strength", "history", "memory", "curve", "unrelated", None),

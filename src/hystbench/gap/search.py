@@ -87,6 +87,9 @@ def search(
         if inside is not None and not betters(inside, start, floor.rms):
             say("inside: what stands for the base leaves more than the base does")
             (start, floor), inside, own = whole, None, NONE
+    if inside is not None:
+        beside = beside_forces(inside.named, inside.start, floor.rms, share, say)
+        inside = replace(inside, named=beside)
     enough = ""
     # A base that was given is re-tuned where it is a host: that may stand for a chain.
     if inside is not None and is_identified(base):
@@ -105,8 +108,7 @@ def search(
                 inside = inside if beats(inside, named, floor.rms, say) else None
         own = theirs if inside is None else own
     if inside is not None:
-        base, start = inside.base, inside.start
-        named = beside_forces(inside.named, start, floor.rms, share, say)
+        base, start, named = inside.base, inside.start, inside.named
     found = judge_and_tell(evidence.name, base, start, floor, named, asked, limits, own)
     if inside is None:
         return found

@@ -174,6 +174,7 @@ EXPORT index_t hb_records(index_t records, index_t wide, index_t states,
     double state[wide * WIDTH] ALIGNED;
     for (const index_t *row = places; row < places + 8 * records; row += 8) {
         const index_t n = row[0];
+        if (!n) continue;
         const double *u = (const double *)row[1], *a = (const double *)row[3];
         const double *b = (const double *)row[4], *c = (const double *)row[5];
         const double d = *(const double *)row[6];

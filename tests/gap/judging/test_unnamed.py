@@ -392,10 +392,10 @@ def test_coloured_noise_follows_known_signals_only_by_chance():
         given = broad(lambda k, one, s=seed: coloured(50 + 10 * s + k, len(one)), seed)
         start = state_of((GAIN,), given, count=800)
         found = what_is_unnamed(start, start, NOISE)
-        told.append(found.by_chance)
+        told.append(found.by_chance > 0.0)
         if found.by_chance:
-            assert found.structured == 0.0
-            assert found.sort() == "unrelated"
+            # Some is the mean of a record, which noise of a long memory has too.
+            assert found.structured < found.by_chance
             assert found.unrelated > LOOSE
     # A test at 5 %: two of eight fail in one of twenty times.
     assert sum(told) >= 6
@@ -408,5 +408,14 @@ def test_a_strength_that_changes_in_time_is_more_than_chance(inputs_of):
 
     start = state_of((GAIN,), inputs_of(fading, 0), count=800)
     found = what_is_unnamed(start, start, NOISE)
-    assert not found.by_chance
+    assert found.by_chance == 0.0
+    assert found.structured > 0.5
+
+
+def test_a_zero_of_each_record_is_no_chance():
+    zeros = (0.5, -0.4, 0.3, -0.6)
+    given = broad(lambda k, one: np.full(len(one), zeros[k]), 3)
+    start = state_of((GAIN,), given, count=800)
+    found = what_is_unnamed(start, start, NOISE)
+    assert found.too_much()
     assert found.structured > 0.5

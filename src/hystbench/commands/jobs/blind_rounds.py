@@ -1,8 +1,9 @@
 """``hystbench job blind-rounds``: the scores of what was left out, round by round."""
 
 import csv
+import io
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import click
 
@@ -23,19 +24,22 @@ def blind_rounds(scores: tuple[Folder, ...], *, to: Table) -> None:
     """
     from hystbench.challenge.contest.rounds import COLUMNS, further  # late: pandas
 
-    if not to.exists():
-        to.write_text(",".join(COLUMNS) + "\n", encoding="utf-8")
-    rows = _rows(to)
-    if rows and tuple(rows[0]) != COLUMNS:
+    before = to.read_text(encoding="utf-8") if to.exists() else ""
+    table = csv.DictReader(io.StringIO(before))
+    rows: list[Any] = list(table)
+    if before and tuple(table.fieldnames or ()) != COLUMNS:
         raise InputError(f"{to}: expected the columns {', '.join(COLUMNS)}")
+    text = io.StringIO()
+    write = csv.writer(text, lineterminator="\n")
+    if not before:
+        write.writerow(COLUMNS)
+    elif not before.endswith("\n"):
+        text.write("\n")
     for folder in scores:
         summary = read_json(folder / "summary.json")
-        added = further(rows, summary, _rows(folder / "never-seen.csv"))
+        with (folder / "never-seen.csv").open(newline="", encoding="utf-8") as stream:
+            added = further(rows, summary, list(csv.DictReader(stream)))
         rows += [dict(zip(COLUMNS, row, strict=True)) for row in added]
-        with to.open("a", newline="", encoding="utf-8") as stream:
-            csv.writer(stream, lineterminator="\n").writerows(added)
-
-
-def _rows(path: Path) -> list[dict[str, str]]:
-    with path.open(newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
+        write.writerows(added)
+    with to.open("a", newline="", encoding="utf-8") as stream:
+        stream.write(text.getvalue())

@@ -99,7 +99,7 @@ def more_than_on_fit_records(content: Mapping[str, Any]) -> list[str]:
     return [
         f"on the hold-out records the base leaves {sized(before, content['unit'])} "
         f"rms, and the noise floor is {sized(floor, content['unit'])}: no fit record "
-        "shows that gap; a zero of a record's own would be one"
+        "shows that. The zero of a hold-out record may have moved"
     ]
 
 

@@ -23,7 +23,6 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.cache import records_digest
 from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
-from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.modes import frequency_of, modes, shows_a_pole
@@ -125,7 +124,7 @@ def hosts(
             words = (
                 "a model of one coordinate that simulates the same stands for the base"
             )
-            yield from _as_given(same, score, words)
+            yield from _as_given(same, score, words, bool(start.free))
     if quantities.causality not in ("force to motion", "unknown"):
         return
     known = quantities.output in MOTIONS
@@ -140,18 +139,23 @@ def hosts(
             best = fitted(mode, score)
             yield Host(best.state, best, words)
         else:
-            yield from _as_given(mode, score, words)
+            yield from _as_given(mode, score, words, bool(start.free))
 
 
-def _as_given(state: ModelState, score: Score, words: str) -> Iterator[Host]:
+def _as_given(
+    state: ModelState, score: Score, words: str, may_change: bool
+) -> Iterator[Host]:
     """Give a host that does what a given base does, then the same fitted to records.
 
-    The numbers of a given base are known, if it does not say that they are free. That
-    they are off all the same has to pay as a further effect does.
+    The numbers of a given base are known, unless it says that some are free. That known
+    ones are wrong all the same has to pay as a further effect does.
     """
+    if may_change:
+        yield Host(state, fitted(state, score), words)
+        return
     held = replace(state, free=())
-    yield Host(held, Fitted(held, score_of(held, score)), words)
-    yield Host(state, fitted(state, score), words, charge=FURTHER)
+    yield Host(held, fitted(held, score), f"{words}, as it is")
+    yield Host(state, fitted(state, score), f"{words}, re-tuned", charge=FURTHER)
 
 
 def best_host(states: Sequence[ModelState], score: Score) -> Fitted | None:

@@ -30,7 +30,10 @@ from hystbench.gap.thresholds import LOOSE, UNNAMED_SHARE
 from hystbench.record import FloatArray, Record
 
 SURROGATES = 19
-"""Of which one in twenty tests is passed by chance."""
+"""What follows nothing explains more than all of them once in twenty times."""
+MOSTLY = 0.5
+"""Share of a moved output that known signals must leave, for the test to tell anything:
+else a response to the same tones passes for chance."""
 RELATED = 0.1
 """Share of what stays that must follow known signals, to be called by their sort."""
 
@@ -76,9 +79,9 @@ class Unnamed:
     factors : tuple of float
         The effects' strength in each record, as a multiple of what it is in all of
         them; empty where no effect acts on the input.
-    by_chance : bool
-        Whether what is left seemed to follow known signals, but does so no more than
-        when it is moved in time against them.
+    by_chance : float
+        What seems to follow known signals, but does so no more than when it is moved in
+        time against them; it counts as unrelated.
     """
 
     structured: float
@@ -86,7 +89,7 @@ class Unnamed:
     unrelated: float = 0.0
     gains: Mapping[str, float] = field(default_factory=dict)
     factors: tuple[float, ...] = ()
-    by_chance: bool = False
+    by_chance: float = 0.0
 
     @property
     def stays(self) -> float:
@@ -133,6 +136,7 @@ class Unnamed:
             "allowed": share,
             "structured": self.structured,
             "changing": self.changing,
+            "by_chance": self.by_chance,
             "unrelated": self.unrelated,
             "sort": sort,
             "sentence": SORTS[sort] if sort else None,
@@ -205,14 +209,17 @@ def what_is_unnamed(
     )
     if not found.told(share):
         return found
-    every = [at[name] for name in own], [at[name] for name in (*own, *generic)]
-    if not drifts and _is_chance(state, table, columns, *every, structured * power):
-        return replace(
+    if not drifts:
+        every = [at[name] for name in own], [at[name] for name in (*own, *generic)]
+        chance = min(_by_chance(state, table, columns, *every) / power, structured)
+        found = replace(
             found,
-            structured=0.0,
-            unrelated=found.unrelated + structured,
-            by_chance=True,
+            structured=structured - chance,
+            unrelated=found.unrelated + chance,
+            by_chance=chance,
         )
+        if not found.told(share):
+            return found
     gains = {
         name: table.explained([*(at[k] for k in own), at[name]]).evidence
         - alone.evidence
@@ -221,23 +228,28 @@ def what_is_unnamed(
     return replace(found, gains=gains)
 
 
-def _is_chance(
+def _by_chance(
     state: ModelState,
     table: ColumnProducts,
     columns: FloatArray,
     own: Sequence[range],
     every: Sequence[range],
-    structured: float,
-) -> bool:
-    """Tell whether known signals explain as much of what is left moved in time.
+) -> float:
+    """Give the power of what seems to follow known signals and does so by chance.
 
     Noise that is not white looks like much that is slow, and like the response of much
     that is lightly damped. Moved along a record, the end to the beginning, it keeps its
     colour and no longer follows anything: a surrogate [1]_. What follows known signals
-    must be more than in each of nineteen of them, a test at 5 %. Of a few tones the
-    test tells nothing: moved in time they are explained as well. So the simulated
-    output, moved as far, must stay for the most part unexplained. A record that repeats
-    its input needs no test: its periods tell what is noise.
+    must be more than in each of nineteen of them, a test at 5 %. The mean of a record
+    does not move, and is left out. Of a few tones the test tells nothing: moved in time
+    they are explained as well. So the simulated output, moved as far, must stay for the
+    most part unexplained. A record that repeats its input needs no test: its periods
+    tell what is noise.
+
+    Returns
+    -------
+    float
+        All that is explained, but for the means of records, or zero.
 
     References
     ----------
@@ -246,15 +258,30 @@ def _is_chance(
        77-94.
     """
     if any(record.repeats for record in state.records):
-        return False
-    simulated = state.measured - state.residual
+        return 0.0
+
+    def explained(signal: FloatArray) -> float:
+        other = table.of_another(columns, signal)
+        return other.explained(own).noise - other.explained(every).noise
+
+    left = _about_its_mean(state, state.residual)
+    structured = explained(left)
     for k in range(1, SURROGATES + 1):
-        other = table.of_another(columns, _moved(state, state.residual, k))
-        if other.explained(own).noise - other.explained(every).noise >= structured:
-            output = _moved(state, simulated - np.mean(simulated), k)
-            left = table.of_another(columns, output).explained(every).noise
-            return bool(left > np.mean(output**2) / 2)
-    return False
+        if explained(_moved(state, left, k)) < structured:
+            continue
+        output = _about_its_mean(state, state.measured - state.residual)
+        output = _moved(state, output, k)
+        stays = table.of_another(columns, output).explained(every).noise
+        return max(structured, 0.0) if stays > MOSTLY * np.mean(output**2) else 0.0
+    return 0.0
+
+
+def _about_its_mean(state: ModelState, signal: FloatArray) -> FloatArray:
+    """Take the mean of each record off a signal."""
+    about = signal.copy()
+    for part in state.sample.slices:
+        about[part] -= np.mean(signal[part])
+    return about
 
 
 def _moved(state: ModelState, signal: FloatArray, k: int) -> FloatArray:

@@ -239,8 +239,8 @@ def judge(
                 f"what is left on the fit records, {100 * share:.2g} % of the output's "
                 "rms, is no more than a slightly wrong shape of the base could leave"
             )
-        follows_nothing = unnamed.by_chance and (explained_by_box or 0.0) < 0
-        if follows_nothing and not left.foreign:
+        chance = unnamed.by_chance > 0.0 and not unnamed.too_much(unnamed_share)
+        if chance and (explained_by_box or 0.0) < 0 and not left.foreign:
             return "no-gap", (
                 f"what is left on the fit records, {left.after:.2g} times the power of "
                 "the noise floor, follows the input no more than when it is moved in "

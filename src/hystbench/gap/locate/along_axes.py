@@ -47,9 +47,10 @@ STARTS = 61
 """Delays that are tried, of both signs, before the best is refined."""
 ROUGHLY = 4
 """Of the samples of a view, one of so many chooses a start."""
-NEWTON, FINER = 8, 1e-4
-"""Steps of Gauss and Newton from there, at most, and the share of a step of the grid to
-which a delay is found."""
+NEWTON = 8
+"""Steps of Gauss and Newton from there, at most."""
+FINER = 1e-4
+"""Of a step between two starts, to which a delay is found."""
 PERIODS = 1.5
 """Of the fastest input: further a shift is not told from those by whole periods."""
 QUIET = 1.5
@@ -243,7 +244,7 @@ def fit_delay(samples: ViewSamples) -> tuple[float, FloatArray]:
                 break
         return missed(moved), shift, moved
 
-    # Where records tell next to nothing the best is near none.
+    # Where records hardly show a delay, the best one is near zero.
     found = [refined(shift) for shift in (0.0, min(starts, key=roughly))]
     _, shift, moved = min(found, key=lambda item: item[0])
     return shift, moved
