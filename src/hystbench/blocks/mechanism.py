@@ -141,7 +141,8 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
                 v,
                 force,
             )
-        curved = (p - damping * v - stiffness * q - force) / mass
+        with np.errstate(over="ignore", invalid="ignore"):  # it may have run away
+            curved = (p - damping * v - stiffness * q - force) / mass
         shown = slice((len(path) - len(z)) * fine, None, fine)
         moves = (x[:, shown] for x in (q, v, curved, force))
         return [Motion(*each) for each in zip(*moves, strict=True)]
