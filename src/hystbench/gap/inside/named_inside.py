@@ -37,7 +37,14 @@ from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.memory import may_have_hysteresis
-from hystbench.gap.thresholds import FURTHER, LOOSE, PAYS, SCALE, UNNAMED_SHARE
+from hystbench.gap.thresholds import (
+    FURTHER,
+    LOOSE,
+    PARAMETER,
+    PAYS,
+    SCALE,
+    UNNAMED_SHARE,
+)
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.units import sized
@@ -153,11 +160,12 @@ def in_short_steps(state: ModelState, score: Score) -> ModelState:
     """Fit the numbers of forces anew by short steps; long ones make up for themselves.
 
     What the long steps miss is taken from where the numbers are, so twice is enough.
+    Numbers stay where they are if another place gains less than a number costs.
     """
     state = state.settled()
     for _ in range(2):
         again = fitted(state, score, QUICK).state.settled()
-        if score_of(again, score) >= score_of(state, score):
+        if score_of(again, score) > score_of(state, score) - PARAMETER:
             break
         state = again
     return state
