@@ -160,13 +160,19 @@ class Dataset:
 
     @property
     def quantities(self) -> Quantities:
-        """What the device takes and gives, as its units and dataset.yaml tell."""
+        """What the device takes and gives, as its units and dataset.yaml tell.
+
+        A length is a level where the name of its column has the word ``level`` in it.
+        """
         return Quantities(self._quantity("input"), self._quantity("output"))
 
     def _quantity(self, key: Literal["input", "output"]) -> Quantity:
         channel = self.about[key]
         place = f"{self.path}: {key}"
-        return quantity_of(place, channel["unit"], channel.get("quantity"))
+        found = quantity_of(place, channel["unit"], channel.get("quantity"))
+        words = re.split("[^a-z]+", channel["column"].lower())
+        named = "quantity" not in channel and found == "position" and "level" in words
+        return "level" if named else found
 
     @property
     def device_kind(self) -> DeviceKind | None:

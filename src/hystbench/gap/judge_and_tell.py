@@ -36,6 +36,7 @@ from hystbench.gap.judging.unnamed import Unnamed, what_is_unnamed
 from hystbench.gap.judging.verdict import Left, Verdict, judge, what_is_left, what_mends
 from hystbench.gap.locate import curves, locate
 from hystbench.gap.locate.level import beside_level
+from hystbench.gap.locate.view import LEAST_SHARE
 from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.ladder import contributions, rungs
 from hystbench.gap.records.floor import Floor, lone_share, unrepeated
@@ -111,10 +112,11 @@ def judge_and_tell(
     ladder = rungs(start, named)
     contributed = contributions(ladder) if found.verdict == "named" else ()
     where = locate(before, floor, contributed)
-    say(where[0].sentence)
+    if where[0].share_of_gap_power >= LEAST_SHARE:
+        say(where[0].sentence)
     moved = beside_level(where, [(item.effect, item.place) for item in state.added])
+    moved = "" if found.verdict == "no-gap" else moved
     reason = "; ".join(part for part in (found.reason, moved) if part)
-    say(f"{found.verdict}: {reason}")
     experiment, why_none = tell_apart(base, named, start.records, floor.rms, limits)
     unit = start.records[0].output.unit
     content: dict[str, Any] = {
@@ -189,15 +191,19 @@ def _judged(
         box.explained_on_folds,
         bool(start.free),
         floor.method == "upper-bound",
+        floor.method == "declared",
         unnamed,
         share,
         what_mends(start.records),
     )
+    beside = f"beside {own.words} of some records' own" if own.records else ""
+    if verdict == "no-gap" and own.follow_the_input and own.share > share:
+        verdict, why, beside = "unnamed", f"{own.reason}; beside that {why}", ""
     parts = (
         why,
         _untried(not_tried(named)) if state.added else "",
         at_ends(state),
-        f"beside {own.words} of some records' own" if own.records else "",
+        beside,
         _predicts_nothing(state),
         _used_up(current()),
     )

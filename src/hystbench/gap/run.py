@@ -10,6 +10,8 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.asked import USUAL, Asked
@@ -159,7 +161,10 @@ def decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Dec
     evidence = replace(evidence, fit=fit, hold_out=())
     first = base
     base, built_in = build_in(base, evidence, vocabulary.fixed, asked.say)
-    decision = search(evidence, base, asked, quantities_if_linear(base, evidence))
+    quantities = quantities_if_linear(base, evidence)
+    # A trial may run away: it is judged by what it leaves.
+    with np.errstate(over="ignore", invalid="ignore"):
+        decision = search(evidence, base, asked, quantities)
     content = with_device(decision.content, evidence.device_kind, evidence.quantities)
     return decision, Decided(first, decision, content, vocabulary, built_in)
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from hystbench.blocks.held import Hold
 from hystbench.blocks.store import Store
 from hystbench.gap.asked import USUAL, Asked
@@ -12,8 +14,10 @@ from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.excitations import Limits
 from hystbench.gap.fitting.augmented_model import augmented
+from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.own_values import NONE, OwnValues
+from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.named_inside import (
     Inside,
@@ -23,12 +27,12 @@ from hystbench.gap.inside.named_inside import (
     named_inside,
 )
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
-from hystbench.gap.naming.add_effects import add_effects, beside_forces
+from hystbench.gap.naming.add_effects import Named, add_effects, beside_forces
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence, own_offsets
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.thresholds import LOOSE
+from hystbench.gap.thresholds import LOOSE, PAYS
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Record
@@ -73,16 +77,21 @@ def search(
         offered = tuple(name for name in offered if name not in closed)
     start, floor = start_state(records, base, hold, declared, offered)
     first, chain, inside, own = start, None, None, NONE
-    if places_between_halves(start.simulation):
-        # The base itself says that there is a curve between two filters: a chain.
+    most = np.inf
+    halves = bool(places_between_halves(start.simulation))
+    # Two halves say themselves that there is a curve between two filters: a chain. And
+    # a base that was given has to be beaten by forces, also where they leave little.
+    if halves or (quantities is not None and not is_identified(base)):
         chain = add_effects(start, floor.rms, asked)
-        if quantities and _why_enough(start, chain.state, floor, share):
+        little = halves and _why_enough(start, chain.state, floor, share)
+        most = _most_inside(chain, floor)
+        if quantities and (little or most < 1):
             say("no force could gain what matters, so none is tried inside")
             quantities = None
     if quantities is not None:
         whole = start, floor
         start, floor, inside, own = _with_forces(
-            base, start, floor, quantities, declared, asked
+            base, start, floor, quantities, declared, asked, most
         )
         if inside is not None and not betters(inside, start, floor.rms):
             say("inside: what stands for the base leaves more than the base does")
@@ -123,6 +132,7 @@ def _with_forces(
     quantities: Quantities,
     declared: float | None,
     asked: Asked,
+    most: float,
 ) -> tuple[ModelState, Floor, Inside | None, OwnValues]:
     """Look for forces inside the dynamics, beside what is a record's own.
 
@@ -138,7 +148,7 @@ def _with_forces(
     say = asked.say
 
     def look(start: ModelState) -> Inside | None:
-        return named_inside(base, start, floor.rms, quantities, identified, asked)
+        return named_inside(base, start, floor.rms, quantities, identified, asked, most)
 
     inside, own = look(start), NONE
     shorter = _without_leads(inside, base, records, hold, quantities, say)
@@ -180,6 +190,18 @@ def _leaves_little(inside: Inside | None, floor: Floor) -> bool:
     square = floor.rms**2
     left = inside.named.state.power(square)
     return left <= LOOSE * inside.start.power(square)
+
+
+def _most_inside(chain: Named, floor: Floor) -> float:
+    """Give how many effects inside could do better than what a chain has found.
+
+    They have to lower its score by what an effect has to gain. Where it leaves so
+    little that nothing can, they have to be fewer.
+    """
+    state = chain.state
+    score = Score.plain(state.sample, floor.rms**2)
+    left = score_of(state, score) - score.least(state.freedom)
+    return np.inf if left >= PAYS else len(state.added) - 1
 
 
 def _why_enough(

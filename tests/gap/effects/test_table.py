@@ -14,7 +14,7 @@ def places(effect):
         getattr(effect, name) is not getattr(Effect, name)
         for name in ("in_mechanism", "stored")
     )
-    around = [law.place for law in effect().around(Passed(1.0, 1.0, 1e-3))]
+    around = [law.place for law in effect().around(Passed(1.0, 1.0, 1e-3, 1e-3))]
     found = [effect.place, *(["inside"] if inside else []), *around]
     return ", ".join(dict.fromkeys(found))
 

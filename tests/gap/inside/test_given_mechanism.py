@@ -1,5 +1,7 @@
 """A mechanism that is given: its numbers are known, and what is beside it is found."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -25,29 +27,39 @@ chain:
 EXACT = f"{LINEAR}  - stiffness: {{quadratic: 0.0, cubic: {CUBIC}}}\n"
 
 
-def moved(u, time):
+DRAG = 0.02  # mN s^2/mm^2: at half a metre a second as much as the damper
+SHARE = 0.5  # of the input, that becomes a force
+
+
+def moved(u, time, gain=1.0, drag=0.0):
     """The device by a general solver, the force straight between samples."""
 
     def slope(t, state):
         x, v = state
-        force = np.interp(t, time, u)
-        return [v, (force - DAMPING * v - SPRING * x - CUBIC * x**3) / MASS]
+        force = gain * np.interp(t, time, u)
+        inside = CUBIC * x**3 + drag * v * abs(v)
+        return [v, (force - DAMPING * v - SPRING * x - inside) / MASS]
 
     ends = (time[0], time[-1])
     given = {"method": "RK45", "rtol": 1e-8, "atol": 1e-10, "max_step": DT}
     return solve_ivp(slope, ends, [0.0, 0.0], t_eval=time, **given).y[0]
 
 
-@pytest.fixture(scope="module")
-def motions():
+def moving(**given):
+    """Three records of a device, random sums of sines that begin gently."""
     time, found = np.arange(COUNT) * DT, []
     rng = np.random.default_rng(5)
     for _ in range(3):
         lines = zip(rng.uniform(5, 70, 12), rng.uniform(0, 6, 12), strict=True)
         u = sum(1600 * np.sin(2 * np.pi * f * time + p) for f, p in lines)
         u *= np.clip(time / 0.05, 0, 1)
-        found.append((u, moved(u, time)))
+        found.append((u, moved(u, time, **given)))
     return found
+
+
+@pytest.fixture(scope="module")
+def motions():
+    return moving()
 
 
 def evidence_of(motions, noise, tones=()):
@@ -93,3 +105,47 @@ def test_a_tone_is_found_beside_a_spring_that_hardens(motions, tmp_path):
     # The linear part was given and is as it was: nothing was refitted.
     assert "refitted" not in content["reason"]
     assert spring["parameters"]["cubic"]["value"] == pytest.approx(CUBIC, rel=0.05)
+
+
+def test_a_mechanism_that_has_a_force_lacks_another_one(tmp_path):
+    """The spring that hardens is given with its gain; the drag is not."""
+    model = EXACT.replace(f"{SPRING}}}", f"{SPRING}, gain: {SHARE}}}")
+    evidence = evidence_of(moving(gain=SHARE, drag=DRAG), 0.002)
+    content = closed(model, evidence, tmp_path / "m.yaml")
+    (drag,) = content["effects"]
+    assert (drag["name"], drag["place"]) == ("drag", "inside")
+    # In the unit that the given mechanism has its forces in.
+    assert drag["parameters"]["coefficient"]["value"] == pytest.approx(DRAG, rel=0.05)
+
+
+def test_a_given_mechanism_is_its_own_host(motions, tmp_path):
+    """It keeps its gain, and nothing is put beside its numbers."""
+    path = tmp_path / "m.yaml"
+    path.write_text(LINEAR.replace(f"{SPRING}}}", f"{SPRING}, gain: 1.0}}"))
+    evidence = evidence_of(motions, 0.01)
+    base, _ = load_base(str(path), evidence)
+    model = closed_gap(evidence, base).decision.model
+    mechanism, stiffness = model.chain
+    assert replace(mechanism, hold="default") == base.chain[0]
+    assert stiffness.cubic == pytest.approx(CUBIC, rel=0.05)
+
+
+def test_a_lag_shorter_than_a_sample_is_found_beside_a_spring(motions, tmp_path):
+    """A sensor that is late by .4 of a sampling interval; the mechanism is given."""
+    lag, late = 0.4 * DT, []
+    for u, y in motions:
+        # First order, the output straight between samples.
+        kept = np.exp(-DT / lag)
+        behind = np.zeros_like(y)
+        for k in range(1, len(y)):
+            slope = (y[k] - y[k - 1]) / DT
+            forced = y[k] - lag * slope
+            behind[k] = forced + kept * (behind[k - 1] - y[k - 1] + lag * slope)
+        late.append((u, behind))
+    content = closed(LINEAR, evidence_of(late, 0.002), tmp_path / "m.yaml")
+    spring, lagging = content["effects"]
+    assert (spring["name"], spring["place"]) == ("stiffness-hardening", "inside")
+    # So short a lag may be anywhere, and a delay.
+    assert lagging["name"] in ("sensor-lag", "drive-lag", "input-delay")
+    (time,) = (item["value"] for item in lagging["parameters"].values())
+    assert time == pytest.approx(lag, rel=0.05)

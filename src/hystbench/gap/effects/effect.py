@@ -229,8 +229,7 @@ class Effect(ABC):
     ) -> Law:
         """Give the effect's filter before or behind what has effects inside.
 
-        It starts short against the records' rates: at two sampling intervals. Less than
-        one is no effect but how input and output were sampled.
+        It starts short against the records' rates: at two sampling intervals.
 
         Parameters
         ----------
@@ -242,7 +241,7 @@ class Effect(ABC):
             Other parameters.
         """
         block = block_class(self.name).from_mapping({name: 2 * passed.step, **given})
-        return Law("", block, (name,), place, ranges={name: (passed.step, np.inf)})
+        return Law("", block, (name,), place, ranges={name: (passed.shortest, np.inf)})
 
     def curve(
         self,

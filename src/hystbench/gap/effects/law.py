@@ -51,11 +51,16 @@ class Passed(NamedTuple):
     given, shown : float
     step : float
         Shortest sampling interval, in seconds.
+    shortest : float
+        Time from which on a lag or a delay is an effect, in seconds. In a model that
+        was identified from the records, less than an interval is how input and output
+        were sampled.
     """
 
     given: float
     shown: float
     step: float
+    shortest: float
 
 
 @dataclass(frozen=True)

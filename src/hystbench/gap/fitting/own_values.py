@@ -113,6 +113,19 @@ class OwnValues:
         return cls(kinds, tuple(told), share)
 
     @property
+    def follow_the_input(self) -> bool:
+        """Whether it makes more of the response, or the same later: no zero does."""
+        return bool(set(self.kinds) - {"offset"})
+
+    @property
+    def reason(self) -> str:
+        """Say that it is a gap, though nothing else is left."""
+        return (
+            f"{self.words} of some records' own takes {100 * self.share:.0f} % of the "
+            "gap's power, and its cause is in no record"
+        )
+
+    @property
     def words(self) -> str:
         """Name what it is, as ``a delay and a gain``."""
         articles = {"delay": "a delay", "gain": "a gain", "offset": "an offset"}
@@ -137,12 +150,10 @@ class OwnValues:
             f"{name} " + ", ".join(_said(kind, own, unit) for kind in self.kinds)
             for name, own in self.records
         )
-        differ, whose = (
-            ("differs", "its") if len(self.records) == 1 else ("differ", "their")
-        )
+        have, whose = ("has", "its") if len(self.records) == 1 else ("have", "their")
         return (
-            f"{len(self.records)} of the fit records {differ} from the others by "
-            f"{self.words} of {whose} own, which is no effect of the device and takes "
+            f"{len(self.records)} of the fit records {have} {self.words} of {whose} "
+            "own, which is known of no other record and takes "
             f"{100 * self.share:.0f} % of the gap's power above the noise floor on the "
             f"fit records: {each}. On each hold-out record the same is fitted to the "
             f"first {100 * FIRST:.0f} %, with the base and with the model alike, and "

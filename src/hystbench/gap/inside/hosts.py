@@ -10,12 +10,14 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
 from hystbench.blocks.base import Block
+from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
+from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.store import Store
@@ -70,6 +72,11 @@ class Host:
     other: ModelState | None = None
     charge: float = 0.0
 
+    @property
+    def counts(self) -> int:
+        """As how many effects it counts: one if known numbers are fitted."""
+        return int(self.charge > 0.0)
+
 
 def hosts(
     start: ModelState, quantities: Quantities, identified: bool, score: Score
@@ -95,7 +102,11 @@ def hosts(
         # A force that is not linear turns the phase: it may be what looked like timing.
         yield from hosts(_without_timing(start), quantities, identified, score)
         return
-    if identified and quantities.causality in ("storage", "unknown"):
+    if quantities.causality in ("storage", "unknown") and (
+        identified or may_be_stores(start)
+    ):
+        # A store whose outflow is bent has other numbers than the linear base.
+        charge = 0.0 if identified else FURTHER
         noise = float(np.sqrt(score.floor))
         for count, words in STORES.items():
             begun = stores(start.records, start.hold, noise, count)
@@ -103,9 +114,9 @@ def hosts(
             if best is None:
                 continue
             words = f"{words} in place of the base"
-            yield Host(best.state, best, words)
+            yield Host(best.state, best, words, charge=charge)
             for other in in_other_order(best.state):
-                yield Host(best.state, best, words, other)
+                yield Host(best.state, best, words, other, charge)
     moves = shows_a_pole(start) or quantities.causality == "motion to force"
     if identified and moves and not of_many_modes(start):
         begun = one_coordinate(start.records, quantities, start.hold)
@@ -119,17 +130,21 @@ def hosts(
         yield Host(start, fitted(start, score), "the base is stores already")
         return
     if not identified:
-        same = same_as(start, quantities)
-        if same is not None:
+        words = "the base holds a mechanism"
+        same = own_mechanism(start)
+        if same is None:
             words = (
                 "a model of one coordinate that simulates the same stands for the base"
             )
+            same = same_as(start, quantities)
+        if same is not None:
             yield from _as_given(same, score, words, bool(start.free))
     if quantities.causality not in ("force to motion", "unknown"):
         return
     known = quantities.output in MOTIONS
     split = modes(start, quantities.output if known else "position", identified)
-    for mode in itertools.islice(split, TRIED):
+    seen = (mode for mode in split if is_seen_moving(mode))
+    for mode in itertools.islice(seen, TRIED):
         block = mode.chain[0]
         assert isinstance(block, Mechanism)  # noqa: S101  (for the type checker)
         words = (
@@ -154,8 +169,9 @@ def _as_given(
         yield Host(state, fitted(state, score), words)
         return
     held = replace(state, free=())
-    yield Host(held, fitted(held, score), f"{words}, as it is")
-    yield Host(state, fitted(state, score), f"{words}, re-tuned", charge=FURTHER)
+    yield Host(held, fitted(held, score), f"{words}, its numbers as they are")
+    words = f"{words}, its numbers fitted to the records"
+    yield Host(state, fitted(state, score), words, charge=FURTHER)
 
 
 def best_host(states: Sequence[ModelState], score: Score) -> Fitted | None:
@@ -165,13 +181,22 @@ def best_host(states: Sequence[ModelState], score: Score) -> Fitted | None:
     """
     if not states:
         return None
+    best = _likeliest(states, score)
+    return min(best, _with_zero(best, score), key=lambda item: item.score)
+
+
+def _likeliest(states: Sequence[ModelState], score: Score) -> Fitted:
+    """Fit hosts a little, and the best of them to the end."""
     quick = [fitted(state, score, QUICK) for state in states]
-    best = fitted(min(quick, key=lambda item: item.score).state, score)
+    return fitted(min(quick, key=lambda item: item.score).state, score)
+
+
+def _with_zero(best: Fitted, score: Score) -> Fitted:
+    """Fit a host whose output also has a share of the next derivative."""
     block, free = best.state.chain[0], best.state.free
-    if isinstance(block, Mechanism) and block.output != "force":
-        with_zero = replace(best.state, free=(*free, Free(0, "blend")))
-        best = min(best, fitted(with_zero, score), key=lambda item: item.score)
-    return best
+    if not (isinstance(block, Mechanism) and block.output != "force"):
+        return best
+    return fitted(replace(best.state, free=(*free, Free(0, "blend"))), score)
 
 
 def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
@@ -225,6 +250,39 @@ def _in_front(delay: Block, start: ModelState, state: ModelState) -> ModelState:
     return replace(behind, records=start.records).settled()
 
 
+def may_be_stores(start: ModelState) -> bool:
+    """Tell whether a linear base has no more poles than two stores in series."""
+    orders = [
+        len(block.denominator) - 1
+        for block in start.chain
+        if isinstance(block, TransferFunction)
+    ]
+    linear = all(isinstance(block, TransferFunction | Gain) for block in start.chain)
+    return linear and len(orders) == 1 and 1 <= orders[0] <= len(STORES)
+
+
+def own_mechanism(start: ModelState) -> ModelState | None:
+    """Give a base that holds a mechanism itself, with the numbers of that free.
+
+    What drives the mechanism has no number of its own: it would be one of mass, damping
+    and stiffness together.
+    """
+    places = [
+        k
+        for k, block in enumerate(start.chain)
+        if isinstance(block, Mechanism | Impedance)
+    ]
+    if len(places) != 1:
+        return None
+    if start.free:
+        return start
+    (place,) = places
+    block = start.chain[place]
+    names = NUMBERS if isinstance(block, Impedance) else NUMBERS[:-1]
+    free = tuple(Free(place, x) for x in names if getattr(block, x) != 0.0)
+    return replace(start, free=free)
+
+
 def is_seen_moving(state: ModelState) -> bool:
     """Tell whether a host's motion is slow enough for its records to show it.
 
@@ -267,22 +325,44 @@ def same_as(start: ModelState, quantities: Quantities) -> ModelState | None:
     moves = wanted - static @ solved(static, wanted)
     if np.mean(moves**2) < most:
         return None
-    if len(simulated) > 1:
+    allowed = most * len(start.sample)
+    shown = [float(np.sum(moves[part] ** 2)) for part in start.sample.slices]
+    one = _ByContent((simulated[int(np.argmax(shown))],))
+    every = _ByContent(simulated)
+    for with_zero in (False, True):  # a zero only where it is needed
+        like = partial(
+            _coordinate_like,
+            quantities=quantities,
+            hold=start.hold,
+            with_zero=with_zero,
+        )
         # What the best model of one record misses there, one of all records does too.
-        shown = [float(np.sum(moves[part] ** 2)) for part in start.sample.slices]
-        one = simulated[int(np.argmax(shown))]
-        alone = _coordinate_like(_ByContent((one,)), quantities, start.hold)
-        if alone is None or _missed(alone) > most * len(ScoredSamples.of(simulated)):
-            return None
-    best = _coordinate_like(_ByContent(simulated), quantities, start.hold)
-    if best is None or _missed(best) > most * len(best.state.sample):
-        return None
-    return replace(best.state, records=start.records, sample=start.sample).settled()
+        if len(simulated) > 1 and _missed(like(one)) > allowed:
+            continue
+        best = like(every)
+        if best is not None and _missed(best) <= allowed:
+            same = _without_offset(best, allowed)
+            return replace(same, records=start.records, sample=start.sample).settled()
+    return None
 
 
-def _missed(found: Fitted) -> float:
+def _without_offset(best: Fitted, allowed: float) -> ModelState:
+    """Leave out the gain and the offset behind a model that does as well without."""
+    state = best.state
+    if not isinstance(state.chain[-1], Gain):
+        return state
+    last = len(state.chain) - 1
+    plain = replace(
+        state,
+        chain=state.chain[:-1],
+        free=tuple(free for free in state.free if free.block != last),
+    ).settled()
+    return plain if float(np.sum(plain.residual**2)) <= allowed else state
+
+
+def _missed(found: Fitted | None) -> float:
     """Sum the squares of what a model misses."""
-    return float(np.sum(found.state.residual**2))
+    return np.inf if found is None else float(np.sum(found.state.residual**2))
 
 
 class _ByContent:
@@ -298,9 +378,9 @@ class _ByContent:
         return isinstance(other, _ByContent) and self.digest == other.digest
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=4)
 def _coordinate_like(
-    simulated: _ByContent, quantities: Quantities, hold: Hold
+    simulated: _ByContent, quantities: Quantities, hold: Hold, with_zero: bool
 ) -> Fitted | None:
     """Fit a model of one coordinate to what a base simulates.
 
@@ -309,4 +389,8 @@ def _coordinate_like(
     """
     records = simulated.records
     score = Score.plain(ScoredSamples.of(records), np.finfo(float).tiny)
-    return best_host(list(one_coordinate(records, quantities, hold)), score)
+    if with_zero:
+        plain = _coordinate_like(simulated, quantities, hold, False)
+        return None if plain is None else _with_zero(plain, score)
+    begun = list(one_coordinate(records, quantities, hold))
+    return _likeliest(begun, score) if begun else None

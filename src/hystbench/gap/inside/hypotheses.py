@@ -52,7 +52,11 @@ def singles(
 
 
 def together(
-    found: Sequence[Fitted], offer: Offer, score: Score, say: Say = silent
+    found: Sequence[Fitted],
+    offer: Offer,
+    score: Score,
+    say: Say = silent,
+    most: float = np.inf,
 ) -> list[Fitted]:
     """Go on from singles to pairs, and to threes.
 
@@ -65,8 +69,12 @@ def together(
         The host alone first; of each set of effects the best laws.
     """
     every, alone, carried = list(found), found[0].score, list(found[1:])
-    for keep in (PAIRS, 1):
-        if not may_gain(least(every), score) or _in_vain(every, carried):
+    for count, keep in ((2, PAIRS), (3, 1)):
+        if (
+            count > most
+            or not may_gain(least(every), score)
+            or _in_vain(every, carried)
+        ):
             break
         if not of_stores(found[0]):
             carried = [item for item in carried if item.score < alone]

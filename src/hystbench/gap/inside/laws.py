@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from hystbench.gap.effects.law import Changed, Law, Moved, Passed
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.stores import how_it_fills
+from hystbench.record import Record
 
 REMAINS = 0.05
 """Of a spring or a damper, at least, where a force begins that does its work."""
@@ -31,8 +32,24 @@ Offer = Callable[[Fitted], Laws]
 """Gives what may be put into a fitted host."""
 
 
+class Times(NamedTuple):
+    """The shortest sampling interval, and the shortest lag that is an effect."""
+
+    step: float
+    shortest: float
+
+    @classmethod
+    def of(cls, records: Iterable[Record], identified: bool) -> Times:
+        """Take them from records, all of their samples, and from where a base came."""
+        step = min(record.dt for record in records)
+        return cls(step, step if identified else step / 20)
+
+
 def laws_for(
-    host: Fitted, turns: bool = False, offered: Iterable[str] | None = None
+    host: Fitted,
+    turns: bool = False,
+    offered: Iterable[str] | None = None,
+    times: Times | None = None,
 ) -> Laws:
     """Give what may be put into a host.
 
@@ -44,8 +61,10 @@ def laws_for(
         Whether its coordinate is an angle.
     offered : iterable of str, optional
         Effects that may be named; all by default.
+    times : Times, optional
+        Of the host's own records by default, as of one that was identified from them.
     """
-    passed, known = what_passes(host.state), among(offered)
+    passed, known = what_passes(host.state, times), among(offered)
     around = {name: tuple(effect.around(passed)) for name, effect in known.items()}
     own: dict[str, Iterator[Law | Changed]]
     if of_stores(host):
@@ -64,11 +83,12 @@ def _curves(laws: Iterable[Law]) -> tuple[Law, ...]:
     return tuple(law for law in laws if not isinstance(law.block, LinearBlock))
 
 
-def what_passes(state: ModelState) -> Passed:
+def what_passes(state: ModelState, times: Times | None = None) -> Passed:
     """Look how large the input and the output of a model are on its records."""
+    times = Times.of(state.records, True) if times is None else times
     signals = [record.u for record in state.records], state.simulation.output
     given, shown = (max(float(np.max(np.abs(x))) for x in every) for every in signals)
-    return Passed(given, shown, min(record.dt for record in state.records))
+    return Passed(given, shown, times.step, times.shortest)
 
 
 def of_stores(item: Fitted) -> bool:

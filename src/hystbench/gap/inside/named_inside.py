@@ -13,6 +13,8 @@ from itertools import pairwise
 import numpy as np
 
 from hystbench.blocks.attached import AttachedBlock
+from hystbench.blocks.impedance import Impedance
+from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
@@ -30,7 +32,7 @@ from hystbench.gap.inside.further_modes import (
 )
 from hystbench.gap.inside.hosts import Host, hosts
 from hystbench.gap.inside.hypotheses import may_gain, singles, together
-from hystbench.gap.inside.laws import laws_for
+from hystbench.gap.inside.laws import Times, laws_for
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round
 from hystbench.gap.naming.with_own_values import ROUNDS, on_records
@@ -77,6 +79,7 @@ def named_inside(
     quantities: Quantities,
     identified: bool,
     asked: Asked = USUAL,
+    most: float = np.inf,
 ) -> Inside | None:
     """Find effects inside the dynamics; None where no force pays.
 
@@ -95,14 +98,19 @@ def named_inside(
         Whether the base is the linear model that was identified from the records.
     asked : Asked
         A further effect that takes less than may stay unnamed does not matter.
+    most : float
+        Effects that are looked for at most; known numbers that are re-tuned are one.
     """
     say, share = asked.say, asked.unnamed_share
     fewer = on_fewer(start, quantities)
     score, score_of_all = (Score.plain(x.sample, floor_rms**2) for x in (fewer, start))
     turns = start.records[0].output.unit.startswith("rad")
-    offer = partial(laws_for, turns=turns, offered=start.offered)
+    times = Times.of(start.records, identified)
+    offer = partial(laws_for, turns=turns, offered=start.offered, times=times)
     tried = []
     for host in hosts(fewer, quantities, identified, score):
+        if most - host.counts < 1:
+            continue
         say(f"inside: {host.words}; forces are tried in it")
         found = singles(host.fitted, offer, score, say, host.other)
         tried.append((host, found))
@@ -117,7 +125,16 @@ def named_inside(
         return host.charge + charged(best, found, score.floor, share)
 
     host, found = min(tried, key=lambda item: charge_of(*item))
-    found = together(found, offer, score, say)
+    # And in one whose numbers are not re-tuned: several forces may do as much.
+    cheaper = [item for item in tried if item[0].charge < host.charge]
+
+    def with_more(host: Host, found: Sequence[Fitted]) -> tuple[Host, list[Fitted]]:
+        return host, together(found, offer, score, say, most - host.counts)
+
+    full = [with_more(*item) for item in cheaper]
+    if not any(charge_of(*item) < charge_of(host, found) for item in full):
+        full.append(with_more(host, found))
+    host, found = min(full, key=lambda item: charge_of(*item))
     best, alone = chosen(found, score.floor, share), host.alone
     if not best.effects:
         say("inside: no force pays")
@@ -255,7 +272,8 @@ def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> 
     state, chain = inside.named.state, named.state
     score = Score.plain(state.sample, floor_rms**2)
     gain = gain_held_back(chain, state, score) - gain_held_back(chain, chain, score)
-    say(f"inside: gain {gain:.1f} on folds")
+    better = "better" if gain > 0 else "worse"
+    say(f"inside: on folds {abs(gain):.1f} {better} than what a chain has found")
     more = len(chain.added) - len(state.added)
     return gain + FURTHER * max(more, 0) >= PAYS
 
@@ -349,10 +367,13 @@ def _candidate(item: Fitted, already: frozenset[str], now: float) -> Candidate:
 def quantities_if_linear(base: Model, evidence: Evidence) -> Quantities | None:
     """Give what the device takes and gives, where forces may be tried inside the base.
 
-    That is where the base may be linear: nothing in it remembers a way, nor holds a
-    force already. None elsewhere.
+    That is where the base may be linear, as nothing in it remembers a way, and where it
+    holds one mechanism, with its own forces or without. None elsewhere.
     """
+    holds = sum(isinstance(block, Mechanism | Impedance) for block in base.chain) == 1
     for block in base.chain:
+        if holds and isinstance(block, AttachedBlock):
+            continue
         if isinstance(block, AttachedBlock) or block.hysteretic:
             return None
         if may_have_hysteresis(block, evidence.fit):

@@ -38,6 +38,7 @@ SAID = 0.1
 
 
 GIVE = "give period_samples or noise_rms"
+NO_RESPONSE = "it is noise of another colour, or has a cause that is in no record"
 """What to write in dataset.yaml where nothing tells the noise."""
 
 
@@ -140,10 +141,25 @@ class Left:
         return self.slight and not self.foreign
 
     @property
+    def far_off(self) -> bool:
+        """Whether much of what is left stands in lone samples."""
+        return self.lone * (1.0 + self.all_after) > FOREIGN * max(self.all_before, 1.0)
+
+    @property
+    def is_new(self) -> bool:
+        """Whether what is left differs from period to period: the rest is no more.
+
+        Than half of what differs, as noise is where nothing else is left.
+        """
+        if self.unrepeated is None or self.far_off:
+            return False
+        repeats = self.all_after - self.unrepeated
+        return repeats <= ABOVE_NOISE * (1.0 + self.unrepeated)
+
+    @property
     def foreign(self) -> str:
         """Say what is left that no effect and no wrong hysteresis does, if any is."""
-        gap = max(self.all_before, 1.0)
-        if self.lone * (1.0 + self.all_after) > FOREIGN * gap:
+        if self.far_off:
             return (
                 f"{100 * self.lone:.0f} % of the power that is left on the fit records "
                 "stands in lone samples, far off from the others, which no effect of "
@@ -192,6 +208,7 @@ def judge(
     explained_by_box: float | None = None,
     retuned: bool = False,
     floor_is_upper_bound: bool = False,
+    floor_is_declared: bool = False,
     unnamed: Unnamed = NOTHING,
     unnamed_share: float = UNNAMED_SHARE,
     mends: str = GIVE,
@@ -211,6 +228,8 @@ def judge(
     floor_is_upper_bound : bool
         Whether the noise floor is only an upper bound: it may hold the whole gap, so
         that there is none cannot be claimed from it.
+    floor_is_declared : bool
+        Whether a user has said how large the noise is: what is more of it is a gap.
     unnamed : Unnamed
         What stays that the named effects cannot own.
     unnamed_share : float
@@ -219,6 +238,13 @@ def judge(
         What to write so that the noise is measured.
     """
     if not named:
+        noise = left.all_after <= ABOVE_NOISE
+        if left.is_new and not (noise or floor_is_declared):
+            return "no-gap", (
+                f"what is left on the fit records, {left.all_after:.2g} times the "
+                "power of the noise floor, differs from one period of the same input "
+                f"to the next: {NO_RESPONSE}"
+            )
         if left.slight and left.foreign:
             return "unnamed", left.foreign
         if retuned and left.all_before > ABOVE_NOISE and left.share < LOOSE:
@@ -231,7 +257,7 @@ def judge(
                 "no effect pays; the floor is only an upper bound, so that there is "
                 f"no gap cannot be claimed: {mends}"
             )
-        if left.slight and left.all_after <= ABOVE_NOISE:
+        if left.slight and noise:
             return "no-gap", "what is left is noise"
         if left.slight:
             share = float(np.sqrt(left.all_after / left.output))
@@ -240,12 +266,13 @@ def judge(
                 "rms, is no more than a slightly wrong shape of the base could leave"
             )
         chance = unnamed.by_chance > 0.0 and not unnamed.too_much(unnamed_share)
-        if chance and (explained_by_box or 0.0) < 0 and not left.foreign:
+        chance = chance and (explained_by_box or 0.0) < 0 and not left.foreign
+        if chance and not floor_is_declared:
             return "no-gap", (
                 f"what is left on the fit records, {left.after:.2g} times the power of "
                 "the noise floor, follows the input no more than when it is moved in "
-                "time against it, and a black box makes it worse on folds: it is noise "
-                "of another colour, or has a cause that is in no record"
+                "time against it, and a black box makes it worse on folds: "
+                f"{NO_RESPONSE}"
             )
         return "unnamed", (
             f"on the fit records a gap of {left.after:.2g} times the noise power is "
