@@ -197,7 +197,7 @@ def _judged(
         what_mends(start.records),
     )
     beside = f"beside {own.words} of some records' own" if own.records else ""
-    if verdict == "no-gap" and own.follow_the_input and own.share > share:
+    if verdict == "no-gap" and own.scales and own.share > share:
         verdict, why, beside = "unnamed", f"{own.reason}; beside that {why}", ""
     parts = (
         why,

@@ -1,8 +1,9 @@
-"""The numbers that decide a verdict and that several rooms share, with their meaning.
+"""The numbers that decide a verdict or a base, with their meaning.
 
-What one file alone decides by stands there with its reason, as the worth of a number of
-a base in ``bases/orders.py``. How thoroughly is searched (points of grids, finalists,
-rounds) stands where the search is: more of it finds the same name or a better one.
+Fifteen of them are independent; where one is made of others, that is written. A
+sixteenth, ``WORTH_A_WORD``, decides only what is told. How thoroughly is searched
+(points of grids, finalists, rounds) stands where the search is: more of it finds the
+same name or a better one. Which samples of a record are sound stands in ``records``.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ SHAPE = "hysteresis-shape"
 
 RECORD_WEIGHT = 50.0
 """Independent samples that a record counts as."""
-LEAST_WEIGHT = 300.0
-"""Of all records together, where there are few."""
+LEAST_WEIGHT = 6 * RECORD_WEIGHT
+"""Of all records together, where there are few: as of six."""
 PARAMETER = 4.0
 """Charge for a fitted parameter."""
 
@@ -25,17 +26,20 @@ PAYS = 40.0
 """The first effect."""
 FURTHER = 100.0
 """A further effect, which must also take more of the gap than may stay unnamed."""
-CERTAIN = 200.0
+CERTAIN = 2 * FURTHER
 """Beyond doubt: what bends to much, beside a law of fewer numbers; on folds, an
 effect whose size is not known."""
 SCALE = 4.0
 """One name is e times likelier than another: by less they cannot be told apart."""
-UNKNOWN = 0.5
-"""Standard error of an effect's size, as a share of it: two of them reach nothing."""
+BY_CHANCE = 0.05
+"""Probability of what is still called chance."""
+UNKNOWN = 1 / 1.96
+"""Standard error of an effect's size, as a share of it: zero is in the interval that
+leaves out no more than chance."""
 DOUBT = 0.02
 """That none of the vocabulary is right though one fits well."""
 
-# How much may stay without a name, as a share of the power of the gap.
+# Shares of a power: of the gap, of what is left, or of what a lesser model leaves.
 
 UNNAMED_SHARE = 0.01
 """Of structure that no name accounts for: a tenth of the rms. A user may set it.
@@ -49,17 +53,23 @@ AS_GOOD = UNNAMED_SHARE
 So are compared: a host and the base that it stands for, a law and one of fewer numbers,
 the base and a model that leaves more on hold-out records.
 """
+WORTH_A_WORD = 0.1
+"""What is told beside the verdict: a third of the rms."""
 LOOSE = 0.25
-"""In all: half of the gap's rms.
+"""What matters in all: half of the rms.
 
-Nor may an effect widen the gap by more, as it can where a wrong shape hides what it
-does; and a hysteresis of the wrong shape matters where it takes more. Where forces
-inside leave less, records have no numbers of their own.
+A name does not stand where more of the gap is left. Nor may an effect widen the gap by
+more, as it can where a wrong shape hides what it does; and a hysteresis of the wrong
+shape matters where it takes more. Where forces inside leave less, records have no
+numbers of their own. A curve between two filters, or a path that winds once more, must
+take as much.
 """
+MOST = 0.5
+"""The larger part."""
 
 # With nothing named: whether there is a gap.
 
-ABOVE_NOISE = 0.5
+ABOVE_NOISE = MOST
 """Power above the floor, in floors, that is not noise."""
 SLIGHT = 0.015
 """RMS of what is left, over that of the output, that a fitted hysteresis may leave."""
@@ -68,3 +78,17 @@ WIDE = 3.0
 FOREIGN = 0.05
 """Share that no effect does: of the gap in samples far off, of what is left in what
 differs between periods."""
+
+# A base that is identified from the records.
+
+NUMBER_PAYS = 0.02
+"""Share of the error, rms, that a further pole, a zero or another timing takes."""
+ANOTHER_MODE = NUMBER_PAYS / 4
+"""The same of a further one of many modes: it may take all of its own band while it
+takes little of the whole."""
+
+# The vocabulary.
+
+SLIDES = 0.01
+"""Share of the reach within which a force gives way that is dry friction: it slides on
+nearly all of its way. What yields on a longer way is a hysteretic force."""

@@ -210,7 +210,9 @@ def test_what_a_given_base_is_the_same_as_is_sought_once(monkeypatch):
     )
     found = [
         same_as(
-            ModelState((base,), (own,), ScoredSamples.of((own,)), hold="linear"), MOVES
+            ModelState((base,), (own,), ScoredSamples.of((own,)), hold="linear"),
+            MOVES,
+            NOISE**2,
         )
         for own in (measured, offset)
     ]
@@ -237,7 +239,7 @@ def test_what_no_mass_on_a_spring_does_is_seen_on_one_record(monkeypatch):
         lambda given, *more: sought.append(given) or one_coordinate(given, *more),
     )
     start = ModelState((base,), records, ScoredSamples.of(records), hold="linear")
-    assert same_as(start, MOVES) is None
+    assert same_as(start, MOVES, 0.1**2) is None
     (given,) = sought
     assert [item.name for item in given] == ["1"]
 

@@ -68,8 +68,13 @@ def test_what_differs_between_periods_is_no_wrong_shape(after, differs):
     found = Left(0.0, 0.0, 100.0, after, 1e6, unrepeated=differs)
     word, reason = judge(found, False, 0.0)
     told = differs > max(ABOVE_NOISE, FOREIGN * after)
+    repeats = after - differs > ABOVE_NOISE * (1 + differs)
+    assert word == ("unnamed" if told and repeats else "no-gap")
+    is_new = differs > ABOVE_NOISE and not repeats
+    assert ("one period" in reason) == (told or is_new)
+    # Where the noise is known, more than that is no noise.
+    word, _ = judge(found, False, 0.0, floor_is_declared=True)
     assert word == ("unnamed" if told else "no-gap")
-    assert ("one period" in reason) == told
 
 
 @given(st.floats(0, 0.49), st.floats(0.51, 1e5))

@@ -17,12 +17,11 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.bases.orders import LEAD
 from hystbench.gap.progress import Say, silent
+from hystbench.gap.thresholds import MOST
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
 
-MOSTLY = 0.5
-"""Share of what is left in a lead that no state at the start may explain."""
 SETTLES = 5.0
 """Time constants in which a state is forgotten: less than a hundredth is left of it."""
 
@@ -90,7 +89,7 @@ def _without(record: Record, base: Model, asked: Model) -> Record:
     if not np.any(free) or np.mean(first**2) <= np.mean(behind**2):
         return record
     states = np.linalg.lstsq(free, first, rcond=1e-9)[0]
-    if np.mean((first - free @ states) ** 2) > MOSTLY * np.mean(first**2):
+    if np.mean((first - free @ states) ** 2) > MOST * np.mean(first**2):
         return record
     return replace(record, lead=lead)
 

@@ -15,7 +15,6 @@ from hystbench.blocks.input_delay import InputDelay
 from hystbench.errors import InputError
 from hystbench.gap.bases.orders import (
     HIGHEST,
-    NUMBER_PAYS,
     ROUNDS,
     Found,
     Judged,
@@ -31,11 +30,8 @@ from hystbench.gap.bases.unsigned import with_signs
 from hystbench.gap.bases.wiener_hammerstein import HalvesError
 from hystbench.gap.records.coarser import coarser
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.thresholds import LOOSE
+from hystbench.gap.thresholds import LOOSE, NUMBER_PAYS
 from hystbench.model import Model
-
-#: Two halves are the base only if their error is within this factor of its.
-SAME = 1.02
 
 LINEAR = "linear"
 """Name of the base that is identified as a linear model."""
@@ -238,7 +234,7 @@ def _halves(
         return None
     count = sum(int(mask.sum()) for mask in everything.whole)
     chain, error = chain_of(task, halves)
-    if error > SAME**2 * min(item.ratio.cost for item in found):
+    if error > (1 + NUMBER_PAYS) ** 2 * min(item.ratio.cost for item in found):
         return None
     unit = everything.evidence.output.unit
     words = (

@@ -22,6 +22,7 @@ from hystbench.gap.bases.spectral import (
 )
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.folds import Fold, make_folds
+from hystbench.gap.thresholds import ANOTHER_MODE, NUMBER_PAYS
 from hystbench.record import Mask, Record
 
 #: Highest order that is tried, of all poles at once, and with modes added one by one.
@@ -35,15 +36,6 @@ MANY = 5
 BEGUN_DAMPING = 0.01
 #: Peaks of what is left at which a further mode is begun.
 PEAKS = 3
-#: A number is needed if it lowers both errors, of fit and of folds, by more than this
-#: share: a gain on folds alone is their luck.
-NUMBER_PAYS = 0.02
-#: A further one of many modes has a band of its own, of which it may take all while it
-#: takes little of the whole: modes are added for as long as one takes this share.
-ANOTHER_MODE = 0.005
-#: Another timing of the input is one of a few and no number of its own: it is needed if
-#: it lowers the error by this share.
-TIMING_PAYS = 0.01
 #: Orders above are not tried once so many in a row have not mattered.
 IN_VAIN = 2
 #: Share of each record at its beginning that does not count: what it remembers of the
@@ -67,7 +59,10 @@ class Judged(Protocol):
 
 
 def lowers(better: Judged, item: Judged, share: float = NUMBER_PAYS) -> bool:
-    """Tell whether one model lowers both errors of another by more than a share."""
+    """Tell whether one model lowers both errors of another by more than a share.
+
+    Those of fit and of folds: a gain on folds alone is their luck.
+    """
     most = 1 - share
     return better.fit < most * item.fit and better.folds < most * item.folds
 
@@ -295,7 +290,7 @@ def in_time(plain: Found, step: float) -> Found | None:
     for farther in (2 * half, 3 * half):
         beyond = late(farther)
         if beyond.fit > best.fit:
-            pays = best.fit < (1 - TIMING_PAYS) * plain.fit
+            pays = best.fit < (1 - NUMBER_PAYS) * plain.fit
             return best if pays and best.folds < plain.folds else None
         best = beyond
     return None

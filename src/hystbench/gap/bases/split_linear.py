@@ -30,11 +30,11 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.spectral import Ratio, Rational
 from hystbench.gap.bases.wiener_hammerstein import Halves, HalvesError
 from hystbench.gap.records.folds import Fold
+from hystbench.gap.thresholds import LOOSE, NUMBER_PAYS
 from hystbench.record import FloatArray
 
-#: A curve inside must lower the error by this share, beside one at either end.
-CLEARLY = 0.15
-ENOUGH = (1 - CLEARLY) ** 2
+#: Of the error's power a curve inside leaves no more, beside one at either end.
+ENOUGH = 1 - LOOSE
 #: With more ways to deal poles and zeros, all zeros stay together.
 MOST_WAYS = 512
 #: Ways that are refined a little, and steps of it; steps to the end, and on a fold.
@@ -42,10 +42,8 @@ LIKELY = 3
 ROUNDS = 5
 TO_THE_END = 40
 FOLD_ROUNDS = 4
-#: A further pole or zero must lower the error by this share.
-POLE_PAYS = 0.02
 #: Poles of both halves together, at most.
-MOST = 8
+HIGHEST = 8
 #: A new pole or zero starts beyond the others, at so many times the scale.
 BEYOND = 5.0
 
@@ -86,7 +84,7 @@ def best_split(
     best = min(tried, key=_cost, default=None)
     if best is None or best.cost > ENOUGH * end.cost:
         return None
-    enough = [way for way in tried if way.cost <= best.cost / (1 - POLE_PAYS) ** 2]
+    enough = [way for way in tried if way.cost <= best.cost / (1 - NUMBER_PAYS) ** 2]
     fewest = min(enough, key=lambda way: (way.count, way.cost))
     best = _grown(task, task.refined(fewest, TO_THE_END))
     inside, outside = (_on_folds(task, each, folds) for each in (best, end))
@@ -154,12 +152,12 @@ def _grown(task: HalvesError, halves: Halves) -> Halves:
         tried = [
             task.refined(way, ROUNDS)
             for way in _more(halves)
-            if len(way.front.a) + len(way.back.a) <= MOST
+            if len(way.front.a) + len(way.back.a) <= HIGHEST
         ]
         if not tried:
             return halves
         best = task.refined(min(tried, key=_cost), TO_THE_END)
-        if best.cost > (1 - POLE_PAYS) ** 2 * halves.cost:
+        if best.cost > (1 - NUMBER_PAYS) ** 2 * halves.cost:
             return halves
         halves = best
 

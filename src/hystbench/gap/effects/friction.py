@@ -8,9 +8,10 @@ from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.hysteretic_force import HystereticForce
 from hystbench.blocks.smooth_friction import SmoothFriction
 from hystbench.gap.effects.effect import Effect
-from hystbench.gap.effects.law import SLIDES, Law, Moved
+from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.effects.variant import Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
+from hystbench.gap.thresholds import SLIDES
 
 HOLDS = 1e-7
 """Share of the reach by which dry friction gives way where it holds: no record shows

@@ -11,7 +11,8 @@ from hystbench.blocks.bouc_wen_force import BoucWenForce
 from hystbench.blocks.hysteretic_force import HystereticForce as Block
 from hystbench.blocks.iwan_force import IwanForce
 from hystbench.gap.effects.effect import ForceEffect
-from hystbench.gap.effects.law import SLIDES, Law, Moved
+from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.thresholds import SLIDES
 
 STEEPEST = 1.0
 """Exponent of plays, at most. Of a joint it is below zero (Segalman); a large one makes

@@ -9,10 +9,6 @@ from typing import Literal, NamedTuple
 from hystbench.blocks.base import Block
 from hystbench.blocks.store import Store
 
-SLIDES = 0.01
-"""Share of the reach within which a force gives way that is dry friction: it slides on
-nearly all of its way. What yields on a longer way is a hysteretic force."""
-
 
 @dataclass(frozen=True)
 class Moved:

@@ -113,9 +113,9 @@ class OwnValues:
         return cls(kinds, tuple(told), share)
 
     @property
-    def follow_the_input(self) -> bool:
-        """Whether it makes more of the response, or the same later: no zero does."""
-        return bool(set(self.kinds) - {"offset"})
+    def scales(self) -> bool:
+        """Whether responses differ in size: no late trigger and no zero makes that."""
+        return "gain" in self.kinds
 
     @property
     def reason(self) -> str:

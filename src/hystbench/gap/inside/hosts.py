@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import lru_cache
 
 import numpy as np
 
@@ -136,7 +136,7 @@ def hosts(
             words = (
                 "a model of one coordinate that simulates the same stands for the base"
             )
-            same = same_as(start, quantities)
+            same = same_as(start, quantities, score.floor)
         if same is not None:
             yield from _as_given(same, score, words, bool(start.free))
     if quantities.causality not in ("force to motion", "unknown"):
@@ -309,11 +309,14 @@ def of_many_modes(start: ModelState) -> bool:
     )
 
 
-def same_as(start: ModelState, quantities: Quantities) -> ModelState | None:
+def same_as(
+    start: ModelState, quantities: Quantities, floor: float
+) -> ModelState | None:
     """Give a model of one coordinate that simulates what a given base does.
 
-    It may differ by no more of the gap than two models that do the same. Of a base that
-    a gain and an offset do as well there is none: nothing moves in it.
+    It may differ by no more of the gap than two models that do the same. A zero and an
+    offset are its own only where noise of that power does not hide what they do. Of a
+    base that a gain and an offset do as well there is none: nothing moves in it.
     """
     simulated = tuple(
         replace(record, y=y, simulated=None, interpolated=None)
@@ -326,22 +329,19 @@ def same_as(start: ModelState, quantities: Quantities) -> ModelState | None:
     if np.mean(moves**2) < most:
         return None
     allowed = most * len(start.sample)
+    unseen = min(AS_GOOD * floor * len(start.sample), allowed)
     shown = [float(np.sum(moves[part] ** 2)) for part in start.sample.slices]
     one = _ByContent((simulated[int(np.argmax(shown))],))
     every = _ByContent(simulated)
-    for with_zero in (False, True):  # a zero only where it is needed
-        like = partial(
-            _coordinate_like,
-            quantities=quantities,
-            hold=start.hold,
-            with_zero=with_zero,
-        )
+    about = quantities, start.hold
+    for with_zero, enough in ((False, unseen), (True, allowed)):
         # What the best model of one record misses there, one of all records does too.
-        if len(simulated) > 1 and _missed(like(one)) > allowed:
+        alone = _coordinate_like(one, *about, with_zero)
+        if len(simulated) > 1 and _missed(alone) > enough:
             continue
-        best = like(every)
-        if best is not None and _missed(best) <= allowed:
-            same = _without_offset(best, allowed)
+        best = _coordinate_like(every, *about, with_zero)
+        if best is not None and _missed(best) <= enough:
+            same = _without_offset(best, unseen)
             return replace(same, records=start.records, sample=start.sample).settled()
     return None
 

@@ -61,7 +61,18 @@ def together(
     """Go on from singles to pairs, and to threes.
 
     Forces that gain little alone may gain much together. But where one pays alone and
-    no second one pays beside it, no three are tried.
+    no second one pays beside it, no three are tried, and none where two gain nothing.
+
+    Parameters
+    ----------
+    found : sequence of Fitted
+        The host alone, and with one force each.
+    offer : callable
+        Gives what may be put in.
+    score : Score
+    say : callable
+    most : float
+        How many forces, at most.
 
     Returns
     -------
@@ -92,14 +103,15 @@ def least(found: Sequence[Fitted]) -> Fitted:
 
 
 def _in_vain(every: Sequence[Fitted], pairs: Sequence[Fitted]) -> bool:
-    """Tell whether an effect pays alone, and none pays beside it."""
+    """Tell whether no two effects pay, nor a second one beside a first that does."""
     one = least([item for item in every if len(item.effects) < 2])
     tried = [item for item in pairs if len(item.effects) == 2]
-    if not (tried and one.effects):
+    if not tried:
         return False
-    return (
-        every[0].score - one.score > PAYS and least(tried).score > one.score - FURTHER
-    )
+    alone, two = every[0].score, least(tried).score
+    if not one.effects or alone - one.score <= PAYS:
+        return alone - two <= PAYS
+    return two > one.score - FURTHER
 
 
 def with_one_fewer(best: Fitted, found: Sequence[Fitted], score: Score) -> list[Fitted]:

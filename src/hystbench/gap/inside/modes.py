@@ -15,14 +15,13 @@ from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.thresholds import MOST
 from hystbench.record import ComplexArray, FloatArray
 
 NUMBERS = ("mass", "damping", "stiffness", "blend")
 """Of a mode."""
 NONE = 1e-3
 """Share of a mode in the output that is none of the motion that is asked for."""
-NEEDS = 0.5
-"""Of what the mode that needs a force most would explain, another one at least."""
 APART = 1e-6
 """Share of its size by which a pole must be away from all others."""
 
@@ -67,7 +66,7 @@ def modes(
         found.append((-explained_by_levels(state), len(found), state))
     found.sort()
     for share, _, state in found:
-        if -share >= NEEDS * -found[0][0]:
+        if -share >= MOST * -found[0][0]:
             yield with_others_free(state) if others_too else state
 
 

@@ -26,16 +26,17 @@ from hystbench.gap.judging.known_signals import (
     paths,
 )
 from hystbench.gap.simulation.reshape import orthonormal, products
-from hystbench.gap.thresholds import LOOSE, UNNAMED_SHARE
+from hystbench.gap.thresholds import (
+    BY_CHANCE,
+    LOOSE,
+    MOST,
+    UNNAMED_SHARE,
+    WORTH_A_WORD,
+)
 from hystbench.record import FloatArray, Record
 
-SURROGATES = 19
-"""What follows nothing explains more than all of them once in twenty times."""
-MOSTLY = 0.5
-"""Share of a moved output that known signals must leave, for the test to tell anything:
-else a response to the same tones passes for chance."""
-RELATED = 0.1
-"""Share of what stays that must follow known signals, to be called by their sort."""
+SURROGATES = round(1 / BY_CHANCE) - 1
+"""What follows nothing explains more than all of them by chance alone."""
 
 SORTS = {
     "strength": "its strength changes with time or between records, perhaps with level",
@@ -116,7 +117,7 @@ class Unnamed:
     def sort(self, share: float = UNNAMED_SHARE) -> str:
         """Give the sort of what stays: a key of :data:`SORTS`."""
         best = max(self.gains, key=lambda name: self.gains[name], default=None)
-        lone = self.structured < RELATED * self.stays
+        lone = self.structured < WORTH_A_WORD * self.stays
         if best is None or self.gains[best] <= 0 or lone:
             return "unrelated"
         return SORT_OF[best]
@@ -242,9 +243,9 @@ def _by_chance(
     colour and no longer follows anything: a surrogate [1]_. What follows known signals
     must be more than in each of nineteen of them, a test at 5 %. The mean of a record
     does not move, and is left out. Of a few tones the test tells nothing: moved in time
-    they are explained as well. So the simulated output, moved as far, must stay for the
-    most part unexplained. A record that repeats its input needs no test: its periods
-    tell what is noise.
+    they are explained as well. So of the simulated output, moved as far, the larger
+    part must stay unexplained. A record that repeats its input needs no test: its
+    periods tell what is noise.
 
     Returns
     -------
@@ -272,7 +273,7 @@ def _by_chance(
         output = _about_its_mean(state, state.measured - state.residual)
         output = _moved(state, output, k)
         stays = table.of_another(columns, output).explained(every).noise
-        return max(structured, 0.0) if stays > MOSTLY * np.mean(output**2) else 0.0
+        return max(structured, 0.0) if stays > MOST * np.mean(output**2) else 0.0
     return 0.0
 
 

@@ -23,18 +23,15 @@ from hystbench.gap.thresholds import (
     SLIGHT,
     UNNAMED_SHARE,
     WIDE,
+    WORTH_A_WORD,
 )
 from hystbench.periods import find_period
 from hystbench.record import Record
 
 Verdict = Literal["named", "parameters", "no-gap", "unnamed"]
 
-OFF = 1 / 9
-"""Share of the gap that stays and may be the base's own error: a third of its rms."""
 SURE = 100.0
 """Odds beyond e to this are all the same."""
-SAID = 0.1
-"""Share of the gap that a wrong shape of the base could leave, to be told."""
 
 
 GIVE = "give period_samples or noise_rms"
@@ -125,7 +122,7 @@ class Left:
             f"on the fit records {100 * self.whole:.0f} % of the gap's power above the "
             "noise floor stays"
         )
-        if self.whole - self.share < SAID:
+        if self.whole - self.share < WORTH_A_WORD:
             return told
         return (
             f"{told}; of the part that no wrong shape of the hysteresis could leave, "
@@ -147,11 +144,11 @@ class Left:
 
     @property
     def is_new(self) -> bool:
-        """Whether what is left differs from period to period: the rest is no more.
+        """Whether more than noise differs from period to period, and little else is.
 
-        Than half of what differs, as noise is where nothing else is left.
+        What repeats stands out of that no more than a gap that is none out of noise.
         """
-        if self.unrepeated is None or self.far_off:
+        if self.unrepeated is None or self.unrepeated <= ABOVE_NOISE or self.far_off:
             return False
         repeats = self.all_after - self.unrepeated
         return repeats <= ABOVE_NOISE * (1.0 + self.unrepeated)
@@ -238,8 +235,7 @@ def judge(
         What to write so that the noise is measured.
     """
     if not named:
-        noise = left.all_after <= ABOVE_NOISE
-        if left.is_new and not (noise or floor_is_declared):
+        if left.is_new and not floor_is_declared:
             return "no-gap", (
                 f"what is left on the fit records, {left.all_after:.2g} times the "
                 "power of the noise floor, differs from one period of the same input "
@@ -257,7 +253,7 @@ def judge(
                 "no effect pays; the floor is only an upper bound, so that there is "
                 f"no gap cannot be claimed: {mends}"
             )
-        if left.slight and noise:
+        if left.slight and left.all_after <= ABOVE_NOISE:
             return "no-gap", "what is left is noise"
         if left.slight:
             share = float(np.sqrt(left.all_after / left.output))
@@ -282,7 +278,7 @@ def judge(
     much = unnamed.too_much(unnamed_share)
     if much and not left.may_be_of_base:
         why = unnamed.reason(unnamed_share)
-        if left.whole - unnamed.structured > OFF:
+        if left.whole - unnamed.structured > WORTH_A_WORD:
             why += (
                 "; this is less sure, as a third of the gap's rms or more may be the "
                 "base's own error, which can look like that"

@@ -21,10 +21,11 @@ from hystbench.gap.locate.unexplained import unexplained
 from hystbench.gap.locate.view import View
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.scored_samples import Compared
+from hystbench.gap.thresholds import BY_CHANCE
 
 __all__ = ["LEVEL", "Contribution", "View", "curves", "locate", "ranked"]
 
-LEVEL = 0.05
+LEVEL = BY_CHANCE
 """Of a view's p-value times the number of views, for more than chance."""
 NOT_DRAWN = {
     "distortion": "distortion, as no record repeats with a gap above the noise",

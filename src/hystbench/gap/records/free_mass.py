@@ -8,13 +8,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hystbench.gap.thresholds import MOST
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
 
 SPRING = 0.1
 """Share of the input's rms below which a spring's force is none."""
-LEFT = 0.5
-"""Share of the input's power that a law of motion may leave."""
 LASTS = 1e6
 """Time constant, in seconds, of a mass that nothing brakes."""
 LEAST = 100
@@ -62,7 +61,7 @@ def decay_of_free_mass(
     found = np.linalg.lstsq(stacked / sizes, u, rcond=1e-10)[0]
     left = float(np.mean((u - (stacked / sizes) @ found) ** 2))
     total = float(np.var(u))
-    if left >= LEFT * total or abs(found[2]) > SPRING * np.sqrt(total):
+    if left >= MOST * total or abs(found[2]) > SPRING * np.sqrt(total):
         return None
     mass, damping = found[:2] / sizes[:2]
     return float(mass / damping) if mass > 0 and damping > 0 else LASTS

@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from hystbench.gap.records.scored_samples import rms
+from hystbench.gap.thresholds import LOOSE
 from hystbench.record import FloatArray, Mask, Record
 
 #: Part of a hold-out record that estimates what is new in it.
@@ -161,15 +162,13 @@ def degree_that_carries_on(
     for degree in range(HIGHEST + 1):
         size = left_rms(records, simulated, path_and_mains(degree, mains_hz))
         assert size is not None  # noqa: S101  (on fit records no model runs away)
-        if size < CLEARLY * least:
+        if size**2 < (1 - LOOSE) * least**2:
             best, least = degree, size
     return best
 
 
 HIGHEST = 2
 """Degree of a path that may be carried on."""
-CLEARLY = 0.9
-"""Of what a lower degree leaves, rms."""
 
 
 TWICE = 1.5
