@@ -32,6 +32,7 @@ from hystbench.gap.judging.effect_rows import (
     simulator_mapping,
 )
 from hystbench.gap.judging.fit_result import FitResult
+from hystbench.gap.judging.size_of_noise import size_follows
 from hystbench.gap.judging.unnamed import Unnamed, what_is_unnamed
 from hystbench.gap.judging.verdict import Left, Verdict, judge, what_is_left, what_mends
 from hystbench.gap.locate import curves, locate
@@ -192,6 +193,7 @@ def _judged(
         bool(start.free),
         floor.method == "upper-bound",
         floor.method == "declared",
+        not state.added and size_follows(state),
         unnamed,
         share,
         what_mends(start.records),

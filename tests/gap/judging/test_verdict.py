@@ -282,3 +282,27 @@ def test_periods_that_are_found_are_what_mends_an_upper_bound():
         Left(0, 0, 0, 0, 1), False, 0.0, floor_is_upper_bound=True, mends=told
     )
     assert reason.endswith(told)
+
+
+def test_what_is_new_is_a_gap_where_its_size_follows_signals():
+    found = Left(30.0, 30.0, 30.0, 30.0, 1e3, unrepeated=28.0)
+    word, reason = judge(found, False, 0.0)
+    assert word == "no-gap"
+    assert "noise of another colour" in reason
+    word, reason = judge(found, False, 0.0, size_follows=True)
+    assert word == "unnamed"
+    assert "its size follows signals" in reason
+
+
+def test_noise_that_follows_nothing_is_no_gap_but_where_its_size_is_known():
+    """As surrogates tell it where no record repeats."""
+    found, chance = left(30.0), Unnamed(0.0, None, 0.3, by_chance=0.3)
+    for declared, expected in ((False, "no-gap"), (True, "unnamed")):
+        word, reason = judge(
+            found, False, -0.1, unnamed=chance, floor_is_declared=declared
+        )
+        assert word == expected
+        assert "moved in time" in reason
+        assert ("noise_rms that was given" in reason) == declared
+    # A black box that explains some of it sees what the surrogates do not.
+    assert judge(found, False, 0.1, unnamed=chance)[0] == "unnamed"

@@ -35,7 +35,6 @@ SURE = 100.0
 
 
 GIVE = "give period_samples or noise_rms"
-NO_RESPONSE = "it is noise of another colour, or has a cause that is in no record"
 """What to write in dataset.yaml where nothing tells the noise."""
 
 
@@ -206,6 +205,7 @@ def judge(
     retuned: bool = False,
     floor_is_upper_bound: bool = False,
     floor_is_declared: bool = False,
+    size_follows: bool = False,
     unnamed: Unnamed = NOTHING,
     unnamed_share: float = UNNAMED_SHARE,
     mends: str = GIVE,
@@ -227,6 +227,8 @@ def judge(
         that there is none cannot be claimed from it.
     floor_is_declared : bool
         Whether a user has said how large the noise is: what is more of it is a gap.
+    size_follows : bool
+        Whether what is left is larger where signals are: it is no noise then.
     unnamed : Unnamed
         What stays that the named effects cannot own.
     unnamed_share : float
@@ -235,18 +237,23 @@ def judge(
         What to write so that the noise is measured.
     """
     if not named:
-        if left.is_new and not floor_is_declared:
-            return "no-gap", (
-                f"what is left on the fit records, {left.all_after:.2g} times the "
-                "power of the noise floor, differs from one period of the same input "
-                f"to the next: {NO_RESPONSE}"
-            )
-        if left.slight and left.foreign:
+        chance = not unnamed.too_much(unnamed_share) and (explained_by_box or 0.0) < 0
+        new = _why_new(left, unnamed.by_chance > 0.0 and chance)
+        if left.slight and left.foreign and not new:
             return "unnamed", left.foreign
         if retuned and left.all_before > ABOVE_NOISE and left.share < LOOSE:
             return "parameters", (
                 "re-tuning the base within what is free is enough, and no effect pays "
                 f"beside it: {left.sentence}"
+            )
+        if new and size_follows:
+            return "unnamed", f"{new}, but its size follows signals, as no noise does"
+        if new and floor_is_declared:
+            return "unnamed", f"{new}, and it is more than the noise_rms that was given"
+        if new:
+            return "no-gap", (
+                f"{new}: it is noise of another colour, or has a cause that is in no "
+                "record"
             )
         if left.slight and floor_is_upper_bound:
             return "unnamed", (
@@ -260,15 +267,6 @@ def judge(
             return "no-gap", (
                 f"what is left on the fit records, {100 * share:.2g} % of the output's "
                 "rms, is no more than a slightly wrong shape of the base could leave"
-            )
-        chance = unnamed.by_chance > 0.0 and not unnamed.too_much(unnamed_share)
-        chance = chance and (explained_by_box or 0.0) < 0 and not left.foreign
-        if chance and not floor_is_declared:
-            return "no-gap", (
-                f"what is left on the fit records, {left.after:.2g} times the power of "
-                "the noise floor, follows the input no more than when it is moved in "
-                "time against it, and a black box makes it worse on folds: "
-                f"{NO_RESPONSE}"
             )
         return "unnamed", (
             f"on the fit records a gap of {left.after:.2g} times the noise power is "
@@ -297,6 +295,22 @@ def judge(
             "though all that is left would be no gap if nothing were named"
         )
     return "named", left.sentence
+
+
+def _why_new(left: Left, by_chance: bool) -> str:
+    """Say why what is left follows nothing that is recorded; or nothing."""
+    if left.is_new:
+        return (
+            f"what is left on the fit records, {left.all_after:.2g} times the power of "
+            "the noise floor, differs from one period of the same input to the next"
+        )
+    if not by_chance or left.slight or left.foreign:
+        return ""
+    return (
+        f"what is left on the fit records, {left.after:.2g} times the power of the "
+        "noise floor, follows the input no more than when it is moved in time against "
+        "it, and a black box makes it worse on folds"
+    )
 
 
 def confidence(

@@ -165,7 +165,7 @@ def named_or(
 def _p_value(samples: ViewSamples, form: FittedForm) -> float:
     """Give the F test's p-value, for as many samples as are independent."""
     rest = samples.residual - form.fitted
-    count = effective_count(samples, rest, form.fitted)
+    count = effective_count(samples.slices, rest, form.fitted)
     share = form.explained / max(samples.power, 1e-300)
     return f_test(share, form.freedom, count)
 
@@ -185,7 +185,7 @@ def f_test(share: float, freedom: float, count: float) -> float:
 
 
 def effective_count(
-    samples: ViewSamples, rest: FloatArray, fitted: FloatArray
+    slices: Sequence[slice], rest: FloatArray, fitted: FloatArray
 ) -> float:
     """Count the independent samples among autocorrelated ones.
 
@@ -195,7 +195,7 @@ def effective_count(
     rest (Bartlett 1946, in the frequency domain). It is never more than n.
     """
     rests, fits = [], []
-    for part in samples.slices:
+    for part in slices:
         power = np.abs(fft.rfft(rest[part])) ** 2
         window = np.ones(min(SMOOTH, len(power)))
         covered = np.convolve(np.ones_like(power), window, mode="same")
