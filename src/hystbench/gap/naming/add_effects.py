@@ -148,6 +148,10 @@ def beside_forces(
     if not _pays(first, state, floor, SoFar(state, gap, share)):
         return named
     assert first.state is not None  # noqa: S101  (for the type checker)
+    # The forces were fitted anew beside the tone: what it takes itself has to matter.
+    without = replace(first.state, beside=()).power(floor)
+    if without - first.state.power(floor) <= share * gap:
+        return named
     say(f"inside: beside it {TONE}: gain {first.gain:.1f}")
     one = Round(state, first.score + first.gain, ranking, True)
     # Forces were fitted with the tone in what is left.
