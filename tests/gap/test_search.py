@@ -262,3 +262,15 @@ def test_the_ranking_tells_of_every_place_and_form():
     assert scores == sorted(scores)
     beside = rows["mains-pickup"].get("variants", [])
     assert all(one["position"] is None for one in beside)
+
+
+@pytest.mark.parametrize(("effects", "most"), [(1, 0), (2, 1)])
+def test_forces_have_to_be_fewer_than_what_leaves_nothing(alike, effects, most):
+    """They could gain no more than noise allows, whatever they are."""
+    _, _, floor, found = alike
+    state = found["sensor-lag"]
+    named = Named(replace(state, added=state.added * effects), ())
+    assert search_module._most_inside(named, floor) == most
+    # Where a gap is left any number of forces may close it.
+    base = replace(named, state=alike[1])
+    assert search_module._most_inside(base, floor) == np.inf

@@ -31,13 +31,13 @@ DRAG = 0.02  # mN s^2/mm^2: at half a metre a second as much as the damper
 SHARE = 0.5  # of the input, that becomes a force
 
 
-def moved(u, time, gain=1.0, drag=0.0):
+def moved(u, time, gain=1.0, drag=0.0, cubic=CUBIC):
     """The device by a general solver, the force straight between samples."""
 
     def slope(t, state):
         x, v = state
         force = gain * np.interp(t, time, u)
-        inside = CUBIC * x**3 + drag * v * abs(v)
+        inside = cubic * x**3 + drag * v * abs(v)
         return [v, (force - DAMPING * v - SPRING * x - inside) / MASS]
 
     ends = (time[0], time[-1])
@@ -149,3 +149,15 @@ def test_a_lag_shorter_than_a_sample_is_found_beside_a_spring(motions, tmp_path)
     assert lagging["name"] in ("sensor-lag", "drive-lag", "input-delay")
     (time,) = (item["value"] for item in lagging["parameters"].values())
     assert time == pytest.approx(lag, rel=0.05)
+
+
+def test_no_force_is_tried_where_one_effect_of_a_chain_leaves_noise(
+    tmp_path, monkeypatch
+):
+    """The device is linear, as it is given, and its input acts three samples late."""
+    late = [(u, np.concatenate([np.zeros(3), y[:-3]])) for u, y in moving(cubic=0.0)]
+    monkeypatch.setattr(
+        "hystbench.gap.search.named_inside", lambda *given: pytest.fail("tried")
+    )
+    content = closed(LINEAR, evidence_of(late, 0.01), tmp_path / "m.yaml")
+    assert [item["name"] for item in content["effects"]] == ["input-delay"]

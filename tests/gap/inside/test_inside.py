@@ -18,7 +18,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.hosts import best_host, hosts, is_seen_moving, same_as
 from hystbench.gap.inside.hypotheses import (
@@ -28,6 +28,7 @@ from hystbench.gap.inside.hypotheses import (
 from hystbench.gap.inside.laws import evened, how_it_moves, laws_for, with_law
 from hystbench.gap.inside.named_inside import (
     Inside,
+    beats,
     betters,
     chosen,
     named_inside,
@@ -574,3 +575,20 @@ def test_an_effect_that_makes_up_for_what_its_host_lacks_is_not_missing(after, p
     model = Model("rig", *(Channel("in", "V"), Channel("out", "mm")), base.chain)
     inside = Inside(model, base, Named(found, ()), "")
     assert betters(inside, base, 0.01) == pays
+
+
+@pytest.mark.parametrize(
+    ("chain", "gain", "better"),
+    [(1, 41.0, True), (1, 39.0, False), (2, -59.0, True), (2, -61.0, False)],
+)
+def test_what_a_chain_needs_more_counts_against_it(monkeypatch, chain, gain, better):
+    """On folds forces have to gain 40, or 100 less for each further effect there."""
+    state = transfer((mass(30.0),))
+    one = Added("friction", "inside", "", (), {}, 1.0)
+    inside = Inside(None, state, Named(replace(state, added=(one,)), ()), "")
+    named = Named(replace(state, added=(one,) * chain), ())
+    monkeypatch.setattr(
+        "hystbench.gap.inside.named_inside.gain_held_back",
+        lambda _, found, score: gain if found is inside.named.state else 0.0,
+    )
+    assert beats(inside, named, NOISE) == better
