@@ -192,7 +192,6 @@ def _judged(
         box.explained_on_folds,
         bool(start.free),
         floor.method == "upper-bound",
-        floor.method == "declared",
         not state.added and size_follows(state),
         unnamed,
         share,

@@ -67,14 +67,10 @@ def test_what_differs_between_periods_is_no_wrong_shape(after, differs):
     # As slight as only a wrong shape of the hysteresis leaves it.
     found = Left(0.0, 0.0, 100.0, after, 1e6, unrepeated=differs)
     word, reason = judge(found, False, 0.0)
-    told = differs > max(ABOVE_NOISE, FOREIGN * after)
     repeats = after - differs > ABOVE_NOISE * (1 + differs)
-    assert word == ("unnamed" if told and repeats else "no-gap")
-    is_new = differs > ABOVE_NOISE and not repeats
-    assert ("one period" in reason) == (told or is_new)
-    # Where the noise is known, more than that is no noise.
-    word, _ = judge(found, False, 0.0, floor_is_declared=True)
+    told = differs > (max(ABOVE_NOISE, FOREIGN * after) if repeats else ABOVE_NOISE)
     assert word == ("unnamed" if told else "no-gap")
+    assert ("one period" in reason) == told
 
 
 @given(st.floats(0, 0.49), st.floats(0.51, 1e5))
@@ -284,25 +280,32 @@ def test_periods_that_are_found_are_what_mends_an_upper_bound():
     assert reason.endswith(told)
 
 
-def test_what_is_new_is_a_gap_where_its_size_follows_signals():
+def test_what_is_new_in_each_period_is_told_as_that():
     found = Left(30.0, 30.0, 30.0, 30.0, 1e3, unrepeated=28.0)
     word, reason = judge(found, False, 0.0)
-    assert word == "no-gap"
+    assert word == "unnamed"
+    assert "differs from one period of the same input to the next" in reason
     assert "noise of another colour" in reason
     word, reason = judge(found, False, 0.0, size_follows=True)
     assert word == "unnamed"
     assert "its size follows signals" in reason
 
 
-def test_noise_that_follows_nothing_is_no_gap_but_where_its_size_is_known():
+def test_noise_that_follows_nothing_is_no_gap_but_where_the_noise_is_known():
     """As surrogates tell it where no record repeats."""
     found, chance = left(30.0), Unnamed(0.0, None, 0.3, by_chance=0.3)
-    for declared, expected in ((False, "no-gap"), (True, "unnamed")):
+    for bound, expected in ((True, "no-gap"), (False, "unnamed")):
         word, reason = judge(
-            found, False, -0.1, unnamed=chance, floor_is_declared=declared
+            found, False, -0.1, unnamed=chance, floor_is_upper_bound=bound
         )
         assert word == expected
         assert "moved in time" in reason
-        assert ("noise_rms that was given" in reason) == declared
     # A black box that explains some of it sees what the surrogates do not.
-    assert judge(found, False, 0.1, unnamed=chance)[0] == "unnamed"
+    word, reason = judge(found, False, 0.1, unnamed=chance, floor_is_upper_bound=True)
+    assert word == "unnamed"
+    # And noise has one size.
+    word, reason = judge(
+        found, False, -0.1, size_follows=True, unnamed=chance, floor_is_upper_bound=True
+    )
+    assert word == "unnamed"
+    assert "its size follows signals" in reason

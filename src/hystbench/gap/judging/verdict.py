@@ -204,7 +204,6 @@ def judge(
     explained_by_box: float | None = None,
     retuned: bool = False,
     floor_is_upper_bound: bool = False,
-    floor_is_declared: bool = False,
     size_follows: bool = False,
     unnamed: Unnamed = NOTHING,
     unnamed_share: float = UNNAMED_SHARE,
@@ -225,8 +224,6 @@ def judge(
     floor_is_upper_bound : bool
         Whether the noise floor is only an upper bound: it may hold the whole gap, so
         that there is none cannot be claimed from it.
-    floor_is_declared : bool
-        Whether a user has said how large the noise is: what is more of it is a gap.
     size_follows : bool
         Whether what is left is larger where signals are: it is no noise then.
     unnamed : Unnamed
@@ -248,10 +245,10 @@ def judge(
             )
         if new and size_follows:
             return "unnamed", f"{new}, but its size follows signals, as no noise does"
-        if new and floor_is_declared:
-            return "unnamed", f"{new}, and it is more than the noise_rms that was given"
         if new:
-            return "no-gap", (
+            # Only where the noise is not known may all of it be noise.
+            word: Verdict = "no-gap" if floor_is_upper_bound else "unnamed"
+            return word, (
                 f"{new}: it is noise of another colour, or has a cause that is in no "
                 "record"
             )
