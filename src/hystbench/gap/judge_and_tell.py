@@ -186,13 +186,14 @@ def _judged(
     state = named.state
     box = black_box(before, floor.rms)
     unnamed = what_is_unnamed(start, state, floor.rms, share)
+    seems_new = left.is_new or unnamed.by_chance > 0.0
     verdict, why = judge(
         left,
         bool(state.added),
         box.explained_on_folds,
         bool(start.free),
         floor.method == "upper-bound",
-        not state.added and size_follows(state),
+        not state.added and seems_new and size_follows(state),
         unnamed,
         share,
         what_mends(start.records),

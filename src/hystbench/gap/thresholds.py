@@ -82,7 +82,9 @@ differs between periods."""
 # A base that is identified from the records.
 
 NUMBER_PAYS = 0.02
-"""Share of the error, rms, that a further pole, a zero or another timing takes."""
+"""Share of the error, rms, that a further pole or zero takes."""
+TIMING_PAYS = NUMBER_PAYS / 2
+"""The same of another timing of the input: it is one of a few and no free number."""
 ANOTHER_MODE = NUMBER_PAYS / 4
 """The same of a further one of many modes: it may take all of its own band while it
 takes little of the whole."""

@@ -257,8 +257,8 @@ static double hb_miss(int count, const double *forces, const double *memory, dou
 
 /* The way of a part, by the secant method: a force changes little over most ways, so that
  * three or four of its values are enough. A step of a billionth is the last: the next
- * one would be lost in rounding, as one is that is nothing beside q. NaN where it does
- * not get there. */
+ * one would be lost in rounding. So would any step that q does not feel. NaN where it
+ * does not get there. */
 static double hb_way_near(int count, const double *forces, const double *memory,
                           double q, double alone, double gives, double h)
 {

@@ -67,7 +67,7 @@ def test_what_differs_between_periods_is_no_wrong_shape(after, differs):
     # As slight as only a wrong shape of the hysteresis leaves it.
     found = Left(0.0, 0.0, 100.0, after, 1e6, unrepeated=differs)
     word, reason = judge(found, False, 0.0)
-    repeats = after - differs > ABOVE_NOISE * (1 + differs)
+    repeats = after - differs > max(ABOVE_NOISE, 0.1 * differs)
     told = differs > (max(ABOVE_NOISE, FOREIGN * after) if repeats else ABOVE_NOISE)
     assert word == ("unnamed" if told else "no-gap")
     assert ("one period" in reason) == told
@@ -167,6 +167,8 @@ def test_what_would_be_no_gap_does_not_speak_against_a_name():
         assert judge(other, True, unnamed=structure)[0] == "unnamed"
     # Nor does a name stand where most of the gap is left.
     assert judge(found, True, unnamed=Unnamed(0.03, 0.0, 0.3))[0] == "unnamed"
+    for much, word in ((0.039, "named"), (0.041, "unnamed")):
+        assert judge(found, True, unnamed=Unnamed(much))[0] == word
     word, reason = judge(found, True, unnamed=Unnamed(0.3))
     assert word == "unnamed"
     assert "follows known signals" in reason
@@ -289,6 +291,10 @@ def test_what_is_new_in_each_period_is_told_as_that():
     word, reason = judge(found, False, 0.0, size_follows=True)
     assert word == "unnamed"
     assert "its size follows signals" in reason
+    # A third that repeats is no noise, whatever differs beside it.
+    _, reason = judge(replace(found, unrepeated=20.0), False, 0.3)
+    assert "one period" not in reason
+    assert "a black box takes 30 %" in reason
 
 
 def test_noise_that_follows_nothing_is_no_gap_but_where_the_noise_is_known():

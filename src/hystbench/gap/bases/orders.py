@@ -22,7 +22,7 @@ from hystbench.gap.bases.spectral import (
 )
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.folds import Fold, make_folds
-from hystbench.gap.thresholds import ANOTHER_MODE, NUMBER_PAYS
+from hystbench.gap.thresholds import ANOTHER_MODE, NUMBER_PAYS, TIMING_PAYS
 from hystbench.record import Mask, Record
 
 #: Highest order that is tried, of all poles at once, and with modes added one by one.
@@ -290,7 +290,7 @@ def in_time(plain: Found, step: float) -> Found | None:
     for farther in (2 * half, 3 * half):
         beyond = late(farther)
         if beyond.fit > best.fit:
-            pays = best.fit < (1 - NUMBER_PAYS) * plain.fit
+            pays = best.fit < (1 - TIMING_PAYS) * plain.fit
             return best if pays and best.folds < plain.folds else None
         best = beyond
     return None

@@ -336,10 +336,7 @@ class ModelState:
                 for item in self.free
                 if item.block in moved
             ),
-            added=tuple(
-                item._replace(blocks=tuple(moved[k] for k in item.blocks if k in moved))
-                for item in self.added
-            ),
+            added=tuple(_moved_effect(item, moved) for item in self.added),
         )
 
     @cached_property
@@ -363,6 +360,19 @@ def simulated_with(state: ModelState, changes: dict[int, float]) -> Signals:
     while isinstance(state.chain[start], AttachedBlock):
         start -= 1
     return state.simulation.tail(start, state.moved(changes)[start:])
+
+
+def _moved_effect(item: Added, moved: Mapping[int, int]) -> Added:
+    """Give an effect whose blocks stand elsewhere; values name some by their place."""
+    values = {}
+    for key, value in item.values.items():
+        place, dot, name = key.partition(".")
+        if dot and int(place) in moved:
+            values[f"{moved[int(place)]}.{name}"] = value
+        elif not dot:
+            values[key] = value
+    blocks = tuple(moved[k] for k in item.blocks if k in moved)
+    return item._replace(blocks=blocks, values=values)
 
 
 def beside_columns(state: ModelState, beside: Beside, values: Values) -> FloatArray:

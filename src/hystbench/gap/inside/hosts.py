@@ -2,7 +2,8 @@
 
 Where the base was identified from the records, hosts are fitted to them too. A base
 that a user gives stands for itself: a host takes its place only if it simulates the
-same, as a mass on a spring does in whatever way it was written.
+same, as a mass on a spring does in whatever way it was written. Stores alone may stand
+in place of a base that does something else, which is then said.
 """
 
 from __future__ import annotations
@@ -102,21 +103,8 @@ def hosts(
         # A force that is not linear turns the phase: it may be what looked like timing.
         yield from hosts(_without_timing(start), quantities, identified, score)
         return
-    if quantities.causality in ("storage", "unknown") and (
-        identified or may_be_stores(start)
-    ):
-        # A store whose outflow is bent has other numbers than the linear base.
-        charge = 0.0 if identified else FURTHER
-        noise = float(np.sqrt(score.floor))
-        for count, words in STORES.items():
-            begun = stores(start.records, start.hold, noise, count)
-            best = best_host(list(begun), score)
-            if best is None:
-                continue
-            words = f"{words} in place of the base"
-            yield Host(best.state, best, words, charge=charge)
-            for other in in_other_order(best.state):
-                yield Host(best.state, best, words, other, charge)
+    if quantities.causality in ("storage", "unknown"):
+        yield from _of_stores(start, identified, score)
     moves = shows_a_pole(start) or quantities.causality == "motion to force"
     if identified and moves and not of_many_modes(start):
         begun = one_coordinate(start.records, quantities, start.hold)
@@ -155,6 +143,61 @@ def hosts(
             yield Host(best.state, best, words)
         else:
             yield from _as_given(mode, score, words, bool(start.free))
+
+
+def _of_stores(start: ModelState, identified: bool, score: Score) -> Iterator[Host]:
+    """Give one store and two in series, fitted to the records.
+
+    Beside a given base that is no store already those that simulate the same, and, in
+    place of a linear base of few real poles, those that do not: it may fall below the
+    bottom of a tank. A bent outflow has another rate than a linear one, so their
+    numbers are fitted, and that counts as a further effect.
+    """
+    if not (identified or may_be_stores(start)):
+        return
+    noise = float(np.sqrt(score.floor))
+    for count, words in STORES.items():
+        begun = stores(start.records, start.hold, noise, count)
+        best = best_host(list(begun), score)
+        if best is None:
+            continue
+        words, alone, charge = f"{words} in place of the base", best.state, 0.0
+        if not identified:
+            same, charge = stores_like(start, count), FURTHER
+            words += ", fitted to the records"
+            if same is None:
+                words += ", as none simulates the same"
+            else:
+                alone = same
+        yield Host(alone, best, words, charge=charge)
+        for other in in_other_order(best.state):
+            yield Host(alone, best, words, other, charge)
+
+
+def may_be_stores(start: ModelState) -> bool:
+    """Tell whether a base is linear, with no more poles than two stores, all real."""
+    poles = [
+        np.roots(block.denominator)
+        for block in start.chain
+        if isinstance(block, TransferFunction)
+    ]
+    linear = all(isinstance(block, TransferFunction | Gain) for block in start.chain)
+    few = len(poles) == 1 and 1 <= len(poles[0]) <= len(STORES)
+    return linear and few and bool(np.isreal(poles[0]).all())
+
+
+def stores_like(start: ModelState, count: int) -> ModelState | None:
+    """Give stores in series that simulate what a given base does, if any do."""
+    simulated = as_simulated(start)
+    sample = ScoredSamples.of(simulated)
+    score = Score.plain(sample, np.finfo(float).tiny)
+    begun = list(stores(simulated, start.hold, np.inf, count))
+    if not begun:
+        return None
+    best = _likeliest(begun, score)
+    if _missed(best) > _most_missed(start) * len(sample):
+        return None
+    return replace(best.state, records=start.records, sample=start.sample).settled()
 
 
 def _as_given(
@@ -250,17 +293,6 @@ def _in_front(delay: Block, start: ModelState, state: ModelState) -> ModelState:
     return replace(behind, records=start.records).settled()
 
 
-def may_be_stores(start: ModelState) -> bool:
-    """Tell whether a linear base has no more poles than two stores in series."""
-    orders = [
-        len(block.denominator) - 1
-        for block in start.chain
-        if isinstance(block, TransferFunction)
-    ]
-    linear = all(isinstance(block, TransferFunction | Gain) for block in start.chain)
-    return linear and len(orders) == 1 and 1 <= orders[0] <= len(STORES)
-
-
 def own_mechanism(start: ModelState) -> ModelState | None:
     """Give a base that holds a mechanism itself, with the numbers of that free.
 
@@ -318,32 +350,40 @@ def same_as(
     offset are its own only where noise of that power does not hide what they do. Of a
     base that a gain and an offset do as well there is none: nothing moves in it.
     """
-    simulated = tuple(
-        replace(record, y=y, simulated=None, interpolated=None)
-        for record, y in zip(start.records, start.exact, strict=True)
-    )
-    most = AS_GOOD * float(np.mean(start.residual**2))
+    simulated, most = as_simulated(start), _most_missed(start)
     u, wanted = (start.sample.take(x) for x in ([r.u for r in simulated], start.exact))
     static = np.column_stack([u, np.ones(len(u))])
     moves = wanted - static @ solved(static, wanted)
     if np.mean(moves**2) < most:
         return None
-    allowed = most * len(start.sample)
-    unseen = min(AS_GOOD * floor * len(start.sample), allowed)
+    unseen = min(AS_GOOD * floor, most)
     shown = [float(np.sum(moves[part] ** 2)) for part in start.sample.slices]
     one = _ByContent((simulated[int(np.argmax(shown))],))
-    every = _ByContent(simulated)
+    every, count = _ByContent(simulated), len(ScoredSamples.of(simulated))
     about = quantities, start.hold
-    for with_zero, enough in ((False, unseen), (True, allowed)):
+    for with_zero, enough in ((False, unseen), (True, most)):
         # What the best model of one record misses there, one of all records does too.
         alone = _coordinate_like(one, *about, with_zero)
-        if len(simulated) > 1 and _missed(alone) > enough:
+        if len(simulated) > 1 and _missed(alone) > enough * count:
             continue
         best = _coordinate_like(every, *about, with_zero)
-        if best is not None and _missed(best) <= enough:
-            same = _without_offset(best, unseen)
+        if best is not None and _missed(best) <= enough * count:
+            same = _without_offset(best, unseen * count)
             return replace(same, records=start.records, sample=start.sample).settled()
     return None
+
+
+def as_simulated(start: ModelState) -> tuple[Record, ...]:
+    """Give records whose output is what the base simulates."""
+    return tuple(
+        replace(record, y=y, simulated=None, interpolated=None)
+        for record, y in zip(start.records, start.exact, strict=True)
+    )
+
+
+def _most_missed(start: ModelState) -> float:
+    """Give the mean square by which two models differ that do the same."""
+    return AS_GOOD * float(np.mean(start.residual**2))
 
 
 def _without_offset(best: Fitted, allowed: float) -> ModelState:

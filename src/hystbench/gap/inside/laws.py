@@ -40,7 +40,7 @@ class Times(NamedTuple):
 
     @classmethod
     def of(cls, records: Iterable[Record], identified: bool) -> Times:
-        """Take them from records, all of their samples, and from where a base came."""
+        """Take them from records before any sample of them was left out."""
         step = min(record.dt for record in records)
         return cls(step, step if identified else step / 20)
 

@@ -64,12 +64,15 @@ class Inside:
     named : Named
     sentence : str
         What it stands in place of.
+    counts : int
+        As how many effects more it counts: one if known numbers were fitted.
     """
 
     base: Model
     start: ModelState
     named: Named
     sentence: str
+    counts: int = 0
 
 
 def named_inside(
@@ -132,7 +135,8 @@ def named_inside(
         return host, together(found, offer, score, say, most - host.counts)
 
     full = [with_more(*item) for item in cheaper]
-    if not any(charge_of(*item) < charge_of(host, found) for item in full):
+    known = [chosen(own, score.floor, share) for _, own in full]
+    if all(may_gain(item, score) for item in known):
         full.append(with_more(host, found))
     host, found = min(full, key=lambda item: charge_of(*item))
     best, alone = chosen(found, score.floor, share), host.alone
@@ -170,6 +174,7 @@ def named_inside(
         alone,
         Named(state, tuple(rounds)),
         sentence,
+        host.counts,
     )
 
 
@@ -274,7 +279,7 @@ def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> 
     gain = gain_held_back(chain, state, score) - gain_held_back(chain, chain, score)
     better = "better" if gain > 0 else "worse"
     say(f"inside: on folds {abs(gain):.1f} {better} than what a chain has found")
-    more = len(chain.added) - len(state.added)
+    more = len(chain.added) - len(state.added) - inside.counts
     return gain + FURTHER * max(more, 0) >= PAYS
 
 

@@ -19,6 +19,7 @@ from hystbench.gap.thresholds import (
     DOUBT,
     FOREIGN,
     LOOSE,
+    MOST,
     SCALE,
     SLIGHT,
     UNNAMED_SHARE,
@@ -143,14 +144,11 @@ class Left:
 
     @property
     def is_new(self) -> bool:
-        """Whether more than noise differs from period to period, and little else is.
-
-        What repeats stands out of that no more than a gap that is none out of noise.
-        """
+        """Whether more than noise differs from period to period, and little repeats."""
         if self.unrepeated is None or self.unrepeated <= ABOVE_NOISE or self.far_off:
             return False
         repeats = self.all_after - self.unrepeated
-        return repeats <= ABOVE_NOISE * (1.0 + self.unrepeated)
+        return repeats <= max(ABOVE_NOISE, WORTH_A_WORD * self.unrepeated)
 
     @property
     def foreign(self) -> str:
@@ -279,8 +277,8 @@ def judge(
                 "base's own error, which can look like that"
             )
         return "unnamed", why
-    if much and unnamed.structured > LOOSE:
-        return "unnamed", unnamed.reason(unnamed_share)
+    if much and unnamed.trust(unnamed_share, of_base=True) < MOST:
+        return "unnamed", unnamed.reason(unnamed_share)  # likelier wrong than right
     if unnamed.stays > LOOSE:
         return "unnamed", (
             f"too much stays for a name: {left.sentence}, and most of it follows no "
