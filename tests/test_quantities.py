@@ -78,6 +78,17 @@ def test_a_dataset_tells_its_quantities(write_dataset):
     assert found.causality == "force to motion"
 
 
+@pytest.mark.parametrize(
+    ("column", "quantity"),
+    [("level_mm", "level"), ("Level 2", "level"), ("levelled_mm", "position")],
+)
+def test_a_length_is_a_level_where_its_column_says_so(write_dataset, column, quantity):
+    text = HEADER.replace("displacement_um", column) + "records: [{file: r.csv}]"
+    file = csv_text(TIME, U, Y).replace("displacement_um", column)
+    path = write_dataset({"r.csv": file}, text)
+    assert load_dataset(path).quantities.output == quantity
+
+
 def test_what_is_told_goes_before_the_unit(write_dataset):
     path = dataset_with(write_dataset, "unit: A}", "unit: A, quantity: force}")
     assert load_dataset(path).quantities == Quantities("force", "position")

@@ -204,6 +204,15 @@ def test_late_triggers_alone_are_no_gap_and_hold_out_records_have_theirs(tmp_pat
         assert (one / file).read_bytes() == (two / file).read_bytes()
 
 
+def test_another_range_of_a_record_is_a_gap_without_a_name():
+    """What doubles a response in one record is in no record."""
+    content = search("made", made(SWITCHED), rig(), declared=NOISE).content
+    assert (content["verdict"], content["effects"]) == ("unnamed", [])
+    assert content["reason"].startswith("a gain of some records' own takes 100 %")
+    (item,) = content["record_values"]["records"]
+    assert (item["name"], item["gain"]) == ("r3", pytest.approx(2, rel=0.01))
+
+
 def test_a_delay_that_all_share_hides_those_of_each():
     """With it, some records would be early; without, each is as late as it is."""
     start = state_of((block("gain", value=GAIN),), made(NOTHING))

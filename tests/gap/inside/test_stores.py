@@ -6,12 +6,16 @@ from itertools import islice
 import numpy as np
 import pytest
 
+from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.store import Store
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.inside.hosts import best_host, hosts
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.hosts import best_host, hosts, may_be_stores
 from hystbench.gap.inside.named_inside import chosen
 from hystbench.gap.inside.stores import stores
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 from tests.gap.inside_host import search
@@ -98,6 +102,45 @@ def test_overflow_is_named_and_goes_out_again():
 def test_linear_stores_need_no_effect():
     best, _ = found(tanks(root=False, height=np.inf))
     assert best.effects == ()
+
+
+def given_tank(record, **values):
+    """A given base: a transfer function of one pole, from how much to how much."""
+    block = TransferFunction(
+        numerator=(20.0,), denominator=(60.0, 1.0), start="settled", **values
+    )
+    return ModelState(
+        (block,), (record,), ScoredSamples.of((record,)), hold="zero-order"
+    )
+
+
+def test_stores_stand_for_a_given_tank_and_their_fit_counts_as_an_effect():
+    record = tanks(root=True, height=np.inf)
+    start = given_tank(record, hold="zero-order")
+    score = Score.plain(start.sample, NOISE**2)
+    one, *_ = hosts(start, Quantities(output="level"), False, score)
+    assert one.counts == 1
+    # Until something is named in it, it does what the base does.
+    (store,) = one.alone.chain
+    assert store.rate == pytest.approx(1 / 60, rel=1e-3)
+    assert one.alone.power(NOISE**2) == pytest.approx(start.power(NOISE**2), rel=0.02)
+    # What swings is no tank.
+    swings = TransferFunction(numerator=(20.0,), denominator=(60.0**2, 20.0, 1.0))
+    other = replace(start, chain=(swings,))
+    assert not may_be_stores(other)
+    assert may_be_stores(start)
+
+
+def test_an_outflow_goes_out_again_from_behind_a_delay():
+    """The places of its numbers move with the stores."""
+    best, _ = found(tanks(root=True, height=np.inf))
+    late = InputDelay(delay_s=DT)
+    state = best.state
+    moved = {k: k + 1 for k in range(len(state.chain))}
+    behind = state.rearranged((late, *state.chain), moved)
+    short = without_effect(behind, 0)
+    assert short.chain[0] == late
+    assert all(store.exponent == 1.0 for store in short.chain[1:])
 
 
 def test_an_output_that_is_negative_is_no_level():
