@@ -208,6 +208,8 @@ def own_values(
 
     as_simulated = costs([Own()] * len(pairs))
     best, chosen = float(as_simulated.sum()), None
+    if best - weight * len(pairs) * np.log(floor) < PAYS:
+        return NONE  # noise alone costs no less
     # With the most freedom first: what that does not gain, less cannot.
     for count in range(len(kinds), 0, -1):
         for some in combinations(kinds, count):
