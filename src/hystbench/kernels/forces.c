@@ -252,9 +252,6 @@ static double hb_miss(int count, const double *forces, const double *memory, dou
     return way - alone + gives * sum;
 }
 
-/* Share of a number that is lost in rounding when it is added to it. */
-#define HB_LOST 1.1e-16
-
 /* The way of a part, by the secant method: a force changes little over most ways, so that
  * three or four of its values are enough. A step of a billionth is the last: the next
  * one would be lost in rounding. So would any step that q does not feel. NaN where it
@@ -265,7 +262,7 @@ static double hb_way_near(int count, const double *forces, const double *memory,
     double x = alone, at_x = hb_miss(count, forces, memory, q, alone, gives, h, x);
     double step = -at_x;
     for (int i = 0; i < 6; i++) {
-        if (fabs(step) <= 1e-9 * fabs(x) + HB_LOST * fabs(q)) return x + step;
+        if (fabs(step) <= 1e-9 * fabs(x) + 1.1e-16 * fabs(q)) return x + step;
         if (!(fabs(x + step - alone) < fabs(alone))) return NAN;
         const double before = at_x;
         x += step;
@@ -319,7 +316,7 @@ static double hb_way_of(int count, const double *forces, const double *memory, d
             b = a, at_b = at_a;
         a = x, at_a = at_x;
         const double best = fabs(at_a) < fabs(at_b) ? a : b, apart = fabs(b - a);
-        const double near = 4e-16 * fabs(best) + 1e-16 * fabs(alone) + HB_LOST * fabs(q);
+        const double near = 4e-16 * fabs(best) + 1e-16 * fabs(alone) + 1.1e-16 * fabs(q);
         if (at_a == 0 || apart <= near) return at_a == 0 ? a : best;
         const double xi = (a - b) / (c - b);
         const double phi = at_c == at_b ? 1 : (at_a - at_b) / (at_c - at_b);
