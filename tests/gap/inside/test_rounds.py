@@ -47,6 +47,12 @@ def test_an_effect_that_does_little_alone_comes_behind_the_one_that_it_needs():
     assert [x.effect for x in first.ranking] == ["overflow", "outflow"]
     assert [x.effect for x in second.ranking] == ["outflow", "stop"]
     assert [x.gain for x in second.ranking] == [300.0, 50.0]
+    # In the place of the first one: what was tried beside the second, not alone.
+    (look,) = second.looks
+    assert (look.instead_of, look.beside) == ("overflow", ("outflow",))
+    assert look.taken == "overflow"
+    assert [x.effect for x in look.ranking] == ["overflow", "stop"]
+    assert [x.gain for x in look.ranking] == [490.0, 20.0]
 
 
 def test_where_one_order_of_three_was_tried_it_is_the_one_that_is_told():

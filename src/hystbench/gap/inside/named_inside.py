@@ -34,7 +34,7 @@ from hystbench.gap.inside.hosts import Host, hosts
 from hystbench.gap.inside.hypotheses import may_gain, singles, together
 from hystbench.gap.inside.laws import Times, laws_for
 from hystbench.gap.naming.add_effects import Named
-from hystbench.gap.naming.rounds import Candidate, Round
+from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
 from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
@@ -342,7 +342,8 @@ def chosen(
 def _rounds(start: ModelState, best: Fitted, found: Sequence[Fitted]) -> list[Round]:
     """Write how the effects were found as rounds: each beside those before it.
 
-    They come in the order of :func:`way_to`.
+    They come in the order of :func:`way_to`. What could stand in the place of an effect
+    that others came beside later is told by hypotheses with those others.
     """
     rounds: list[Round] = []
     before, now, already = start, found[0].score, frozenset[str]()
@@ -357,7 +358,30 @@ def _rounds(start: ModelState, best: Fitted, found: Sequence[Fitted]) -> list[Ro
         rounds.append(Round(before, now, tuple(ranking), True))
         before, now = taken.state, taken.score
         already = frozenset(taken.effects)
+    if len(rounds) > 1:
+        looks = tuple(
+            _look(one.ranking[0].effect, best, found, rounds[0].score)
+            for one in rounds[:-1]
+        )
+        rounds[-1] = replace(rounds[-1], looks=looks)
     return rounds
+
+
+def _look(
+    effect: str, best: Fitted, found: Sequence[Fitted], alone: float
+) -> SecondLook:
+    """Rank what was tried in the place of an effect beside the others of a model."""
+    others = frozenset(best.effects) - {effect}
+    without = (x.score for x in found if frozenset(x.effects) == others)
+    now = next(without, alone)
+    candidates = [
+        _candidate(item, others, now)
+        for item in found
+        if others < {*item.effects} and len(item.effects) == len(others) + 1
+    ]
+    ranking = sorted(candidates, key=lambda x: (x.effect != effect, x.score))
+    beside = tuple(x for x in best.effects if x != effect)
+    return SecondLook(effect, beside, tuple(ranking), effect)
 
 
 def _candidate(item: Fitted, already: frozenset[str], now: float) -> Candidate:
