@@ -32,10 +32,10 @@ effect whose size is not known."""
 SCALE = 4.0
 """One name is e times likelier than another: by less they cannot be told apart."""
 BY_CHANCE = 0.05
-"""Probability of what is still called chance."""
+"""Level of tests: what is likelier than this by chance counts as chance."""
 UNKNOWN = 1 / 1.96
-"""Standard error of an effect's size, as a share of it: zero is in the interval that
-leaves out no more than chance."""
+"""Standard error of an effect's size, as a share of it, from which its interval of 95 %
+holds zero."""
 DOUBT = 0.02
 """That none of the vocabulary is right though one fits well."""
 
@@ -56,16 +56,18 @@ the base and a model that leaves more on hold-out records.
 WORTH_A_WORD = 0.1
 """What is told beside the verdict: a third of the rms."""
 LOOSE = 0.25
-"""What matters in all: half of the rms.
+"""Too much to leave, or enough to matter: half of the rms.
 
-A name does not stand where more of the gap is left. Nor may an effect widen the gap by
-more, as it can where a wrong shape hides what it does; and a hysteresis of the wrong
-shape matters where it takes more. Where forces inside leave less, records have no
-numbers of their own. A curve between two filters, or a path that winds once more, must
-take as much.
+- A name does not stand where more than this of the gap is left.
+- An effect may not widen the gap by more, as it can where a wrong shape hides it.
+- A wrong shape of the hysteresis matters where it takes more.
+- Records get no numbers of their own where forces inside leave less.
+- A curve between two filters must take as much, and one more degree of a path on
+  hold-out records.
+- What differs from period to period is noise only if no more than this of it repeats.
 """
 MOST = 0.5
-"""The larger part."""
+"""More than half: the larger part, of a power or of a probability."""
 
 # With nothing named: whether there is a gap.
 
@@ -92,5 +94,5 @@ takes little of the whole."""
 # The vocabulary.
 
 SLIDES = 0.01
-"""Share of the reach within which a force gives way that is dry friction: it slides on
-nearly all of its way. What yields on a longer way is a hysteretic force."""
+"""A force that gives way within this share of the range of motion is dry friction: it
+slides on nearly all of its way. What yields on a longer way is a hysteretic force."""

@@ -67,7 +67,7 @@ def test_what_differs_between_periods_is_no_wrong_shape(after, differs):
     # As slight as only a wrong shape of the hysteresis leaves it.
     found = Left(0.0, 0.0, 100.0, after, 1e6, unrepeated=differs)
     word, reason = judge(found, False, 0.0)
-    repeats = after - differs > max(ABOVE_NOISE, 0.1 * differs)
+    repeats = after - differs > max(ABOVE_NOISE, 0.25 * differs)
     told = differs > (max(ABOVE_NOISE, FOREIGN * after) if repeats else ABOVE_NOISE)
     assert word == ("unnamed" if told else "no-gap")
     assert ("one period" in reason) == told

@@ -284,8 +284,8 @@ def with_built_in(
     return {**content, "built_in": told, "ladder": ladder}
 
 
-WORTH_A_WORD = 0.15
-"""Share of the gap's power that is gone on fit records alone, to be worth a word."""
+LESS = 0.15
+"""Share of the gap's power that is gone on fit records alone, to be told."""
 WORTH_A_REASON = 0.05
 """Share that what is new in every record takes, to be named as a reason."""
 
@@ -318,7 +318,7 @@ def _less(
 ) -> str:
     """Say by how much less is gone than was promised, and why."""
     names = [item["name"] for item in content["effects"]]
-    if not names or promised is None or kept is None or promised - kept < WORTH_A_WORD:
+    if not names or promised is None or kept is None or promised - kept < LESS:
         return ""
     sentence = (
         f"On the fit records {100 * promised:.0f} % of the gap's power above the noise "

@@ -148,7 +148,7 @@ class Left:
         if self.unrepeated is None or self.unrepeated <= ABOVE_NOISE or self.far_off:
             return False
         repeats = self.all_after - self.unrepeated
-        return repeats <= max(ABOVE_NOISE, WORTH_A_WORD * self.unrepeated)
+        return repeats <= max(ABOVE_NOISE, LOOSE * self.unrepeated)
 
     @property
     def foreign(self) -> str:
