@@ -28,6 +28,7 @@ from hystbench.gap.cache import records_digest
 from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.inside.laws import host_places
 from hystbench.gap.inside.modes import frequency_of, modes, shows_a_pole
 from hystbench.gap.inside.one_coordinate import (
     MOTIONS,
@@ -299,11 +300,7 @@ def own_mechanism(start: ModelState) -> ModelState | None:
     What drives the mechanism has no number of its own: it would be one of mass, damping
     and stiffness together.
     """
-    places = [
-        k
-        for k, block in enumerate(start.chain)
-        if isinstance(block, Mechanism | Impedance)
-    ]
+    places = host_places(start.chain)
     if len(places) != 1:
         return None
     if start.free:

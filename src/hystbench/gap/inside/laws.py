@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hystbench.blocks.attached_mass import AttachedMass
+from hystbench.blocks.base import Block
 from hystbench.blocks.force import Force, against
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.linear import LinearBlock
@@ -226,5 +227,10 @@ def _is_free(state: ModelState, place: int) -> bool:
 
 def host_of(state: ModelState) -> int:
     """Give the place of what forces are put inside of: the last host of the chain."""
+    return host_places(state.chain)[-1]
+
+
+def host_places(chain: Sequence[Block]) -> list[int]:
+    """Give the places of the blocks of a chain that forces may be put inside of."""
     hosts = (Mechanism, Impedance)
-    return max(k for k, block in enumerate(state.chain) if isinstance(block, hosts))
+    return [k for k, block in enumerate(chain) if isinstance(block, hosts)]

@@ -13,8 +13,6 @@ from itertools import pairwise
 import numpy as np
 
 from hystbench.blocks.attached import AttachedBlock
-from hystbench.blocks.impedance import Impedance
-from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
@@ -32,7 +30,7 @@ from hystbench.gap.inside.further_modes import (
 )
 from hystbench.gap.inside.hosts import Host, hosts
 from hystbench.gap.inside.hypotheses import may_gain, singles, together
-from hystbench.gap.inside.laws import Times, laws_for
+from hystbench.gap.inside.laws import Times, host_places, laws_for
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
 from hystbench.gap.naming.with_own_values import ROUNDS, on_records
@@ -348,14 +346,9 @@ def _rounds(start: ModelState, best: Fitted, found: Sequence[Fitted]) -> list[Ro
     rounds: list[Round] = []
     before, now, already = start, found[0].score, frozenset[str]()
     for taken in way_to(best, found):
-        candidates = [
-            _candidate(item, already, now)
-            for item in found
-            if already < {*item.effects} and len(item.effects) == len(already) + 1
-        ]
         (effect,) = {*taken.effects} - already
-        ranking = sorted(candidates, key=lambda x: (x.effect != effect, x.score))
-        rounds.append(Round(before, now, tuple(ranking), True))
+        ranking = _ranked(effect, already, found, now)
+        rounds.append(Round(before, now, ranking, True))
         before, now = taken.state, taken.score
         already = frozenset(taken.effects)
     if len(rounds) > 1:
@@ -374,14 +367,20 @@ def _look(
     others = frozenset(best.effects) - {effect}
     without = (x.score for x in found if frozenset(x.effects) == others)
     now = next(without, alone)
-    candidates = [
-        _candidate(item, others, now)
-        for item in found
-        if others < {*item.effects} and len(item.effects) == len(others) + 1
-    ]
-    ranking = sorted(candidates, key=lambda x: (x.effect != effect, x.score))
     beside = tuple(x for x in best.effects if x != effect)
-    return SecondLook(effect, beside, tuple(ranking), effect)
+    return SecondLook(effect, beside, _ranked(effect, others, found, now), effect)
+
+
+def _ranked(
+    effect: str, already: frozenset[str], found: Sequence[Fitted], now: float
+) -> tuple[Candidate, ...]:
+    """Rank hypotheses of one effect more than others; that with ``effect`` leads."""
+    candidates = (
+        _candidate(item, already, now)
+        for item in found
+        if already < {*item.effects} and len(item.effects) == len(already) + 1
+    )
+    return tuple(sorted(candidates, key=lambda x: (x.effect != effect, x.score)))
 
 
 def _candidate(item: Fitted, already: frozenset[str], now: float) -> Candidate:
@@ -399,7 +398,7 @@ def quantities_if_linear(base: Model, evidence: Evidence) -> Quantities | None:
     That is where the base may be linear, as nothing in it remembers a way, and where it
     holds one mechanism, with its own forces or without. None elsewhere.
     """
-    holds = sum(isinstance(block, Mechanism | Impedance) for block in base.chain) == 1
+    holds = len(host_places(base.chain)) == 1
     for block in base.chain:
         if holds and isinstance(block, AttachedBlock):
             continue

@@ -25,20 +25,19 @@ def size_follows(state: ModelState) -> bool:
     ----------
     state : ModelState
     """
-    outputs = state.exact
     signals: list[list[FloatArray]] = [[] for _ in range(4)]
-    for record, y in zip(state.records, outputs, strict=True):
+    for record, y in zip(state.records, state.exact, strict=True):
         u = record.u - np.mean(record.u)
         z = y - np.mean(y)
         for kind, own in zip(signals, (u, z, _rate(u), _rate(z)), strict=True):
             kind.append(own**2)
-    columns = [_about_means(state, state.sample.take(kind)) for kind in signals]
-    design = np.column_stack(columns)
+    taken = [state.sample.take(kind) for kind in signals]
+    design = np.column_stack([state.sample.about_means(x) for x in taken])
     sizes = np.sqrt(np.mean(design**2, axis=0))
-    whole = [np.mean(state.sample.take(kind)) for kind in signals]
-    varies = sizes > 1e-6 * np.array(whole)  # the square of a square wave does not
+    # The square of a square wave does not vary.
+    varies = sizes > 1e-6 * np.mean(taken, axis=1)
     design = design[:, varies] / sizes[varies]
-    squares = _about_means(state, state.residual**2)
+    squares = state.sample.about_means(state.residual**2)
     weights, _, rank, _ = np.linalg.lstsq(design, squares, rcond=1e-8)
     fitted = design @ weights
     rest = squares - fitted
@@ -52,11 +51,3 @@ def size_follows(state: ModelState) -> bool:
 
 def _rate(signal: FloatArray) -> FloatArray:
     return np.gradient(signal) if len(signal) > 1 else np.zeros_like(signal)
-
-
-def _about_means(state: ModelState, values: FloatArray) -> FloatArray:
-    """Take the mean of each record off."""
-    about = values.copy()
-    for part in state.sample.slices:
-        about[part] -= np.mean(about[part])
-    return about

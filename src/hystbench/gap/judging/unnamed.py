@@ -265,24 +265,16 @@ def _by_chance(
         other = table.of_another(columns, signal)
         return other.explained(own).noise - other.explained(every).noise
 
-    left = _about_its_mean(state, state.residual)
+    left = state.sample.about_means(state.residual)
     structured = explained(left)
     for k in range(1, SURROGATES + 1):
         if explained(_moved(state, left, k)) < structured:
             continue
-        output = _about_its_mean(state, state.measured - state.residual)
+        output = state.sample.about_means(state.measured - state.residual)
         output = _moved(state, output, k)
         stays = table.of_another(columns, output).explained(every).noise
         return max(structured, 0.0) if stays > MOST * np.mean(output**2) else 0.0
     return 0.0
-
-
-def _about_its_mean(state: ModelState, signal: FloatArray) -> FloatArray:
-    """Take the mean of each record off a signal."""
-    about = signal.copy()
-    for part in state.sample.slices:
-        about[part] -= np.mean(signal[part])
-    return about
 
 
 def _moved(state: ModelState, signal: FloatArray, k: int) -> FloatArray:

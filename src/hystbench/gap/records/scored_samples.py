@@ -103,6 +103,13 @@ class ScoredSamples:
             taken = [without(x, d) for x, d in zip(taken, self.of_start, strict=True)]
         return np.concatenate(taken)
 
+    def about_means(self, values: FloatArray) -> FloatArray:
+        """Take the mean of each record off, shape (scored samples,)."""
+        about = values.copy()
+        for part in self.slices:
+            about[part] -= np.mean(values[part])
+        return about
+
     def _lines(self, lengths: tuple[int, ...]) -> list[Line]:
         """Give between which samples of signals of such lengths the scored ones lie."""
         if lengths not in self._known_lines:
