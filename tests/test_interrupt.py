@@ -207,6 +207,30 @@ def test_files_that_take_their_places_do_so_together(tmp_path, start, at):
     assert files(tmp_path) == new
 
 
+TIDYING = """
+close = os.close
+def slowly(number):
+    close(number); at(); time.sleep(0.1)
+def run():
+    with whole_folder("out", ("*.txt",)) as fresh:
+        write_text(fresh / "b.txt", "new")
+        os.close = slowly
+    time.sleep(60)
+from hystbench.files import whole_folder, write_text
+cli.run = run
+cli.main()
+"""
+
+
+def test_a_folder_is_removed_to_its_end(tmp_path, start, at):
+    """Cut in two, the removal would close a number of a file that is closed already."""
+    write_text(tmp_path / "out" / "b.txt", "old")
+    process = start(BEGIN + TIDYING, tmp_path)
+    wait_for(at)
+    assert ended(process, signal.SIGINT) == "hystbench: interrupted\n"
+    assert files(tmp_path) == {"out/b.txt": b"new".hex()}
+
+
 NEVER = """
 def run():
     try: wait()

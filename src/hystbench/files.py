@@ -7,7 +7,6 @@ import hashlib
 import json
 import math
 import os
-import shutil
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -16,6 +15,7 @@ from typing import Any, TextIO
 
 from hystbench.errors import InputError
 from hystbench.interrupt import held
+from hystbench.scratch import remove_tree, scratch_folder
 from hystbench.written import (
     ENTRIES,
     TEMPORARY,
@@ -54,17 +54,16 @@ def atomic_path(path: str | Path, *, edit: bool = False) -> Iterator[Path]:
         check_free(final)
     final.parent.mkdir(parents=True, exist_ok=True)
     # Where the file will stand, so that to put it there is to rename it.
-    with _named({}, final):
-        place = Path(tempfile.mkdtemp(prefix=TEMPORARY, dir=final.parent))
-    try:
-        with _named({place: final.parent}, final):
-            yield place / final.name
-            if not edit:
-                check_free(final)
-                will_write(final, place / final.name)
-            (place / final.name).replace(final)
-    finally:
-        shutil.rmtree(place, ignore_errors=True)
+    with (
+        _named({}, final),
+        scratch_folder(TEMPORARY, final.parent) as place,
+        _named({place: final.parent}, final),
+    ):
+        yield place / final.name
+        if not edit:
+            check_free(final)
+            will_write(final, place / final.name)
+        (place / final.name).replace(final)
 
 
 @contextmanager
@@ -107,11 +106,11 @@ def whole_folder(folder: str | Path, ours: Sequence[str]) -> Iterator[Path]:
             yield new
             if final.exists():
                 _take_places(new, final, temporary / "old", ours)
-                shutil.rmtree(temporary / "old", ignore_errors=True)
+                remove_tree(temporary / "old")
             else:
                 new.rename(final)
     finally:
-        shutil.rmtree(new, ignore_errors=True)
+        remove_tree(new)
         with contextlib.suppress(OSError):
             temporary.rmdir()  # not where old files could not be put back
 
@@ -148,7 +147,7 @@ def _take_places(new: Path, final: Path, old: Path, ours: Sequence[str]) -> None
             for source, target in reversed(done):
                 if not source.exists():
                     target.rename(source)
-            shutil.rmtree(old, ignore_errors=True)
+            remove_tree(old)
             raise
         for name in stale:
             forget(final / name)

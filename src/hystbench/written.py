@@ -14,7 +14,6 @@ off, what is there is known.
 import hashlib
 import os
 import re
-import shutil
 import stat
 import tempfile
 from collections.abc import Iterable, Iterator
@@ -24,6 +23,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from hystbench.errors import InputError
+from hystbench.scratch import remove_tree
 
 ENTRIES = ".hystbench"
 """Folder of the entries, beside the files that they describe."""
@@ -134,7 +134,7 @@ def remove_below(folder: str | Path) -> list[Path]:
             continue  # seen to beside the files that it describes
         for name in folders:
             if name.startswith(TEMPORARY):
-                shutil.rmtree(here / name, ignore_errors=True)
+                remove_tree(here / name)
         links = [name for name in folders if (here / name).is_symlink()]
         left += [here / name for name in sorted(links)]
         for file in (here / name for name in sorted(files)):

@@ -6,7 +6,6 @@ import shlex
 import shutil
 import signal
 import subprocess
-import tempfile
 from contextlib import suppress
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from hystbench.blocks.parameter import number, text
 from hystbench.blocks.simulator import Simulator, digest_of
 from hystbench.errors import InputError, short
 from hystbench.record import FloatArray
+from hystbench.scratch import scratch_folder
 
 INPUT, OUTPUT, STEP = "{input}", "{output}", "{dt}"
 """What stands in a command line for the files that it reads and writes, and for dt."""
@@ -72,7 +72,7 @@ class Command(Simulator, name="command"):
         time = np.arange(len(z)) * dt
         rows = zip(time.tolist(), z.tolist(), strict=True)
         table = "\n".join([HEADER, *(f"{t!r},{u!r}" for t, u in rows)]) + "\n"
-        with tempfile.TemporaryDirectory() as folder:
+        with scratch_folder("command-") as folder:
             given, gives = Path(folder, "input.csv"), Path(folder, "output.csv")
             by_file = INPUT in self.command
             if by_file:

@@ -9,7 +9,6 @@ the contest goes on.
 import hashlib
 import json
 import shutil
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +18,7 @@ import hystbench
 from hystbench.entrants.process import OWN, preload, run
 from hystbench.errors import InputError
 from hystbench.files import atomic_path, digest, read_json, write_json
+from hystbench.scratch import scratch_folder
 from hystbench.written import ENTRIES, remove_below
 
 #: What may stand in a command, and what stands there when it runs.
@@ -112,7 +112,7 @@ def answer(
     dict
         As under ``cases`` of :func:`answer_all`.
     """
-    with tempfile.TemporaryDirectory(prefix="gap-") as place:
+    with scratch_folder("gap-") as place:
         given, out, here = (Path(place, name) for name in ("case", "out", "work"))
         shutil.copytree(case, given, ignore=shutil.ignore_patterns(ENTRIES))
         here.mkdir()

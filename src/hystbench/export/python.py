@@ -1,7 +1,6 @@
 """A model as a Python module, which compiles and calls the C beside it."""
 
 import importlib.util
-import tempfile
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -10,6 +9,7 @@ from hystbench.errors import InputError
 from hystbench.export import c
 from hystbench.export.described import Described
 from hystbench.export.names import filled
+from hystbench.scratch import scratch_folder
 
 WIDTH = 88
 
@@ -34,7 +34,7 @@ def loaded(model: Described) -> Any:
     InputError
         If there is no C compiler.
     """
-    with tempfile.TemporaryDirectory() as folder:
+    with scratch_folder("export-") as folder:
         for name, text in files(model).items():
             Path(folder, name).write_text(text, encoding="utf-8")
         place = Path(folder, f"{model.name}.py")

@@ -4,10 +4,8 @@ A case follows from its seed alone. So the judge makes it anew when the answers 
 there, and while solvers run there is no file of the truth at all.
 """
 
-import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 from hystbench.challenge.case import Case
@@ -19,6 +17,7 @@ from hystbench.challenge.writing import write_folder
 from hystbench.errors import InputError
 from hystbench.files import digest
 from hystbench.plain_fits import within_noise
+from hystbench.scratch import scratch_folder
 
 
 def judge_chunk(
@@ -59,8 +58,8 @@ def judge_chunk(
 
 
 def _digest(case: Case) -> str:
-    with tempfile.TemporaryDirectory() as place:
-        write_folder(case, Path(place))
+    with scratch_folder("case-") as place:
+        write_folder(case, place)
         return digest(place)
 
 
