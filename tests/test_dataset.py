@@ -146,6 +146,7 @@ def test_a_bad_file_is_told_in_one_line(write_dataset, text, expected):
         (("name: bench", "name: ../up"), "'../up'"),
         (("name: bench", "name: [bench"), "line"),
         (("column: displacement_um", "column: current_A"), "named twice"),
+        (("[{file: r.csv, use: fit}]", "{r: {file: r.csv}}"), "expected a list"),
     ],
 )
 def test_a_bad_header_is_told_in_one_line(write_dataset, change, expected):

@@ -52,11 +52,14 @@ def check_against_schema(content: Any, schema: Mapping[str, Any], place: str) ->
     if rule == "required":
         missing = next(key for key in error.validator_value if key not in value)
         raise InputError(f"{where}: expected the key {missing!r}")
-    expected = _EXPECTED.get(rule, error.message).format(error.validator_value)
     if rule == "type":
         one = error.validator_value
         types = [one] if isinstance(one, str) else one
         expected = " or ".join(_TYPES.get(each, each) for each in types)
+    elif rule in _EXPECTED:
+        expected = _EXPECTED[rule].format(error.validator_value)
+    else:
+        expected = error.message  # quotes the value, which may hold braces
     raise InputError(f"{where}: {short(value)}; expected {expected}{_hint(value)}")
 
 
