@@ -11,12 +11,12 @@ import numpy as np
 from hystbench.dataset import Dataset
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
+from hystbench.flat import flats
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.floor import Floor, noise_floor
 from hystbench.gap.records.scored_samples import Compared, rms
 from hystbench.inspection.base import loop_of_plays
 from hystbench.inspection.facts import Facts, facts_of, late
-from hystbench.inspection.flat import flats
 from hystbench.inspection.visible import SmallestSeen, seen_effects
 from hystbench.inspection.writing import entry_text
 from hystbench.model import Model

@@ -83,6 +83,49 @@ def test_a_stuck_output_is_named(tmp_path):
     assert "not stuck" in said
 
 
+@pytest.mark.parametrize("late", [0, 3])
+@pytest.mark.parametrize("coarse", [0.0, 0.05])
+@pytest.mark.parametrize("half_width", [0.1, 0.4])
+def test_a_play_that_rests_at_each_turn_is_no_fault(tmp_path, coarse, half_width, late):
+    """As an encoder of a stage with backlash reads it, without noise; also late."""
+    u = triangle(np.arange(1000) / 250)
+    y = 4 * np.pad(play(u, half_width), (late, 0))[: len(u)]
+    y = np.round(y / coarse) * coarse if coarse else y
+    found = load_evidence(write_folder(tmp_path / "d", pair(y, u)))
+    np.testing.assert_allclose(found.fit[0].y, y)
+
+
+@pytest.mark.parametrize("coarse", [0.0, 0.005])
+def test_a_mass_held_by_friction_is_no_fault(tmp_path, coarse):
+    """It comes to rest, and rests until the force is large enough."""
+    u = triangle(np.arange(1000) / 250)
+    y = np.cumsum(np.sign(u) * np.maximum(np.abs(u) - 0.3, 0.0)) / 10
+    y = np.round(y / coarse) * coarse if coarse else y
+    found = load_evidence(write_folder(tmp_path / "d", pair(y, u)))
+    assert found.fit[0].name in ("a", "a-1")  # or cut where it rests
+
+
+def test_an_output_that_holds_to_the_end_is_named(tmp_path):
+    """A loose plug, say: what it would have read in the end nobody knows."""
+    y = Y.copy()
+    y[850:] = y[850]
+    said = message(lambda: load_evidence(write_folder(tmp_path / "d", pair(y))))
+    assert "row 852: displacement is" in said
+    assert "not stuck" in said
+
+
+def triangle(periods):
+    return 2 / np.pi * np.arcsin(np.sin(2 * np.pi * periods))
+
+
+def play(u, half_width):
+    y, out = 0.0, np.empty_like(u)
+    for k, value in enumerate(u):
+        y = min(max(y, value - half_width), value + half_width)
+        out[k] = y
+    return out
+
+
 def saturated(coarse=0.05):
     """An output of a drive that saturates, in steps of a coarse converter."""
     return np.round(np.clip(Y, -4.0, 4.0) / coarse) * coarse

@@ -8,12 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from hystbench.errors import InputError
+from hystbench.flat import Stretch, repeats, stretches
 from hystbench.record import FloatArray, Record
 
 STUCK = 0.05
 """Share of a record, and of the input's range, over which no output stands still."""
 CLIPPED = 0.01
-"""The same share of the input's range at an end of the output, in many stretches."""
+"""Share of the input's range that it goes on while a clipped output stands."""
 COARSE = 3.0
 """Steps of a digitized output that it may be off by in a motion: it shows less."""
 APPROACH = 5
@@ -57,28 +58,38 @@ def check_usable(
 
 
 def _check_output(file: Path, record: Record) -> None:
-    """Refuse an output that stands still while the input moves."""
+    """Refuse an output that stands still while the input moves, by no physics.
+
+    A recorder that held its value lets go with a jump, or never. One that is clipped
+    comes and goes at a rate while the input goes on, beyond where the output stopped.
+    A play rests where the input turns, and a mass that friction holds comes to rest
+    first: both move off without a jump.
+    """
     y, u = record.y, record.u
-    changes = np.flatnonzero(np.diff(y) != 0)
-    edges = np.concatenate([[0], changes + 1, [len(y)]])
-    ends = (y.min(), y.max())
-    # Stretches over which the input goes on, by far more than the output tells.
-    starts = edges[:-1]
-    went = np.maximum.reduceat(u, starts) - np.minimum.reduceat(u, starts)
-    went = went / max(float(np.ptp(u)), 1e-300)
-    told = COARSE * _quantum(y) / max(float(np.ptp(y)), 1e-300)
-    flat = {
-        (int(edges[k]), int(edges[k + 1])): float(went[k])
-        for k in np.flatnonzero(went > max(CLIPPED, told))
-    }
-    clipped = [part for part in flat if y[part[0]] in ends]
-    stuck = [[part] for part, far in flat.items() if far > STUCK]
-    for stretches in (*stuck, clipped):
-        if sum(last - first for first, last in stretches) <= STUCK * len(y):
-            continue
-        first, last = stretches[0]
-        how = "clipped" if y[first] in ends else "stuck"
-        raise _refusal(file, record, "output", first, last, how)
+    reach = float(np.ptp(u))
+    for first, last in repeats(y, STUCK * len(y)):
+        moves = np.ptp(u[first:last]) > STUCK * reach
+        if moves and (last == len(y) or _jumps(y, last)):
+            raise _refusal(file, record, "output", first, last, "stuck")
+    told = max(CLIPPED, COARSE * _quantum(y) / float(np.ptp(y)))
+    clipped = [
+        (part.first, part.behind)
+        for part in stretches(y)
+        if part.kind == "clipped" and _goes_beyond(u, part) > told * reach
+    ]
+    if sum(last - first for first, last in clipped) > STUCK * len(y):
+        raise _refusal(file, record, "output", *clipped[0], "clipped")
+
+
+def _goes_beyond(u: FloatArray, part: Stretch) -> float:
+    """How far an input goes on past where it was when the output stopped.
+
+    In the way in which it went over half the stretch: what lags stops somewhat after
+    the input has turned.
+    """
+    near = max((part.behind - part.first) // 2, APPROACH)
+    came = np.sign(u[part.first] - u[max(part.first - near, 0)])
+    return float(np.max(came * (u[part.first : part.behind] - u[part.first])))
 
 
 def _refusal(
@@ -127,11 +138,9 @@ def _check_input(file: Path, record: Record) -> None:
 def _flat(u: FloatArray) -> list[tuple[int, int]]:
     """Give the stretches, long enough to matter, where an input that moved is still."""
     moves = np.abs(np.diff(u))
-    edges = np.concatenate([[0], np.flatnonzero(moves != 0) + 1, [len(u)]])
     usual = JUMP * float(np.median(moves[moves != 0]))
-    long = np.flatnonzero(np.diff(edges) >= max(STUCK * len(u), 2 * PARTS))
     found = []
-    for first, last in zip(edges[long].tolist(), edges[long + 1].tolist(), strict=True):
+    for first, last in repeats(u, max(STUCK * len(u), 2 * PARTS)):
         # The motion that stops; of a stretch from the start, the one that goes on.
         beside = (
             moves[last : last + APPROACH]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hystbench.inspection.flat import flats
+from hystbench.flat import flats
 from tests.inspection.made import sine
 
 

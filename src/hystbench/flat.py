@@ -1,0 +1,162 @@
+"""Where a channel repeats one value exactly: clipped at an end, or held and let go."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from hystbench.record import FloatArray
+
+APPROACH = 3
+"""Samples of a flat stretch, and of the motion on either side, that tell anything."""
+ALIKE = 1 / 3
+"""Of the faster flank's rate, that the slower one has: a backlash stands still behind
+its turn, where it came to rest, and not in the middle of it."""
+AT_ONCE = 2 / 3
+"""Of its rate over half as long as it is flat, what it has over the nearer half of
+that: half where it comes to rest, five sixths or more where a parabola is cut off."""
+BEYOND = 0.01
+"""Of the range, that the flanks of a flat stretch would have reached beyond it."""
+COARSE = 3.0
+"""Steps of a digitized channel: what is nearer is its own rounding."""
+
+
+@dataclass(frozen=True)
+class Flat:
+    """Stretches in which a channel repeats one value while it should move.
+
+    Parameters
+    ----------
+    kind : {"clipped", "stuck"}
+    value : float
+        Of the first stretch.
+    first : int
+        Its first sample, counted from 0.
+    samples, stretches : int
+        Of all stretches of this kind and, where clipped, of this end.
+    """
+
+    kind: Literal["clipped", "stuck"]
+    value: float
+    first: int
+    samples: int
+    stretches: int
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Samples in which a channel repeats one value while it should move.
+
+    Parameters
+    ----------
+    kind : {"clipped", "stuck"}
+    first, behind : int
+        Its first sample and the one behind its last, counted from 0.
+    """
+
+    kind: Literal["clipped", "stuck"]
+    first: int
+    behind: int
+
+
+def flats(values: FloatArray) -> list[Flat]:
+    """Find where a channel is clipped or stuck, by its own values alone.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+
+    Returns
+    -------
+    list of Flat
+        At most one for each end and one that is stuck.
+    """
+    found: dict[tuple[str, float], list[Stretch]] = {}
+    for part in stretches(values):
+        end = float(values[part.first]) if part.kind == "clipped" else 0.0
+        found.setdefault((part.kind, end), []).append(part)
+    return [
+        Flat(
+            parts[0].kind,
+            float(values[parts[0].first]),
+            parts[0].first,
+            sum(part.behind - part.first for part in parts),
+            len(parts),
+        )
+        for parts in found.values()
+    ]
+
+
+def stretches(values: FloatArray) -> list[Stretch]:
+    """Find each stretch in which a channel is clipped or stuck, by its values alone.
+
+    *Clipped*: it stands at its largest or smallest value, exactly, and came and went
+    so fast that a parabola through both flanks would have reached beyond by more than
+    a hundredth of the range: half the flat's length times a half of the slower
+    flank's rate. A smooth turn that is digitized stays within a step.
+
+    *Stuck*: it stands elsewhere, and jumps at the end at least half as far as the
+    motion before would have gone meanwhile.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+
+    Returns
+    -------
+    list of Stretch
+        In the order of the record.
+    """
+    moves = np.diff(values)
+    span = float(np.ptp(values))
+    if not span > 0:
+        return []
+    quantum = float(np.abs(moves[moves != 0]).min())
+    matters = max(BEYOND * span, COARSE * quantum)
+    ends = (float(values.min()), float(values.max()))
+    found: list[Stretch] = []
+    for first, behind in repeats(values, APPROACH):
+        length = behind - first
+        if first < APPROACH or behind + APPROACH > len(values):
+            continue
+        value = float(values[first])
+        before, stopped = _flank(values[first::-1], length, quantum)
+        after, left = _flank(values[behind - 1 :], length, quantum)
+        if value in ends:
+            outward = 1.0 if value == ends[1] else -1.0
+            slower, faster = sorted((-outward * before, -outward * after))
+            steep = slower * length / 4 > matters and slower > ALIKE * faster
+            if steep and stopped and left:
+                found.append(Stretch("clipped", first, behind))
+            continue
+        moved = bool((moves[first - APPROACH : first] != 0).all())
+        jump = (values[behind] - value) * -np.sign(before)
+        if moved and jump > max(abs(before) * length / 2, matters):
+            found.append(Stretch("stuck", first, behind))
+    return found
+
+
+def _flank(flank: FloatArray, length: int, quantum: float) -> tuple[float, bool]:
+    """Tell at what rate a channel leaves a flat, and whether at once: not from rest.
+
+    Over a quarter of the flat, in which steps of a digitized channel average out.
+    """
+    near = min(max(APPROACH, length // 4), len(flank) - 1)
+    over = float(flank[near] - flank[0]) / near
+    moving = flank[1 : 1 + max(APPROACH, length // 2)]  # it stopped between samples
+    half = len(moving) // 2
+    whole, within = (abs(moving[k] - moving[0]) / k for k in (len(moving) - 1, half))
+    return over, bool(within + quantum / half > AT_ONCE * whole)
+
+
+def repeats(values: FloatArray, least: float) -> list[tuple[int, int]]:
+    """Give the stretches of one value that are at least so many samples long.
+
+    Returns
+    -------
+    list of (int, int)
+        Of each the first sample and the one behind the last.
+    """
+    edges = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1, [len(values)]])
+    long = np.flatnonzero(np.diff(edges) >= least)
+    return list(zip(edges[long].tolist(), edges[long + 1].tolist(), strict=True))
