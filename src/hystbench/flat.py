@@ -44,7 +44,7 @@ class Flat:
 
 
 @dataclass(frozen=True)
-class Stretch:
+class FlatPart:
     """Samples in which a channel repeats one value while it should move.
 
     Parameters
@@ -71,7 +71,7 @@ def flats(values: FloatArray) -> list[Flat]:
     list of Flat
         At most one for each end and one that is stuck.
     """
-    found: dict[tuple[str, float], list[Stretch]] = {}
+    found: dict[tuple[str, float], list[FlatPart]] = {}
     for part in stretches(values):
         end = float(values[part.first]) if part.kind == "clipped" else 0.0
         found.setdefault((part.kind, end), []).append(part)
@@ -87,7 +87,7 @@ def flats(values: FloatArray) -> list[Flat]:
     ]
 
 
-def stretches(values: FloatArray) -> list[Stretch]:
+def stretches(values: FloatArray) -> list[FlatPart]:
     """Find each stretch in which a channel is clipped or stuck, by its values alone.
 
     *Clipped*: it stands at its largest or smallest value, exactly, and came and went
@@ -104,7 +104,7 @@ def stretches(values: FloatArray) -> list[Stretch]:
 
     Returns
     -------
-    list of Stretch
+    list of FlatPart
         In the order of the record.
     """
     moves = np.diff(values)
@@ -114,7 +114,7 @@ def stretches(values: FloatArray) -> list[Stretch]:
     quantum = float(np.abs(moves[moves != 0]).min())
     matters = max(BEYOND * span, COARSE * quantum)
     ends = (float(values.min()), float(values.max()))
-    found: list[Stretch] = []
+    found: list[FlatPart] = []
     for first, behind in repeats(values, APPROACH):
         length = behind - first
         if first < APPROACH or behind + APPROACH > len(values):
@@ -127,12 +127,12 @@ def stretches(values: FloatArray) -> list[Stretch]:
             slower, faster = sorted((-outward * before, -outward * after))
             steep = slower * length / 4 > matters and slower > ALIKE * faster
             if steep and stopped and left:
-                found.append(Stretch("clipped", first, behind))
+                found.append(FlatPart("clipped", first, behind))
             continue
         moved = bool((moves[first - APPROACH : first] != 0).all())
         jump = (values[behind] - value) * -np.sign(before)
         if moved and jump > max(abs(before) * length / 2, matters):
-            found.append(Stretch("stuck", first, behind))
+            found.append(FlatPart("stuck", first, behind))
     return found
 
 

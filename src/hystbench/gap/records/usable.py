@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.flat import Stretch, repeats, stretches
+from hystbench.flat import FlatPart, repeats, stretches
 from hystbench.record import FloatArray, Record
 
 STUCK = 0.05
@@ -81,7 +81,7 @@ def _check_output(file: Path, record: Record) -> None:
         raise _refusal(file, record, "output", *clipped[0], "clipped")
 
 
-def _goes_beyond(u: FloatArray, part: Stretch) -> float:
+def _goes_beyond(u: FloatArray, part: FlatPart) -> float:
     """How far an input goes on past where it was when the output stopped.
 
     In the way in which it went over half the stretch: what lags stops somewhat after
