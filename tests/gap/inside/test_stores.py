@@ -10,6 +10,7 @@ from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.store import Store
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.edit_chain import without_effect
+from hystbench.gap.fitting.least_squares import Fitted, judged
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.hosts import best_host, hosts, may_be_stores
@@ -97,6 +98,22 @@ def test_overflow_is_named_and_goes_out_again():
     assert all(store.height > 1e20 for store in short.chain)
     assert not {free.parameter for free in short.free} & {"height", "caught"}
     assert short.added == ()
+
+
+def test_a_given_store_spills_below_what_it_would_rise_to_without():
+    """A base without the overflow rises far beyond what was ever measured."""
+    tank = Store(gain=20.0, rate=0.5, exponent=0.5, start="settled", hold="zero-order")
+    spills = replace(tank, height=900.0)
+    u = 0.6 + 0.3 * np.sin(np.arange(COUNT) / 60.0)
+    high, y = (block.simulate(u, u, DT) for block in (tank, spills))
+    assert high.max() > 1.2 * y.max()
+    noise = np.random.default_rng(5).standard_normal(COUNT)
+    record = Record("run", DT, u, y + noise, *CHANNELS, "measured")
+    given = ModelState((tank,), (record,), ScoredSamples.of((record,)))
+    score = Score.plain(given.sample, 1.0)
+    best = chosen(search(Fitted(given, judged(given, score)), score), 1.0)
+    assert best.effects == ("overflow",)
+    assert best.state.chain[0].height == pytest.approx(900.0, abs=1.0)
 
 
 def test_linear_stores_need_no_effect():

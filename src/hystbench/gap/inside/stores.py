@@ -130,13 +130,21 @@ def in_other_order(state: ModelState) -> Iterator[ModelState]:
 
 
 def how_it_fills(state: ModelState) -> Filled:
-    """Look how high the stores of a chain are filled on its records."""
+    """Look how high the stores of a chain are filled on its records.
+
+    A level that is measured rises no higher than was measured: a model without the
+    overflow rises beyond.
+    """
+    measured = max(float(record.y.max()) for record in state.records)
     tops = []
     for k, block in enumerate(state.chain):
         if isinstance(block, Store):
             level = replace(block, output="level")
             signals = state.simulation.tail(k, [level])
-            tops.append((k, block, max(float(z.max()) for z in signals)))
+            top = max(float(z.max()) for z in signals)
+            if k == len(state.chain) - 1 and block.output == "level":
+                top = min(top, measured)
+            tops.append((k, block, top))
     return Filled(tuple(tops))
 
 
