@@ -1,7 +1,7 @@
 """Block ``mechanism``: one coordinate whose forces act inside the dynamics."""
 
 from functools import lru_cache
-from math import ceil, sqrt
+from math import ceil, pi, sqrt
 from typing import Any
 
 import numpy as np
@@ -200,7 +200,7 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
         linear, stiff = (
             self._rate(k) for k in (self.stiffness, self.stiffness + contact)
         )
-        swings = max(linear, *(item.swings for item in forces))
+        swings = min(max(linear, *(item.swings for item in forces)), pi / dt)
         smooth, met = (ceil(pieces * dt * rate / PHASE) for rate in (swings, stiff))
         return max(1, min(smooth, MOST), min(met, CONTACT))
 

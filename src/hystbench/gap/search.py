@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache, partial
 
 import numpy as np
 
@@ -76,16 +78,19 @@ def search(
         closed = (*NOT_IN_WINDOWS, *(() if quantities else (OF_THE_PLACE,)))
         offered = tuple(name for name in offered if name not in closed)
     start, floor = start_state(records, base, hold, declared, offered)
-    first, chain, inside, own = start, None, None, NONE
-    most = np.inf
+    first, inside, own = start, None, NONE
+    identified = is_identified(base)
+    in_a_chain = cache(partial(add_effects, start, floor.rms, asked))
+
+    def most() -> float:
+        return _most_inside(in_a_chain(), floor)
+
     halves = bool(places_between_halves(start.simulation))
     # Two halves say themselves that there is a curve between two filters: a chain. And
     # a base that was given has to be beaten by forces, also where they leave little.
-    if halves or (quantities is not None and not is_identified(base)):
-        chain = add_effects(start, floor.rms, asked)
-        little = halves and _why_enough(start, chain.state, floor, share)
-        most = _most_inside(chain, floor)
-        if quantities and (little or most < 1):
+    if halves or (quantities is not None and not identified):
+        little = halves and _why_enough(start, in_a_chain().state, floor, share)
+        if quantities and (little or most() < 1):
             say("no force could gain what matters, so none is tried inside")
             quantities = None
     if quantities is not None:
@@ -101,13 +106,13 @@ def search(
         inside = replace(inside, named=beside)
     enough = ""
     # A base that was given is re-tuned where it is a host: that may stand for a chain.
-    if inside is not None and is_identified(base):
+    if inside is not None and identified:
         enough = _why_enough(inside.start, inside.named.state, floor, share)
     if enough:
         say(f"inside: {enough}, so no chain of effects is tried")
     else:
-        if chain is None or start is not first:
-            chain = add_effects(start, floor.rms, asked)
+        same = start is first
+        chain = in_a_chain() if same else add_effects(start, floor.rms, asked)
         named, theirs = chain, own
         if inside is not None and not beats(inside, named, floor.rms, say):
             inside = None
@@ -132,7 +137,7 @@ def _with_forces(
     quantities: Quantities,
     declared: float | None,
     asked: Asked,
-    most: float,
+    most: Callable[[], float],
 ) -> tuple[ModelState, Floor, Inside | None, OwnValues]:
     """Look for forces inside the dynamics, beside what is a record's own.
 

@@ -80,7 +80,7 @@ def named_inside(
     quantities: Quantities,
     identified: bool,
     asked: Asked = USUAL,
-    most: float = np.inf,
+    most: Callable[[], float] = lambda: np.inf,
 ) -> Inside | None:
     """Find effects inside the dynamics; None where no force pays.
 
@@ -99,8 +99,10 @@ def named_inside(
         Whether the base is the linear model that was identified from the records.
     asked : Asked
         A further effect that takes less than may stay unnamed does not matter.
-    most : float
-        Effects that are looked for at most; known numbers that are re-tuned are one.
+    most : callable
+        Tells how many effects are looked for at most; known numbers that are re-tuned
+        are one. The first model of one coordinate that was identified is tried without
+        asking: it takes less time than a chain, and is often enough.
     """
     say, share = asked.say, asked.unnamed_share
     fewer = on_fewer(start, quantities)
@@ -108,17 +110,20 @@ def named_inside(
     turns = start.records[0].output.unit.startswith("rad")
     times = Times.of(start.records, identified)
     offer = partial(laws_for, turns=turns, offered=start.offered, times=times)
-    tried = []
+    tried: list[tuple[Host, list[Fitted]]] = []
+    enough = False
     for host in hosts(fewer, quantities, identified, score):
-        if most - host.counts < 1:
+        if (tried or not identified) and most() - host.counts < 1:
             continue
         say(f"inside: {host.words}; forces are tried in it")
         found = singles(host.fitted, offer, score, say, host.other)
         tried.append((host, found))
-        if not may_gain(chosen(found, score.floor, share), score):
+        enough = not may_gain(chosen(found, score.floor, share), score)
+        if enough:
             break  # no other host could do better
     if not tried:
         return None
+    limit = np.inf if enough else most()
 
     # Together forces are tried in the host that does best with one.
     def charge_of(host: Host, found: Sequence[Fitted]) -> float:
@@ -130,7 +135,7 @@ def named_inside(
     cheaper = [item for item in tried if item[0].charge < host.charge]
 
     def with_more(host: Host, found: Sequence[Fitted]) -> tuple[Host, list[Fitted]]:
-        return host, together(found, offer, score, say, most - host.counts)
+        return host, together(found, offer, score, say, limit - host.counts)
 
     full = [with_more(*item) for item in cheaper]
     known = [chosen(own, score.floor, share) for _, own in full]
