@@ -18,7 +18,7 @@ from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.refit import added, finished
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.fitting.tried import Seen, on_all_records, seen
+from hystbench.gap.fitting.tried import Seen, Tried, on_all_records, seen
 from hystbench.gap.fitting.variant_search import Trial, fine
 from hystbench.gap.naming.rivals import (
     beside_their_own_shapes,
@@ -95,11 +95,7 @@ def rank(
         return tuple(declined)
     best = min(trial.score for _, trial in found)
     least = max(_near(now - best), worth)
-    refined = [
-        fine(attempt, trial) if now - trial.score > least else trial
-        for attempt, trial in found
-    ]
-    refined.sort(key=lambda trial: trial.score)
+    refined = _refined(found, now, least)
     of_effect: dict[str, Trial] = {}
     tested: dict[str, list[TriedVariant]] = {}
     for trial in refined:
@@ -169,6 +165,25 @@ def rank(
 def _near(gain: float) -> float:
     """Give the least gain on a grid that a search may bring up to so much."""
     return gain - max(NEAR, gain * STILL)
+
+
+def _refined(found: Sequence[Tried], now: float, least: float) -> list[Trial]:
+    """Search around the best points of grids that gain enough; the least score first.
+
+    Of the effect that then does best, the other laws too, whatever they gain: a grid's
+    step may miss most of what the right one does.
+    """
+    near = [now - trial.score > least for _, trial in found]
+    every = [
+        fine(attempt, trial) if enough else trial
+        for (attempt, trial), enough in zip(found, near, strict=True)
+    ]
+    best = min(every, key=lambda trial: trial.score).variant
+    for k, (attempt, trial) in enumerate(found):
+        own = attempt.variant
+        if not near[k] and own.effect == best.effect and own.form != best.form:
+            every[k] = fine(attempt, trial)
+    return sorted(every, key=lambda trial: trial.score)
 
 
 def _tested(trial: Trial) -> TriedVariant:
