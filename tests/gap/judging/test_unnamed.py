@@ -100,6 +100,23 @@ def test_the_right_name_owns_all_that_it_leaves():
         assert found.factors == pytest.approx([1.0, 1.0], abs=0.1)
 
 
+def test_other_forms_of_a_name_own_nothing_in_sums_of_tens_of_times_each():
+    """A notch is no lag, though lags of other times, added and subtracted, span it."""
+    w = 2 * np.pi * 30
+    notch = block(
+        "transfer-function",
+        numerator=(1.0, 0.2 * w, w * w),
+        denominator=(1.0, 1.0 * w, w * w),
+    )
+    given = with_output(
+        lambda k, one: 12.0 * (notch.simulate(one.u, one.u, one.dt) - one.u)
+    )
+    lags = [lagging(given, tau) for tau in np.geomspace(1e-3, 1e-2, 30)]
+    start, best = min(lags, key=lambda item: item[1].power(NOISE**2))
+    stays = best.power(NOISE**2) / start.power(NOISE**2)
+    assert what_is_unnamed(start, best, NOISE).structured > stays / 2
+
+
 @pytest.mark.parametrize("spread", [0.3, -0.3])
 def test_a_strength_that_differs_between_records_is_found_with_its_factors(spread):
     # A signal of every record that the model has as 12 u (1 + 0.1 strength).

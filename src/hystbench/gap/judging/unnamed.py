@@ -294,8 +294,9 @@ def winding(record: Record) -> int:
 def owned(state: ModelState) -> dict[str, FloatArray]:
     """Give the columns that the named effects and the base may own, by group.
 
-    Of the base a wrong shape of its hysteresis; of the effects other numbers and forms;
-    a constant and a gain; of what is new in every record its own columns.
+    Of the base a wrong shape of its hysteresis; of the effects other numbers, as far as
+    slopes tell, while other forms were tried by name; a constant and a gain; of what is
+    new in every record its own columns.
     """
     rows = len(state.sample)
     simulated = state.measured - state.residual
@@ -303,7 +304,6 @@ def owned(state: ModelState) -> dict[str, FloatArray]:
         "shape": state.wrong_shape,
         "mixed shape": orthonormal(products(state.simulation, state.sample)),
         "numbers": state.tangents,
-        "forms": state.other_forms,
         "constant and gain": np.column_stack([np.ones(rows), simulated]),
         "beside": state.beside_columns,
     }
