@@ -34,7 +34,14 @@ from hystbench.gap.judging.effect_rows import (
 from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.judging.size_of_noise import size_follows
 from hystbench.gap.judging.unnamed import Unnamed, what_is_unnamed
-from hystbench.gap.judging.verdict import Left, Verdict, judge, what_is_left, what_mends
+from hystbench.gap.judging.verdict import (
+    Left,
+    Verdict,
+    judge,
+    likelier_wrong,
+    what_is_left,
+    what_mends,
+)
 from hystbench.gap.locate import curves, locate
 from hystbench.gap.locate.level import beside_level
 from hystbench.gap.locate.view import LEAST_SHARE
@@ -110,6 +117,9 @@ def judge_and_tell(
         unrepeated=unrepeated(after, floor.rms),
     )
     found = _judged(start, named, left, floor, before, own, share)
+    effects = _effects(named, model, left, floor, found.trust)
+    if found.verdict == "named" and (doubt := likelier_wrong(effects)):
+        found = found._replace(verdict="unnamed", reason=f"{doubt}; {found.reason}")
     ladder = rungs(start, named)
     contributed = contributions(ladder) if found.verdict == "named" else ()
     where = locate(before, floor, contributed)
@@ -126,7 +136,7 @@ def judge_and_tell(
         "unit": unit,
         "verdict": found.verdict,
         "reason": reason,
-        "effects": _effects(named, model, left, floor, found.trust),
+        "effects": effects,
         "fit": _fit(start, state, floor)
         | {
             "left": left.share,

@@ -14,6 +14,7 @@ from hystbench.gap.judging.verdict import (
     confidence,
     error_of,
     judge,
+    likelier_wrong,
     what_is_left,
     what_mends,
 )
@@ -230,6 +231,24 @@ def test_two_that_score_alike_share_the_confidence():
     )
     both = [confidence(item, [one, other], left(0.0)) for item in (one, other)]
     assert both[0] == both[1] <= 0.5
+
+
+@pytest.mark.parametrize(
+    ("told", "stands"),
+    [
+        ([("sensor-lag", 0.49, ["drive-lag"])], True),
+        ([("sensor-lag", 0.49, [])], False),
+        ([("drive-lag", 0.1, []), ("sensor-lag", 0.1, [])], False),
+        ([("creep", 0.9, []), ("drift", 0.3, [])], True),
+        ([], True),
+    ],
+)
+def test_names_stand_where_one_is_likelier_right_than_wrong(told, stands):
+    keys = ("name", "confidence", "cannot_be_told_from")
+    effects = [dict(zip(keys, item, strict=True)) for item in told]
+    doubt = likelier_wrong(effects)
+    assert (doubt == "") == stands
+    assert all(item[0] in doubt for item in told) or stands
 
 
 def test_the_set_of_those_that_cannot_be_told_apart():

@@ -335,6 +335,23 @@ def confidence(
     return min((1.0 - DOUBT) * explained / (1.0 + odds), is_anything(errors))
 
 
+def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
+    """Say that no name is likelier right than wrong; or nothing.
+
+    A name counts with those that it cannot be told from: one of them is right.
+
+    Parameters
+    ----------
+    effects : sequence of mapping
+        As gap.json holds them.
+    """
+    sure = [x["confidence"] * (1 + len(x["cannot_be_told_from"])) for x in effects]
+    if max(sure, default=1.0) >= MOST:
+        return ""
+    told = " and ".join(f"{x['name']} {x['confidence']:.2f}" for x in effects)
+    return f"no name is likelier right than wrong: {told}"
+
+
 def is_anything(errors: float) -> float:
     """Give the probability that a number is anything but nothing.
 
