@@ -172,6 +172,23 @@ def test_a_simulator_that_remembers_may_be_of_a_wrong_shape(kind, module):
         next(effects()["hysteresis"].variants(simulation))
 
 
+def test_a_bias_of_the_field_is_looked_for_before_a_loop_that_is_not_seen(module):
+    name = module(FUNCTIONS)
+    base, _ = given_base(f"{name}:loose", Evidence("rig", records(), ()))
+    given = tuple(
+        replace(
+            item,
+            y=__import__(name).loose(2 * item.u + 0.25, item.dt)
+            + 1e-3 * np.random.default_rng(k).standard_normal(len(item)),
+        )
+        for k, item in enumerate(records())
+    )
+    given = tuple(replace(item, u=2 * item.u) for item in given)
+    (effect,) = search("rig", given, base, declared=1e-3).content["effects"]
+    assert effect["name"] == "asymmetry"
+    assert effect["parameters"]["bias"]["value"] == pytest.approx(0.25, abs=0.01)
+
+
 def test_of_a_stored_output_it_is_not_known():
     made = record(sine(3.0), sine(3.0), simulated=2 * sine(3.0))
     base, _ = given_base("column", Evidence("made", (made,), (), simulated_column="s"))

@@ -37,11 +37,14 @@ class Asymmetry(Effect):
         """
         for place in (simulation.behind_hysteresis, *places_between_halves(simulation)):
             yield self._square(simulation, place, "square")
-        if simulation.hysteresis is not None:
-            yield self._bias(simulation, simulation.hysteresis)
-            yield self._square(simulation, simulation.hysteresis, "square of the field")
-            yield self._butterfly(simulation, simulation.hysteresis)
-        if simulation.loop is None:
+        known, loop = simulation.hysteresis, simulation.loop
+        start = loop if known is None else known
+        if start is not None:
+            yield self._bias(simulation, start)
+            yield self._square(simulation, start, "square of the field")
+        if known is not None:
+            yield self._butterfly(simulation, known)
+        if loop is None:
             yield from self._exponential(simulation)
 
     def around(self, passed: Passed) -> Iterator[Law]:

@@ -46,7 +46,7 @@ class Creep(Effect):
 
             found = self.inserted(
                 simulation,
-                simulation.behind_material,
+                simulation.behind_linear,
                 values,
                 form="one element" if count == 1 else "three elements",
                 grids={
@@ -68,7 +68,7 @@ class Creep(Effect):
         """
         found = self.inserted(
             simulation,
-            simulation.behind_material,
+            simulation.behind_linear,
             lambda given: {"power": power, **given},
             law="logarithmic-creep",
             form=form,

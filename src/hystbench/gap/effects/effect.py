@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
@@ -143,6 +144,8 @@ class Effect(ABC):
         between, rest = simulation.chain[start:place], simulation.chain[place:]
 
         hold = simulation.hold_at(place) if issubclass(block, HeldBlock) else None
+        if hold == "zero-order" and issubclass(block, LinearBlock) and block.smooths:
+            rest = _on_straight_lines(rest)
 
         def build(given: Values) -> tuple[Block, ...]:
             own = values(given)
@@ -267,6 +270,17 @@ class Effect(ABC):
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
         """Give the block of a signal beside, from its amplitudes (records, k)."""
         raise NotImplementedError
+
+
+def _on_straight_lines(blocks: Sequence[Block]) -> tuple[Block, ...]:
+    """Give blocks behind one that smooths a staircase: none comes to them any more."""
+    found = list(blocks)
+    for k, block in enumerate(found):
+        if isinstance(block, HeldBlock) and block.hold == "zero-order":
+            found[k] = replace(block, hold="linear")
+            if block.smooths:
+                break
+    return tuple(found)
 
 
 def never_at_rest(signals: Sequence[FloatArray]) -> bool:

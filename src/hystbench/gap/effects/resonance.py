@@ -44,7 +44,7 @@ class Resonance(Effect):
         grid = logarithmic(low, high, 6)
         yield self.inserted(
             simulation,
-            simulation.behind_material,
+            simulation.behind_linear,
             grids={
                 "frequency_hz": np.union1d(grid, peaks(simulation, low, high)),
                 "damping_ratio": np.array([0.01, 0.15]),
@@ -80,7 +80,7 @@ def peaks(simulation: Simulation, low: float, high: float) -> FloatArray:
     x = np.exp(width * np.arange(first, last + 1))
     mode = 1 / (1 - x**2 + 2j * LIGHT * x) - 1
     bins = np.zeros((3, (count - 1) * BINS + len(x)))
-    inputs = simulation.before[simulation.behind_material]
+    inputs = simulation.before[simulation.behind_linear]
     for record, v, simulated in zip(
         simulation.records, inputs, simulation.output, strict=True
     ):

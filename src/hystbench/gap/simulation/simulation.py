@@ -219,6 +219,20 @@ class Simulation:
         return max(bends, default=0)
 
     @property
+    def behind_linear(self) -> int:
+        """Place behind the material for what is linear and lets its input pass.
+
+        Linear blocks commute. But before one of them what passes of a staircase is a
+        staircase still, and the rest is smooth: so then it is behind them.
+        """
+        k = self.behind_material
+        while self.hold == "zero-order" and k < len(self.chain):
+            if not isinstance(self.chain[k], LinearBlock):
+                break
+            k += 1
+        return k
+
+    @property
     def behind_mechanics(self) -> int:
         """Place behind the last block that is not the sensor's."""
         k = len(self.chain)

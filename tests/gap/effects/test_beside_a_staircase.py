@@ -1,0 +1,64 @@
+"""Linear effects beside a transfer function whose input is a staircase.
+
+Behind the first of two linear blocks it is none any more: to take it for one there is
+to be half a sample late. Of a sampling interval far below all times straight lines
+miss little. The truth is one transfer function, exact for a staircase.
+"""
+
+import numpy as np
+import pytest
+
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.model import Model
+from hystbench.record import Channel, Record
+from tests.gap.searched import search
+
+DT, COUNT, NOISE = 1e-3, 3000, 1e-3
+COMMAND, POSITION = Channel("command", "1"), Channel("position", "1")
+PLANT = TransferFunction(
+    numerator=(1.0,), denominator=(1.3e-4, 6.8e-3, 1.0), hold="zero-order"
+)
+W = 2 * np.pi * 31.0
+
+
+def answer(numerator, denominator):
+    random = np.random.default_rng(4)
+    whole = TransferFunction(
+        numerator=tuple(np.polymul(PLANT.numerator, numerator)),
+        denominator=tuple(np.polymul(PLANT.denominator, denominator)),
+        hold="zero-order",
+    )
+    given = []
+    for k in range(2):
+        u = np.repeat(random.uniform(-1.0, 1.0, COUNT // 5), 5)
+        y = whole.simulate(u, u, DT) + NOISE * random.standard_normal(COUNT)
+        given.append(Record(f"run-{k}", DT, u, y, COMMAND, POSITION, "measured", "fit"))
+    base = Model("stage", COMMAND, POSITION, (PLANT,))
+    return search("stage", tuple(given), base, "zero-order").content
+
+
+def named(content):
+    (effect,) = content["effects"]
+    found = effect["parameters"]
+    return effect["name"], {name: item["value"] for name, item in found.items()}
+
+
+def test_a_lag_has_its_time():
+    content = answer((1.0,), (8e-3, 1.0))
+    (name, found), (effect,) = named(content), content["effects"]
+    # Before the plant or behind it, it does the same.
+    both = {name, *effect["cannot_be_told_from"]}
+    assert both == {"drive-lag", "sensor-lag"}
+    assert found["time_constant_s"] == pytest.approx(8e-3, rel=0.01)
+
+
+def test_a_mode_has_its_frequency_and_its_share():
+    p, zeta = 0.15, 0.02
+    down = np.array([1.0, 2 * zeta * W, W * W])
+    up = (1 - p) * down + p * np.array([0.0, 0.0, W * W])
+    content = answer(tuple(up), tuple(down))
+    name, found = named(content)
+    assert (content["verdict"], name) == ("named", "resonance")
+    assert found["frequency_hz"] == pytest.approx(31.0, rel=1e-3)
+    assert found["damping_ratio"] == pytest.approx(zeta, rel=0.05)
+    assert found["participation"] == pytest.approx(p, rel=0.02)
