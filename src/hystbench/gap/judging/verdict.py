@@ -336,9 +336,11 @@ def confidence(
 
 
 def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
-    """Say that no name is likelier right than wrong; or nothing.
+    """Say that of several names none is likelier right than wrong; or nothing.
 
-    A name counts with those that it cannot be told from: one of them is right.
+    Then they stand in for each other, and for what they are together. One name alone
+    is what explains the gap best, however little its numbers are known. A name counts
+    with those that it cannot be told from: one of them is right.
 
     Parameters
     ----------
@@ -346,7 +348,7 @@ def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
         As gap.json holds them.
     """
     sure = [x["confidence"] * (1 + len(x["cannot_be_told_from"])) for x in effects]
-    if max(sure, default=1.0) >= MOST:
+    if len(sure) < 2 or max(sure) >= MOST:
         return ""
     told = " and ".join(f"{x['name']} {x['confidence']:.2f}" for x in effects)
     return f"no name is likelier right than wrong: {told}"
