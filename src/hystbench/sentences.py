@@ -14,6 +14,13 @@ def percent(share: float) -> str:
     return f"{100 * share:.0f} %"
 
 
+def finely(share: float) -> str:
+    """Write a share of which little may matter: to a tenth of a percent below one."""
+    if share < 0.0005:
+        return "less than 0.1 %" if share > 0 else "0 %"
+    return f"{100 * share:.1f} %" if share < 0.01 else percent(share)
+
+
 def shortly(value: float, digits: int = 3) -> str:
     """Write a number to some digits; without an exponent up to a million."""
     text = f"{value:.{digits}g}"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from hystbench.blocks import registry
+from hystbench.blocks.drive_lag import DriveLag
 from hystbench.blocks.exponential_curve import ExponentialCurve
 from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.gain import Gain
@@ -549,16 +550,32 @@ def test_a_free_mass_of_which_the_speed_is_seen_may_have_moved_before():
     assert state.chain[0].start == "rest"
 
 
-def test_a_host_of_a_given_base_tells_how_much_fitting_it_anew_takes():
+@pytest.mark.parametrize(
+    ("mass", "effect", "expected"),
+    [
+        (1.3, "friction", "moved mass most, by 30 %"),
+        (1.04, "friction", ""),
+        (1.04, "gravity", ""),  # the spring was in part the weight
+    ],
+)
+def test_a_host_of_a_given_base_tells_which_number_was_moved_far(
+    mass, effect, expected
+):
     """Nobody said that its numbers are free: a wrong mass would hide behind a name."""
     u = np.sin(2 * np.pi * 1.3 * TIME)
     given = (record("run", u, 12.0 * u, ("V", "mm")),)
-    alone, fitted = (
-        ModelState((Gain(value=value),), given, ScoredSamples.of(given))
-        for value in (8.0, 11.0)  # of a gap of 4 squared there stays 1
-    )
-    assert "takes 94 % of the gap" in re_tuning(alone, fitted, 0.0)
-    assert re_tuning(alone, alone, 0.0) == ""
+    alone = Mechanism(mass=1.0, damping=0.5, stiffness=40.0)
+    spring = 25.0 if effect == "gravity" else 39.0
+    fitted = replace(alone, mass=mass, stiffness=spring)
+    lag = DriveLag(time_constant_s=0.1)
+    item = Added(effect, "before", "", (0,), {}, 1.0)
+    names = ("mass", "damping", "stiffness")
+    free = tuple(Free(1, name) for name in names)
+    about = (given, ScoredSamples.of(given))
+    state = ModelState((lag, fitted), *about, free=free, added=(item,))
+    told = re_tuning(ModelState((alone,), *about), state)
+    assert expected in told
+    assert bool(told) == bool(expected)
 
 
 @pytest.mark.parametrize(

@@ -50,6 +50,8 @@ class Effect(ABC):
     vanishing: ClassVar[Mapping[str, float]] = {}
     """Of its blocks inside the dynamics: with a number at this value it is another
     effect."""
+    stands_for: ClassVar[str] = ""
+    """The number of a mechanism a part of which it may be, and is taken out of it."""
     special: ClassVar[bool] = False
     """Whether it is offered only where its cause can be, as a weight where something
     turns: of a tie with a law that any device may have it is the likelier."""
@@ -301,7 +303,10 @@ class InsideEffect(Effect):
         Declined
             Always.
         """
-        raise Declined("it acts inside the dynamics, where it is tried apart")
+        raise Declined(
+            "it acts inside the dynamics, where it is tried apart; to put it in, write "
+            "it in the model file"
+        )
 
 
 class StoreEffect(InsideEffect):

@@ -39,14 +39,15 @@ from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.memory import may_have_hysteresis
 from hystbench.gap.thresholds import (
     FURTHER,
-    LOOSE,
     PARAMETER,
     PAYS,
     SCALE,
     UNNAMED_SHARE,
+    WORTH_A_WORD,
 )
 from hystbench.model import Model
 from hystbench.quantities import Quantities
+from hystbench.sentences import percent
 from hystbench.units import sized
 
 
@@ -166,7 +167,7 @@ def named_inside(
         f"{before})"
     )
     if not identified:
-        sentence += re_tuning(alone, re_tuned, floor_rms**2)
+        sentence += re_tuning(alone, state)
     # The first rung is the host re-tuned, so that no effect has the credit of that.
     rounds = _rounds(replace(re_tuned, offered=start.offered).settled(), best, found)
     model = Model(base.name, base.input, base.output, alone.chain)
@@ -196,14 +197,31 @@ def in_short_steps(state: ModelState, score: Score) -> ModelState:
     return state
 
 
-def re_tuning(alone: ModelState, fitted: ModelState, floor: float) -> str:
-    """Say what share of the gap goes because the host's own numbers are fitted."""
-    share = fitted.share(alone, floor, max(alone.power(floor), floor))
-    if share <= LOOSE:
+def re_tuning(alone: ModelState, state: ModelState) -> str:
+    """Say which of a host's own numbers the fit with the effects moved most, if far.
+
+    Nobody said that they are free: a wrong number of the base would hide behind a name.
+    What an effect stands for is taken out of the host's own numbers, and is not meant.
+    """
+    added = {place for item in state.added for place in item.blocks}
+    own = [place for place in range(len(state.chain)) if place not in added]
+    if len(own) != len(alone.chain):
+        return ""  # effects of stores are the stores' own numbers
+    meant = {effects()[item.effect].stands_for for item in state.added}
+    moves = [(0.0, "")]
+    for place, given in zip(own, alone.chain, strict=True):
+        for free in state.free:
+            if free.block != place or free.parameter in meant:
+                continue
+            was = getattr(given, free.parameter)
+            if free.element is None and was:
+                moves.append((abs(state.value(free) / was - 1.0), free.parameter))
+    far, name = max(moves)
+    if far < WORTH_A_WORD:
         return ""
     return (
-        f"; its own parameters are refitted, and that alone takes {100 * share:.0f} % "
-        "of the gap's power: check whether they can be so far off"
+        f"; of its own numbers the fit moved {name} most, by {percent(far)}: check "
+        "whether it can be so far off"
     )
 
 

@@ -28,6 +28,7 @@ from hystbench.gap.thresholds import (
 )
 from hystbench.periods import find_period
 from hystbench.record import Record
+from hystbench.sentences import finely
 
 Verdict = Literal["named", "parameters", "no-gap", "unnamed"]
 
@@ -119,14 +120,14 @@ class Left:
         is clearly another figure.
         """
         told = (
-            f"on the fit records {100 * self.whole:.0f} % of the gap's power above the "
+            f"on the fit records {finely(self.whole)} of the gap's power above the "
             "noise floor stays"
         )
         if self.whole - self.share < WORTH_A_WORD:
             return told
         return (
             f"{told}; of the part that no wrong shape of the hysteresis could leave, "
-            f"{100 * self.share:.0f} %"
+            f"{finely(self.share)}"
         )
 
     @property
