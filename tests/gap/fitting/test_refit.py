@@ -13,11 +13,19 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
-from hystbench.gap.fitting.refit import FAR, added, finished, refit, sizes
-from hystbench.gap.fitting.state import Free
+from hystbench.gap.fitting.refit import (
+    FAR,
+    added,
+    finished,
+    finished_to_the_end,
+    refit,
+    sizes,
+)
+from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.fitting.variant_search import Attempt, fine
 from hystbench.gap.naming.rank import rank
-from hystbench.gap.thresholds import PARAMETER
+from hystbench.gap.thresholds import PARAMETER, SCALE
+from tests.gap.made import record
 from tests.gap.small import (
     ENVELOPE,
     block,
@@ -337,3 +345,32 @@ def test_numbers_of_a_block_are_moved_together():
     free = tuple(Free(0, "denominator", k) for k in range(3))
     (moved,) = state_of(chain, free=free).moved({0: -2e-4, 1: -2e-4, 2: -2.0})
     assert moved.denominator == pytest.approx((-1e-4, -1e-4, -1.0))
+
+
+def test_numbers_that_stand_in_for_each_other_are_fitted_to_the_end():
+    """A law's coefficient and exponent: five rounds end on the way."""
+    t = np.arange(3000) / 1000
+    tones = ((0.7, 1.1), (3.1, 0.9), (11.0, 1.2), (23.0, 0.6))
+    u = sum(size * np.sin(2 * np.pi * hz * t) for hz, size in tones)
+    loop = block(
+        "prandtl-ishlinskii",
+        thresholds=[0.0, 0.3, 0.8, 1.5],
+        weights=[1.0, 0.6, 0.4, 0.3],
+    )
+    law = {"form": "growing-thresholds"}
+    name = "rate-dependent-hysteresis"
+    truth = block(name, coefficient=0.006, exponent=0.6, **law)
+    begun = block(name, coefficient=0.05, exponent=0.3, **law)
+    made = measured((loop, truth), 0.01, given=(record(u, name="a", dt=1e-3),))
+    state = state_of(
+        (loop, begun),
+        made,
+        count=1500,
+        free=(Free(1, "coefficient"), Free(1, "exponent")),
+        added=(Added(name, "material", "", (1,), {}, 2.0),),
+    )
+    score = plain_score(state, 0.01**2)
+    _, least = finished(state, score)
+    end = finished_to_the_end(state, score)
+    assert score.of(end.residual) < least - 5 * SCALE
+    assert finished(end, score)[1] > score.of(end.residual) - SCALE

@@ -132,8 +132,15 @@ def named_inside(
         return host.charge + charged(best, found, score.floor, share)
 
     host, found = min(tried, key=lambda item: charge_of(*item))
-    # And in one whose numbers are not re-tuned: several forces may do as much.
-    cheaper = [item for item in tried if item[0].charge < host.charge]
+    # But first in the one of the fewest numbers, and in those whose numbers are not
+    # re-tuned: several forces may do as much.
+    numbers = [len(item.fitted.state.free) for item, _ in tried]
+    cheaper = [
+        item
+        for item, count in zip(tried, numbers, strict=True)
+        if item[0].charge < host.charge
+        or count == min(numbers) < len(host.fitted.state.free)
+    ]
 
     def with_more(host: Host, found: Sequence[Fitted]) -> tuple[Host, list[Fitted]]:
         return host, together(found, offer, score, say, limit - host.counts)

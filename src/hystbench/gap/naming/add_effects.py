@@ -11,7 +11,7 @@ from hystbench.gap.effects import among
 from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import above_floor, make_score, score_of
-from hystbench.gap.fitting.refit import finished, ready
+from hystbench.gap.fitting.refit import finished, finished_to_the_end, ready
 from hystbench.gap.fitting.scan import scanned
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
@@ -112,7 +112,8 @@ def settled(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Name
             break
     if state.added:
         # Its own numbers are found without what other forms of it could do.
-        state, _ = finished(state, make_score(state, floor_rms, forms=False))
+        score = make_score(state, floor_rms, forms=False)
+        state = finished_to_the_end(state, score)
     return Named(state, rounds, gone)
 
 
