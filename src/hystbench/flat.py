@@ -136,6 +136,23 @@ def stretches(values: FloatArray) -> list[FlatPart]:
     return found
 
 
+def is_cut_off(values: FloatArray, first: int, behind: int) -> bool:
+    """Tell whether a channel stops at a rate, and moves off at one, around a flat.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+    first, behind : int
+        The flat's first sample and the one behind its last.
+    """
+    if first < APPROACH or behind + APPROACH > len(values):
+        return False
+    moves = np.abs(np.diff(values))
+    quantum, length = float(moves[moves > 0].min()), behind - first
+    flanks = values[first::-1], values[behind - 1 :]
+    return all(_flank(flank, length, quantum)[1] for flank in flanks)
+
+
 def _flank(flank: FloatArray, length: int, quantum: float) -> tuple[float, bool]:
     """Tell at what rate a channel leaves a flat, and whether at once: not from rest.
 

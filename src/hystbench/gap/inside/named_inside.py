@@ -112,19 +112,24 @@ def named_inside(
     times = Times.of(start.records, identified)
     offer = partial(laws_for, turns=turns, offered=start.offered, times=times)
     tried: list[tuple[Host, list[Fitted]]] = []
-    enough = False
+    limit, little, enough = np.inf, False, False
     for host in hosts(fewer, quantities, identified, score):
-        if (tried or not identified) and most() - host.counts < 1:
+        if (tried or not identified) and not little:
+            limit = most()
+        if limit - host.counts < 1:
             continue
         say(f"inside: {host.words}; forces are tried in it")
         found = singles(host.fitted, offer, score, say, host.other)
         tried.append((host, found))
-        enough = not may_gain(chosen(found, score.floor, share), score)
+        best = chosen(found, score.floor, share)
+        little = best.state.power(score.floor) <= share * fewer.power(score.floor)
+        enough = not may_gain(best, score)
         if enough:
             break  # no other host could do better
     if not tried:
         return None
-    limit = np.inf if enough else most()
+    if not (enough or little):
+        limit = most()
 
     # Together forces are tried in the host that does best with one.
     def charge_of(host: Host, found: Sequence[Fitted]) -> float:

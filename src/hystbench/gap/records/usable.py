@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.flat import FlatPart, repeats, stretches
+from hystbench.flat import is_cut_off, repeats, stretches
 from hystbench.record import FloatArray, Record
 
 STUCK = 0.05
@@ -60,36 +60,39 @@ def check_usable(
 def _check_output(file: Path, record: Record) -> None:
     """Refuse an output that stands still while the input moves, by no physics.
 
-    A recorder that held its value lets go with a jump, or never. One that is clipped
-    comes and goes at a rate while the input goes on, beyond where the output stopped.
-    A play rests where the input turns, and a mass that friction holds comes to rest
-    first: both move off without a jump.
+    A recorder that held its value lets go with a jump, or never. Or, as one that is
+    clipped, it stops at a rate and moves off at one while the input goes on, beyond
+    where the output stopped. A play rests where the input turns, and a mass that
+    friction holds comes to rest first: both move off without a jump.
     """
     y, u = record.y, record.u
-    reach = float(np.ptp(u))
+    reach, ends = float(np.ptp(u)), (y.min(), y.max())
+    told = max(CLIPPED, COARSE * _quantum(y) / float(np.ptp(y))) * reach
     for first, last in repeats(y, STUCK * len(y)):
-        moves = np.ptp(u[first:last]) > STUCK * reach
-        if moves and (last == len(y) or _jumps(y, last)):
-            raise _refusal(file, record, "output", first, last, "stuck")
-    told = max(CLIPPED, COARSE * _quantum(y) / float(np.ptp(y)))
+        if np.ptp(u[first:last]) <= STUCK * reach:
+            continue
+        past = is_cut_off(y, first, last) and _goes_beyond(u, first, last) > told
+        if past or last == len(y) or _jumps(y, last):
+            how = "clipped" if past and y[first] in ends else "stuck"
+            raise _refusal(file, record, "output", first, last, how)
     clipped = [
         (part.first, part.behind)
         for part in stretches(y)
-        if part.kind == "clipped" and _goes_beyond(u, part) > told * reach
+        if part.kind == "clipped" and _goes_beyond(u, part.first, part.behind) > told
     ]
     if sum(last - first for first, last in clipped) > STUCK * len(y):
         raise _refusal(file, record, "output", *clipped[0], "clipped")
 
 
-def _goes_beyond(u: FloatArray, part: FlatPart) -> float:
+def _goes_beyond(u: FloatArray, first: int, behind: int) -> float:
     """How far an input goes on past where it was when the output stopped.
 
     In the way in which it went over half the stretch: what lags stops somewhat after
     the input has turned.
     """
-    near = max((part.behind - part.first) // 2, APPROACH)
-    came = np.sign(u[part.first] - u[max(part.first - near, 0)])
-    return float(np.max(came * (u[part.first : part.behind] - u[part.first])))
+    near = max((behind - first) // 2, APPROACH)
+    came = np.sign(u[first] - u[max(first - near, 0)])
+    return float(np.max(came * (u[first:behind] - u[first])))
 
 
 def _refusal(
