@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hystbench.gap.effects.effect import Declined, Effect
-from hystbench.gap.effects.hysteresis import Hysteresis
 from hystbench.gap.effects.variant import Variant
 from hystbench.gap.simulation.simulation import Simulation
 
@@ -25,9 +24,6 @@ class HysteresisShape(Effect):
         """Offer the correction of the chain's hysteresis."""
         if simulation.hysteresis is None:
             raise Declined("the chain has no hysteresis whose shape could be wrong")
-        own = (Hysteresis.name, *Hysteresis.laws)
-        if simulation.chain[simulation.hysteresis].name in own:
-            raise Declined("the shape of an added hysteresis is fitted with it")
         amplitude = simulation.largest(simulation.hysteresis)
         thresholds = [amplitude * k / OPERATORS for k in range(1, OPERATORS)]
         weights = [f"weight {k}" for k in range(1, OPERATORS)]

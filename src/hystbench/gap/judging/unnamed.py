@@ -43,7 +43,7 @@ SORTS = {
     "history": "it depends on how hard the device was driven before",
     "memory": "it has memory or delay of another kind",
     "curve": "it is a curve or a loop of another kind",
-    "unrelated": "it does not follow the recorded input",
+    "unrelated": "it does not follow the recorded input in any way that was tried",
 }
 """What is said of each sort of structure."""
 SORT_OF = {

@@ -288,7 +288,7 @@ def judge(
     if much:
         return "named", (
             f"{left.sentence}; this is less sure, as {unnamed.reason(unnamed_share)}, "
-            "though all that is left would be no gap if nothing were named"
+            "but so little may as well be the error of a slightly wrong base"
         )
     return "named", left.sentence
 

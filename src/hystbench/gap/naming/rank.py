@@ -38,6 +38,10 @@ BEHIND = 0.75
 """Share of the best's gain that one of them may lack: a refit makes up for less."""
 EXACT = 3
 """Of the finalists, those that are simulated exactly before one is taken."""
+LOOP, FITTED_WITH_IT = (
+    "hysteresis",
+    "the shape of an added hysteresis is fitted with it",
+)
 AT_AN_END = "fits best at the end of what it can be"
 
 
@@ -76,6 +80,13 @@ def rank(
         if effect.name in have
     ]
     others = [effect for effect in known if effect.name not in have]
+    if LOOP in have:  # its shape is fitted with it
+        declined += [
+            Candidate(effect.name, effect.place, declined=FITTED_WITH_IT)
+            for effect in others
+            if effect.name == SHAPE
+        ]
+        others = [effect for effect in others if effect.name != SHAPE]
     looks: list[Seen] = []
     for effect in others:
         trials, why = seen(effect, state, score)
