@@ -13,8 +13,9 @@ ALIKE = 1 / 3
 """Of the faster flank's rate, that the slower one has: a backlash stands still behind
 its turn, where it came to rest, and not in the middle of it."""
 AT_ONCE = 2 / 3
-"""Of its rate over half as long as it is flat, what it has over the nearer half of
-that: half where it comes to rest, five sixths or more where a parabola is cut off."""
+"""A channel stops at once if its rate next to the flat is more than this share of its
+rate farther out. It is half where the channel comes to rest smoothly, and five sixths
+or more where a parabola is cut off."""
 BEYOND = 0.01
 """Of the range, that the flanks of a flat stretch would have reached beyond it."""
 COARSE = 3.0
@@ -139,18 +140,21 @@ def stretches(values: FloatArray) -> list[FlatPart]:
 def is_cut_off(values: FloatArray, first: int, behind: int) -> bool:
     """Tell whether a channel stops at a rate, and moves off at one, around a flat.
 
+    At an end of the record there is only the other flank.
+
     Parameters
     ----------
     values : ndarray, shape (n,)
     first, behind : int
         The flat's first sample and the one behind its last.
     """
-    if first < APPROACH or behind + APPROACH > len(values):
+    before, after = first, len(values) - behind
+    if any(0 < flank < APPROACH for flank in (before, after)) or not before + after:
         return False
     moves = np.abs(np.diff(values))
     quantum, length = float(moves[moves > 0].min()), behind - first
     flanks = values[first::-1], values[behind - 1 :]
-    return all(_flank(flank, length, quantum)[1] for flank in flanks)
+    return all(_flank(x, length, quantum)[1] for x in flanks if len(x) > 1)
 
 
 def _flank(flank: FloatArray, length: int, quantum: float) -> tuple[float, bool]:

@@ -36,8 +36,8 @@ def scratch_folder(prefix: str, parent: str | Path | None = None) -> Iterator[Pa
 def remove_tree(folder: str | Path) -> None:
     """Remove a folder as far as the disk lets it, if it is there.
 
-    A signal waits meanwhile: cut in two, the removal leaves half a folder and closes
-    the number of a file that is closed already.
+    A signal waits meanwhile. If it cut the removal in two, half a folder would stay,
+    and Python would close a folder twice.
     """
     with held():
         shutil.rmtree(folder, ignore_errors=True)

@@ -1,14 +1,21 @@
 """Linear effects beside a transfer function whose input is a staircase.
 
-Behind the first of two linear blocks it is none any more: to take it for one there is
-to be half a sample late. Of a sampling interval far below all times straight lines
-miss little. The truth is one transfer function, exact for a staircase.
+The first of two linear blocks smooths the staircase. The second block would be half a
+sample late if it took a staircase too. It takes straight lines, which miss little
+here, as all times are far above the sampling interval. The truth is one transfer
+function, exact for a staircase.
 """
 
 import numpy as np
 import pytest
 
+from hystbench.blocks.sensor_lag import SensorLag
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.effects import effects
+from hystbench.gap.fitting.edit_chain import with_effect, without_effect
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.records.scored_samples import ScoredSamples
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from hystbench.record import Channel, Record
 from tests.gap.searched import search
@@ -62,3 +69,21 @@ def test_a_mode_has_its_frequency_and_its_share():
     assert found["frequency_hz"] == pytest.approx(31.0, rel=1e-3)
     assert found["damping_ratio"] == pytest.approx(zeta, rel=0.05)
     assert found["participation"] == pytest.approx(p, rel=0.02)
+
+
+def test_a_lag_that_goes_out_again_leaves_the_staircase():
+    u = np.repeat(np.random.default_rng(1).uniform(-1.0, 1.0, 200), 5)
+    given = (Record("run", DT, u, u, COMMAND, POSITION, "measured"),)
+    start = ModelState((PLANT,), given, ScoredSamples.of(given), hold="zero-order")
+    lags = effects()["drive-lag"].variants(start.simulation)
+    variant = next(x for x in lags if x.start == 0)
+    added = with_effect(start, variant, {"time_constant_s": 8e-3})
+    assert [block.hold for block in added.chain] == ["zero-order", "linear"]
+    assert without_effect(added, 0).chain == start.chain
+
+
+def test_a_mode_stands_before_the_sensors_lag():
+    lag = SensorLag(time_constant_s=1e-2, hold="linear")
+    given = (Record("run", DT, np.ones(9), np.ones(9), COMMAND, POSITION, "measured"),)
+    assert Simulation((PLANT, lag), given, "zero-order").behind_linear == 1
+    assert Simulation((PLANT, lag), given, "linear").behind_linear == 0

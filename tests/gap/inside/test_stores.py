@@ -15,7 +15,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.hosts import best_host, hosts, may_be_stores
 from hystbench.gap.inside.named_inside import chosen
-from hystbench.gap.inside.stores import stores
+from hystbench.gap.inside.stores import how_it_fills, stores
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
@@ -114,6 +114,16 @@ def test_a_given_store_spills_below_what_it_would_rise_to_without():
     best = chosen(search(Fitted(given, judged(given, score)), score), 1.0)
     assert best.effects == ("overflow",)
     assert best.state.chain[0].height == pytest.approx(900.0, abs=1.0)
+
+
+def test_of_a_level_that_is_measured_below_zero_no_overflow_begins_there():
+    tank = Store(gain=20.0, rate=0.5, exponent=0.5, start="settled", hold="zero-order")
+    u = 0.6 + 0.3 * np.sin(np.arange(COUNT) / 60.0)
+    y = tank.simulate(u, u, DT) - 1e6  # a gauge with another zero
+    record = Record("run", DT, u, y, *CHANNELS, "measured")
+    given = ModelState((tank,), (record,), ScoredSamples.of((record,)))
+    ((_, _, top),) = how_it_fills(given).tops
+    assert top > 0
 
 
 def test_linear_stores_need_no_effect():

@@ -95,6 +95,15 @@ def test_a_play_that_rests_at_each_turn_is_no_fault(tmp_path, coarse, half_width
     np.testing.assert_allclose(found.fit[0].y, y)
 
 
+@pytest.mark.parametrize("count", [970, 1000])
+def test_a_record_may_end_where_a_play_rests(tmp_path, count):
+    """Or where the motion has become too small for it."""
+    t = np.arange(count) / 500
+    for number, u in enumerate((triangle(t), np.exp(-3 * t) * np.sin(20 * t))):
+        made = pair(4 * play(u, 0.3), u)
+        load_evidence(write_folder(tmp_path / str(number), made))
+
+
 @pytest.mark.parametrize("coarse", [0.0, 0.005])
 def test_a_mass_held_by_friction_is_no_fault(tmp_path, coarse):
     """It comes to rest, and rests until the force is large enough."""
@@ -108,9 +117,9 @@ def test_a_mass_held_by_friction_is_no_fault(tmp_path, coarse):
 def test_an_output_that_holds_to_the_end_is_named(tmp_path):
     """A loose plug, say: what it would have read in the end nobody knows."""
     y = Y.copy()
-    y[850:] = y[850]
+    y[800:] = y[800]
     said = message(lambda: load_evidence(write_folder(tmp_path / "d", pair(y))))
-    assert "row 852: displacement is" in said
+    assert "row 802: displacement is" in said
     assert "not stuck" in said
 
 

@@ -50,8 +50,8 @@ class Effect(ABC):
     vanishing: ClassVar[Mapping[str, float]] = {}
     """Of its blocks inside the dynamics: with a number at this value it is another
     effect."""
-    stands_for: ClassVar[str] = ""
-    """The number of a mechanism a part of which it may be, and is taken out of it."""
+    taken_from: ClassVar[str] = ""
+    """The number of a mechanism that it may have been counted in before."""
     special: ClassVar[bool] = False
     """Whether it is offered only where its cause can be, as a weight where something
     turns: of a tie with a law that any device may have it is the likelier."""

@@ -15,7 +15,7 @@ class Gravity(ForceEffect):
     name = "gravity"
     shows = "amplitude"
     special = True
-    stands_for = "stiffness"
+    taken_from = "stiffness"
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer a weight that makes half of the spring, and one that works against it.

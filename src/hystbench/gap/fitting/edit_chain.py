@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from hystbench.blocks.base import Block
+from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.variant import Values, Variant
@@ -50,12 +51,15 @@ def with_effect(state: ModelState, variant: Variant, values: Values) -> ModelSta
     # The chain's own blocks stay in their order around those of the effect.
     stays = [k for k in range(len(chain)) if k not in places]
     came = [k for k in range(len(state.chain)) if old is None or k != variant.start]
+    smooths = any(
+        chain[new] != state.chain[was] for was, new in zip(came, stays, strict=True)
+    )
     state = state.rearranged(chain, dict(zip(came, stays, strict=True)))
     numbers = (free for k in places for free in numbers_of(chain[k], k, variant))
     return replace(
         state,
         free=(*state.free, *numbers),
-        added=(*state.added, Added(*own, places, note, variant.freedom, old)),
+        added=(*state.added, Added(*own, places, note, variant.freedom, old, smooths)),
     )
 
 
@@ -76,7 +80,19 @@ def without_effect(state: ModelState, number: int) -> ModelState:
             chain.append(block)
         elif gone.replaced is not None and k == gone.blocks[0]:
             chain.append(gone.replaced)
-    return replace(state, added=rest).rearranged(tuple(chain), moved)
+    taken = on_a_staircase(chain) if gone.smooths else tuple(chain)
+    return replace(state, added=rest).rearranged(taken, moved)
+
+
+def on_a_staircase(chain: Sequence[Block]) -> tuple[Block, ...]:
+    """Let blocks take a staircase up to the first that smooths it."""
+    found = list(chain)
+    for k, block in enumerate(found):
+        if isinstance(block, HeldBlock):
+            found[k] = replace(block, hold="zero-order")
+            if block.smooths:
+                break
+    return tuple(found)
 
 
 def _with_old_numbers(

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.blocks.calls import CallsUsedUp
 from hystbench.errors import InputError
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
@@ -209,10 +210,16 @@ def finished_to_the_end(state: ModelState, score: Score) -> ModelState:
 
     Numbers that stand in for each other come near in many small steps.
     """
-    last, (state, least) = score_of(state, score), finished(state, score)
+    last, (best, least) = score_of(state, score), finished(state, score)
     while last - least >= SCALE:
-        last, (state, least) = least, finished(state, score)
-    return state
+        last = least
+        try:
+            again, value = finished(best, score)
+        except CallsUsedUp:
+            break  # what was found stands
+        if value < least:
+            best, least = again, value
+    return best
 
 
 def ready(state: ModelState, score: Score) -> ModelState:

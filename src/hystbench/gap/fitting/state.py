@@ -49,6 +49,8 @@ class Added(NamedTuple):
     charge: float
     replaced: Block | None = None
     """The chain's own block that it stands for."""
+    smooths: bool = False
+    """Whether blocks behind it took a staircase before it came."""
 
 
 ROUNDING = 16 * float(np.finfo(float).eps)

@@ -43,12 +43,14 @@ from hystbench.gap.thresholds import (
     PAYS,
     SCALE,
     UNNAMED_SHARE,
-    WORTH_A_WORD,
 )
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.sentences import percent
 from hystbench.units import sized
+
+FAR = 0.1
+"""Share by which a fit may move a known number before it is told."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +124,8 @@ def named_inside(
         found = singles(host.fitted, offer, score, say, host.other)
         tried.append((host, found))
         best = chosen(found, score.floor, share)
-        little = best.state.power(score.floor) <= share * fewer.power(score.floor)
+        stays = best.state.power(score.floor)
+        little = little or stays <= share * fewer.power(score.floor)
         enough = not may_gain(best, score)
         if enough:
             break  # no other host could do better
@@ -152,8 +155,8 @@ def named_inside(
 
     full = [with_more(*item) for item in cheaper]
     known = [chosen(own, score.floor, share) for _, own in full]
-    if all(may_gain(item, score) for item in known):
-        full.append(with_more(host, found))
+    wanting = all(may_gain(item, score) for item in known)
+    full.append(with_more(host, found) if wanting else (host, found))
     host, found = min(full, key=lambda item: charge_of(*item))
     best, alone = chosen(found, score.floor, share), host.alone
     if not best.effects:
@@ -219,7 +222,7 @@ def re_tuning(alone: ModelState, state: ModelState) -> str:
     own = [place for place in range(len(state.chain)) if place not in added]
     if len(own) != len(alone.chain):
         return ""  # effects of stores are the stores' own numbers
-    meant = {effects()[item.effect].stands_for for item in state.added}
+    meant = {effects()[item.effect].taken_from for item in state.added}
     moves = [(0.0, "")]
     for place, given in zip(own, alone.chain, strict=True):
         for free in state.free:
@@ -229,7 +232,7 @@ def re_tuning(alone: ModelState, state: ModelState) -> str:
             if free.element is None and was:
                 moves.append((abs(state.value(free) / was - 1.0), free.parameter))
     far, name = max(moves)
-    if far < WORTH_A_WORD:
+    if far < FAR:
         return ""
     return (
         f"; of its own numbers the fit moved {name} most, by {percent(far)}: check "

@@ -142,8 +142,9 @@ def how_it_fills(state: ModelState) -> Filled:
             level = replace(block, output="level")
             signals = state.simulation.tail(k, [level])
             top = max(float(z.max()) for z in signals)
-            if k == len(state.chain) - 1 and block.output == "level":
-                top = min(top, measured)
+            is_measured = k == len(state.chain) - 1 and block.output == "level"
+            if is_measured and 0 < measured < top:
+                top = measured
             tops.append((k, block, top))
     return Filled(tuple(tops))
 

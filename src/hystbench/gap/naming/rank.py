@@ -12,6 +12,7 @@ from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError
 from hystbench.gap.effects import among
 from hystbench.gap.effects.effect import Effect
+from hystbench.gap.effects.hysteresis import Hysteresis
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.model_score import score_of
@@ -38,10 +39,7 @@ BEHIND = 0.75
 """Share of the best's gain that one of them may lack: a refit makes up for less."""
 EXACT = 3
 """Of the finalists, those that are simulated exactly before one is taken."""
-LOOP, FITTED_WITH_IT = (
-    "hysteresis",
-    "the shape of an added hysteresis is fitted with it",
-)
+FITTED_WITH_IT = "the shape of a hysteresis whose weights are free is fitted with it"
 AT_AN_END = "fits best at the end of what it can be"
 
 
@@ -80,7 +78,7 @@ def rank(
         if effect.name in have
     ]
     others = [effect for effect in known if effect.name not in have]
-    if LOOP in have:  # its shape is fitted with it
+    if _loop_is_free(state):
         declined += [
             Candidate(effect.name, effect.place, declined=FITTED_WITH_IT)
             for effect in others
@@ -178,10 +176,21 @@ def _near(gain: float) -> float:
     return gain - max(NEAR, gain * STILL)
 
 
+def _loop_is_free(state: ModelState) -> bool:
+    """Tell whether the chain's hysteresis is one that was added, or whose weights are.
+
+    Then it has no other shape than that which is fitted.
+    """
+    if any(item.effect == Hysteresis.name for item in state.added):
+        return True
+    loop = state.simulation.hysteresis
+    return any(x.block == loop and x.parameter == "weights" for x in state.free)
+
+
 def _refined(found: Sequence[Tried], now: float, least: float) -> list[Trial]:
     """Search around the best points of grids that gain enough; the least score first.
 
-    Of the effect that then does best, the other laws too, whatever they gain: a grid's
+    Of the effect that then does best, its other laws too, whatever they gain: a grid's
     step may miss most of what the right one does.
     """
     near = [now - trial.score > least for _, trial in found]
@@ -189,8 +198,9 @@ def _refined(found: Sequence[Tried], now: float, least: float) -> list[Trial]:
         fine(attempt, trial) if enough else trial
         for (attempt, trial), enough in zip(found, near, strict=True)
     ]
-    best = min(every, key=lambda trial: trial.score).variant
-    for k, (attempt, trial) in enumerate(found):
+    first = min(range(len(every)), key=lambda k: every[k].score)
+    best = every[first].variant
+    for k, (attempt, trial) in enumerate(found if near[first] else ()):
         own = attempt.variant
         if not near[k] and own.effect == best.effect and own.form != best.form:
             every[k] = fine(attempt, trial)

@@ -60,19 +60,21 @@ def check_usable(
 def _check_output(file: Path, record: Record) -> None:
     """Refuse an output that stands still while the input moves, by no physics.
 
-    A recorder that held its value lets go with a jump, or never. Or, as one that is
-    clipped, it stops at a rate and moves off at one while the input goes on, beyond
-    where the output stopped. A play rests where the input turns, and a mass that
+    A recorder that held its value lets go with a jump. Or, as one that is clipped, it
+    stops at a rate, and moves off at one, while the input goes on beyond where the
+    output stopped. A play rests where the input turns, and a mass that
     friction holds comes to rest first: both move off without a jump.
     """
     y, u = record.y, record.u
     reach, ends = float(np.ptp(u)), (y.min(), y.max())
+    if ends[0] == ends[1]:
+        return  # refused as such where records are read
     told = max(CLIPPED, COARSE * _quantum(y) / float(np.ptp(y))) * reach
     for first, last in repeats(y, STUCK * len(y)):
         if np.ptp(u[first:last]) <= STUCK * reach:
             continue
         past = is_cut_off(y, first, last) and _goes_beyond(u, first, last) > told
-        if past or last == len(y) or _jumps(y, last):
+        if past or (last < len(y) and _jumps(y, last)):
             how = "clipped" if past and y[first] in ends else "stuck"
             raise _refusal(file, record, "output", first, last, how)
     clipped = [

@@ -220,16 +220,18 @@ class Simulation:
 
     @property
     def behind_linear(self) -> int:
-        """Place behind the material for what is linear and lets its input pass.
+        """Place behind the material for what is linear and passes its input on.
 
-        Linear blocks commute. But before one of them what passes of a staircase is a
-        staircase still, and the rest is smooth: so then it is behind them.
+        Linear blocks commute. Only a staircase must not come to it: a part of what it
+        gives would be a staircase, the rest smooth, and no block behind takes both. So
+        it stands behind the first linear block that smooths.
         """
         k = self.behind_material
-        while self.hold == "zero-order" and k < len(self.chain):
-            if not isinstance(self.chain[k], LinearBlock):
+        for place in range(k, len(self.chain)):
+            block = self.chain[place]
+            if self.hold_at(k) != "zero-order" or not isinstance(block, LinearBlock):
                 break
-            k += 1
+            k = place + 1
         return k
 
     @property
