@@ -87,6 +87,24 @@ def test_the_law_may_be_in_either_of_a_slow_and_a_fast_store(powers):
     assert np.sqrt(np.mean(best.state.residual**2)) < 1.5 * NOISE
 
 
+def test_stores_in_the_other_order_keep_the_timing_of_a_base():
+    """A base that takes its input late begins with a delay, and so does each host."""
+    record = tanks(root=True, height=np.inf)
+    begun = next(stores((record,), "zero-order", NOISE, 2))
+    late = InputDelay(delay_s=DT, hold="zero-order")
+    start = ModelState((late, *begun.chain), (record,), begun.sample, hold="zero-order")
+    score = Score.plain(start.sample, NOISE**2)
+    both = [
+        host
+        for host in islice(hosts(start, Quantities(output="level"), True, score), 3)
+        if host.other is not None
+    ]
+    assert both
+    for host in both:
+        assert host.other.chain[0] == host.alone.chain[0] == late
+        assert len(host.other.chain) == len(host.alone.chain)
+
+
 def test_overflow_is_named_and_goes_out_again():
     best, _ = found(tanks(root=False, height=90.0))
     assert best.effects == ("overflow",)

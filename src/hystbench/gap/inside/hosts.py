@@ -100,7 +100,9 @@ def hosts(
         for host in hosts(_behind(start), quantities, identified, score):
             state = _in_front(delay, start, host.fitted.state)
             alone = _in_front(delay, start, host.alone)
-            yield replace(host, alone=alone, fitted=replace(host.fitted, state=state))
+            other = host.other and _in_front(delay, start, host.other)
+            whole = replace(host.fitted, state=state)
+            yield replace(host, alone=alone, fitted=whole, other=other)
         # A force that is not linear turns the phase: it may be what looked like timing.
         yield from hosts(_without_timing(start), quantities, identified, score)
         return
