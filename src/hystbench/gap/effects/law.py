@@ -86,9 +86,13 @@ class Law:
 
 
 class Filled(NamedTuple):
-    """How high stores are filled: place, block and highest level of each."""
+    """How high stores are filled: place, block and highest level of each.
+
+    Of the last one, where its level is the output, also the highest that was measured.
+    """
 
     tops: tuple[tuple[int, Store, float], ...]
+    measured: float | None = None
 
 
 class Changed(NamedTuple):

@@ -21,20 +21,24 @@ class Overflow(StoreEffect):
     numbers = ("height", "caught")
 
     def stored(self, filled: Filled) -> Iterator[Changed]:
-        """Offer heights met late and early; the next store catches a part."""
-        last = filled.tops[-1][0]
+        """Offer heights met late and early; the next store catches a part.
+
+        The last level is measured: it is seen where it stays. But a model without the
+        overflow may rise higher, and spills nothing there.
+        """
+        last, _, highest = filled.tops[-1]
+        lower = min(highest, filled.measured or highest)
         every = [place for place, *_ in filled.tops]
         groups = {"last": [last], "all": every, "upper": every[:-1]}
         for form, places in groups.items():
             if not places or (form == "all" and len(every) == 1):
                 continue
-            for share in SHARES:
+            for share, seen in zip(SHARES, (highest, lower), strict=True):
                 values, free = {}, []
                 for place, _, top in filled.tops:
                     if place not in places:
                         continue
-                    # The last level is measured: it is seen where it stays.
-                    height = top if place == last else share * top
+                    height = seen if place == last else share * top
                     values[place] = {"height": height}
                     free.append((place, "height"))
                     if place != last:

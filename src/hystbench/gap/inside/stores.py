@@ -130,23 +130,17 @@ def in_other_order(state: ModelState) -> Iterator[ModelState]:
 
 
 def how_it_fills(state: ModelState) -> Filled:
-    """Look how high the stores of a chain are filled on its records.
-
-    A level that is measured rises no higher than was measured: a model without the
-    overflow rises beyond.
-    """
-    measured = max(float(record.y.max()) for record in state.records)
+    """Look how high the stores of a chain are filled on its records."""
     tops = []
     for k, block in enumerate(state.chain):
         if isinstance(block, Store):
             level = replace(block, output="level")
             signals = state.simulation.tail(k, [level])
-            top = max(float(z.max()) for z in signals)
-            is_measured = k == len(state.chain) - 1 and block.output == "level"
-            if is_measured and 0 < measured < top:
-                top = measured
-            tops.append((k, block, top))
-    return Filled(tuple(tops))
+            tops.append((k, block, max(float(z.max()) for z in signals)))
+    measured = max(float(record.y.max()) for record in state.records)
+    last = state.chain[-1]
+    is_shown = isinstance(last, Store) and last.output == "level" and measured > 0
+    return Filled(tuple(tops), measured if is_shown else None)
 
 
 def with_changed(state: ModelState, effect: str, changed: Changed) -> ModelState:
