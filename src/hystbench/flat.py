@@ -112,7 +112,7 @@ def stretches(values: FloatArray) -> list[FlatPart]:
     span = float(np.ptp(values))
     if not span > 0:
         return []
-    quantum = float(np.abs(moves[moves != 0]).min())
+    quantum = smallest_step(values)
     matters = max(BEYOND * span, COARSE * quantum)
     ends = (float(values.min()), float(values.max()))
     found: list[FlatPart] = []
@@ -151,8 +151,7 @@ def is_cut_off(values: FloatArray, first: int, behind: int) -> bool:
     before, after = first, len(values) - behind
     if any(0 < flank < APPROACH for flank in (before, after)) or not before + after:
         return False
-    moves = np.abs(np.diff(values))
-    quantum, length = float(moves[moves > 0].min()), behind - first
+    quantum, length = smallest_step(values), behind - first
     flanks = values[first::-1], values[behind - 1 :]
     return all(_flank(x, length, quantum)[1] for x in flanks if len(x) > 1)
 
@@ -168,6 +167,15 @@ def _flank(flank: FloatArray, length: int, quantum: float) -> tuple[float, bool]
     half = len(moving) // 2
     whole, within = (abs(moving[k] - moving[0]) / k for k in (len(moving) - 1, half))
     return over, bool(within + quantum / half > AT_ONCE * whole)
+
+
+def smallest_step(values: FloatArray) -> float:
+    """Give the smallest step of a channel that is not constant.
+
+    It is at least what the channel is digitized by.
+    """
+    moves = np.abs(np.diff(values))
+    return float(moves[moves > 0].min())
 
 
 def repeats(values: FloatArray, least: float) -> list[tuple[int, int]]:

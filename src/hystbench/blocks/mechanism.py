@@ -191,7 +191,8 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
     def _parts(self, dt: float, forces: tuple[Force, ...], pieces: float = 1.0) -> int:
         """Steps of an interval: one without forces, as the linear part is exact.
 
-        With forces they are short for the linear coordinate, and for a contact. Of a
+        With forces they are short for the linear coordinate, as far as it swings no
+        faster than half the sampling rate, and for a contact. Of a
         damped coordinate the slow pole counts: what dies out fast is exact.
         """
         if not forces:

@@ -82,6 +82,7 @@ def search(
     identified = is_identified(base)
     in_a_chain = cache(partial(add_effects, start, floor.rms, asked))
 
+    @cache
     def most() -> float:
         return _most_inside(in_a_chain(), floor)
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
 from hystbench.blocks import block_class
 from hystbench.blocks.base import Block, Place
-from hystbench.blocks.held import HeldBlock
+from hystbench.blocks.held import HeldBlock, held_until_smooth
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.device_kinds import DEVICE_KINDS, DeviceKind, causes
@@ -147,7 +146,8 @@ class Effect(ABC):
 
         hold = simulation.hold_at(place) if issubclass(block, HeldBlock) else None
         if hold == "zero-order" and issubclass(block, LinearBlock) and block.smooths:
-            rest = _on_straight_lines(rest)
+            # No staircase comes to what stands behind it any more.
+            rest = held_until_smooth(rest, "linear", was="zero-order")
 
         def build(given: Values) -> tuple[Block, ...]:
             own = values(given)
@@ -272,17 +272,6 @@ class Effect(ABC):
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
         """Give the block of a signal beside, from its amplitudes (records, k)."""
         raise NotImplementedError
-
-
-def _on_straight_lines(blocks: Sequence[Block]) -> tuple[Block, ...]:
-    """Give blocks behind one that smooths a staircase: none comes to them any more."""
-    found = list(blocks)
-    for k, block in enumerate(found):
-        if isinstance(block, HeldBlock) and block.hold == "zero-order":
-            found[k] = replace(block, hold="linear")
-            if block.smooths:
-                break
-    return tuple(found)
 
 
 def never_at_rest(signals: Sequence[FloatArray]) -> bool:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.held import HeldBlock
+from hystbench.blocks.held import held_until_smooth
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.variant import Values, Variant
@@ -80,19 +80,9 @@ def without_effect(state: ModelState, number: int) -> ModelState:
             chain.append(block)
         elif gone.replaced is not None and k == gone.blocks[0]:
             chain.append(gone.replaced)
-    taken = on_a_staircase(chain) if gone.smooths else tuple(chain)
+    smooths = gone.smooths
+    taken = held_until_smooth(chain, "zero-order") if smooths else tuple(chain)
     return replace(state, added=rest).rearranged(taken, moved)
-
-
-def on_a_staircase(chain: Sequence[Block]) -> tuple[Block, ...]:
-    """Let blocks take a staircase up to the first that smooths it."""
-    found = list(chain)
-    for k, block in enumerate(found):
-        if isinstance(block, HeldBlock):
-            found[k] = replace(block, hold="zero-order")
-            if block.smooths:
-                break
-    return tuple(found)
 
 
 def _with_old_numbers(

@@ -8,15 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.flat import is_cut_off, repeats, stretches
+from hystbench.flat import COARSE, is_cut_off, repeats, smallest_step, stretches
 from hystbench.record import FloatArray, Record
 
 STUCK = 0.05
 """Share of a record, and of the input's range, over which no output stands still."""
 CLIPPED = 0.01
 """Share of the input's range that it goes on while a clipped output stands."""
-COARSE = 3.0
-"""Steps of a digitized output that it may be off by in a motion: it shows less."""
 APPROACH = 5
 """Samples of motion before the input stops, or after it jumps."""
 JUMP = 10.0
@@ -62,14 +60,14 @@ def _check_output(file: Path, record: Record) -> None:
 
     A recorder that held its value lets go with a jump. Or, as one that is clipped, it
     stops at a rate, and moves off at one, while the input goes on beyond where the
-    output stopped. A play rests where the input turns, and a mass that
-    friction holds comes to rest first: both move off without a jump.
+    output stopped. A play rests where the input turns, and a mass that friction holds
+    comes to rest first: both move off without a jump.
     """
     y, u = record.y, record.u
     reach, ends = float(np.ptp(u)), (y.min(), y.max())
     if ends[0] == ends[1]:
         return  # refused as such where records are read
-    told = max(CLIPPED, COARSE * _quantum(y) / float(np.ptp(y))) * reach
+    told = max(CLIPPED, COARSE * smallest_step(y) / float(np.ptp(y))) * reach
     for first, last in repeats(y, STUCK * len(y)):
         if np.ptp(u[first:last]) <= STUCK * reach:
             continue
@@ -111,12 +109,6 @@ def _refusal(
         f"for {last - first} samples while the {other}; expected a channel that is not "
         f"{how}{REAL.format(side)}"
     )
-
-
-def _quantum(y: FloatArray) -> float:
-    """Give the smallest step of a channel: at least what it is digitized by."""
-    moves = np.abs(np.diff(y))
-    return float(moves[moves > 0].min(initial=np.inf))
 
 
 def _check_input(file: Path, record: Record) -> None:
