@@ -105,6 +105,10 @@ class Unnamed:
         """Tell whether so much stays that its sort is said."""
         return self.too_much(share) or self.stays > LOOSE
 
+    def follows_nothing(self, share: float = UNNAMED_SHARE) -> bool:
+        """Tell whether much stays, and no more of it than may follows known signals."""
+        return self.stays > LOOSE and not self.too_much(share)
+
     def trust(self, share: float = UNNAMED_SHARE, of_base: bool = False) -> float:
         """Give the factor on a name's confidence: one where no more stays than may.
 

@@ -233,8 +233,8 @@ def judge(
         What to write so that the noise is measured.
     """
     if not named:
-        chance = not unnamed.too_much(unnamed_share) and (explained_by_box or 0.0) < 0
-        new = _why_new(left, unnamed.by_chance > 0.0 and chance)
+        none = unnamed.follows_nothing(unnamed_share) and (explained_by_box or 0.0) < 0
+        new = _why_new(left, unnamed if none else None)
         if left.slight and left.foreign and not new:
             return "unnamed", left.foreign
         if retuned and left.all_before > ABOVE_NOISE and left.share < LOOSE:
@@ -293,19 +293,21 @@ def judge(
     return "named", left.sentence
 
 
-def _why_new(left: Left, by_chance: bool) -> str:
+def _why_new(left: Left, unrelated: Unnamed | None) -> str:
     """Say why what is left follows nothing that is recorded; or nothing."""
     if left.is_new:
         return (
             f"what is left on the fit records, {left.all_after:.2g} times the power of "
             "the noise floor, differs from one period of the same input to the next"
         )
-    if not by_chance or left.slight or left.foreign:
+    if unrelated is None or left.slight or left.foreign:
         return ""
+    follows = "no known signal"
+    if unrelated.by_chance:
+        follows = "the input no more than when it is moved in time against it"
     return (
         f"what is left on the fit records, {left.after:.2g} times the power of the "
-        "noise floor, follows the input no more than when it is moved in time against "
-        "it, and a black box makes it worse on folds"
+        f"noise floor, follows {follows}, and a black box makes it worse on folds"
     )
 
 
