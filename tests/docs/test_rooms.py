@@ -8,7 +8,8 @@ from tests.conftest import ROOT
 
 GAP = ROOT / "src" / "hystbench" / "gap"
 PAGE = (ROOT / "docs" / "design.md").read_text(encoding="utf-8")
-ROWS = re.findall(r"^\| `(\w+)` \|.*\| (.+) \|$", PAGE[: PAGE.index("## Where")], re.M)
+ROOMS = PAGE[PAGE.index("| room of `gap/`") : PAGE.index("Where things happen")]
+ROWS = re.findall(r"^\| `(\w+)`(?:, step \d)? \|.*\| (.+) \|$", ROOMS, re.M)
 
 
 def test_every_room_is_drawn_and_no_other():
@@ -20,11 +21,27 @@ def test_files_that_are_named_stand_in_their_rooms():
     for room, cell in ROWS:
         for name in re.findall(r"`([\w.]+)`", cell):
             assert (GAP / room / name).is_file(), f"{room}/{name}"
-    named = re.findall(r"`(\w+/\w+\.py)`", PAGE[PAGE.index("Some questions") :])
-    rooms = {room for room, _ in ROWS}
-    for place in named:
-        if place.partition("/")[0] in rooms:
-            assert (GAP / place).is_file(), place
+
+
+def test_places_where_things_happen_are_there():
+    """A file is named from gap/, the package or the project."""
+    text = PAGE[PAGE.index("Where things happen") : PAGE.index("**The contest.**")]
+    named = set(re.findall(r"`([\w/]+\.(?:py|yaml|c|j2|md))`", text))
+    assert len(named) > 40
+    roots = (GAP, GAP.parent, GAP / "report", ROOT)
+    lost = {x for x in named if not any((root / x).is_file() for root in roots)}
+    assert lost == set()
+
+
+def test_functions_where_things_happen_are_there():
+    """``x in `file` `` tells where x is defined, or the method of a class."""
+    pairs = re.findall(r"`(\w+)(?:\.(\w+))?` (?:in|of) `([\w/]+\.py)`", PAGE)
+    assert len(pairs) > 15
+    for name, member, place in pairs:
+        found = [root / place for root in (GAP, GAP.parent) if (root / place).is_file()]
+        code = found[0].read_text(encoding="utf-8")
+        assert re.search(rf"^(def |class )?{name}\b", code, re.M), (name, place)
+        assert not member or f"def {member}(" in code, (name, member, place)
 
 
 def test_files_beside_the_rooms_are_all_told():

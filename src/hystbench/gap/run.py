@@ -158,7 +158,7 @@ def decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Dec
     asked = replace(asked, vocabulary=vocabulary, say=say_in_words(asked.say))
     about = base, evidence.input_hold, evidence.quantities, asked.say
     fit = without_leads(evidence.fit, *about)
-    evidence = replace(evidence, fit=fit, hold_out=())
+    evidence = replace(evidence.deciding, fit=fit)
     first = base
     base, built_in = build_in(base, evidence, vocabulary.fixed, asked.say)
     quantities = quantities_if_linear(base, evidence)

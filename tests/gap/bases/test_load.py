@@ -59,6 +59,21 @@ SYSTEMS = {
 }
 
 
+@pytest.mark.parametrize("word", ["linear", "gpi"])
+def test_a_base_is_identified_without_the_hold_out_records_in_hand(word, monkeypatch):
+    given = []
+
+    def identify(records):
+        given.append(records)
+        raise InputError("enough")
+
+    for name in ("identified_linear", "identified_gpi"):
+        monkeypatch.setattr(bases, name, identify)
+    with pytest.raises(InputError, match="enough"):
+        load_base(word, evidence(record(np.arange(64.0), np.arange(64.0))))
+    assert [records.hold_out for records in given] == [()]
+
+
 class TestLinear:
     def test_an_output_that_no_input_moves_is_told_instead_of_fitted(self):
         noise = np.random.default_rng(4)

@@ -328,7 +328,9 @@ def test_noise_that_follows_nothing_is_no_gap_but_where_the_noise_is_known():
         assert "moved in time" in reason
     # Nothing that seems to follow a signal needs no surrogate.
     nothing = Unnamed(1e-4, unrelated=0.9)
-    word, reason = judge(found, False, -1e-5, unnamed=nothing, floor_is_upper_bound=True)
+    word, reason = judge(
+        found, False, -1e-5, unnamed=nothing, floor_is_upper_bound=True
+    )
     assert word == "no-gap"
     assert "follows no known signal" in reason
     # A black box that explains some of it sees what the surrogates do not.

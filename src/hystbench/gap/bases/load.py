@@ -39,6 +39,8 @@ def load_base(text: str | Model, evidence: Evidence) -> tuple[Model, str]:
         ``package.module:function``, ``command: ...`` or a file .fmu or .onnx; or a
         model itself.
     evidence : Evidence
+        Of its hold-out records a base that is a column takes its own values. Nothing
+        is identified with them in hand.
 
     Returns
     -------
@@ -51,16 +53,17 @@ def load_base(text: str | Model, evidence: Evidence) -> tuple[Model, str]:
     InputError
         If the text is none of these, units differ, or the base cannot be had.
     """
+    deciding = evidence.deciding
     if isinstance(text, Model):
         model, note = checked_base(text, text.name, evidence), f"base {text.name}"
     elif text in IDENTIFIED:
-        return _kept(["base", text], evidence, lambda: _identified(text, evidence))
+        return _kept(["base", text], deciding, lambda: _identified(text, deciding))
     else:
         model, note = given_base(text, evidence)
     if not isinstance(model.chain[0], TransferFunction):
         return model, note
     about = ["split", json.dumps(model.to_mapping(), sort_keys=True)]
-    model, more = _kept(about, evidence, lambda: split_given(model, evidence))
+    model, more = _kept(about, deciding, lambda: split_given(model, deciding))
     return model, note + more
 
 

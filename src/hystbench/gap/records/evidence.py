@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hystbench.blocks.held import Hold
@@ -58,6 +58,11 @@ class Evidence:
     warnings: tuple[str, ...] = ()
     quantities: Quantities = NONE_KNOWN
     device_kind: DeviceKind | None = None
+
+    @property
+    def deciding(self) -> Evidence:
+        """The same without the hold-out records: all that a decision is given."""
+        return replace(self, hold_out=())
 
     @property
     def input(self) -> Channel:
