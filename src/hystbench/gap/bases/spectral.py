@@ -342,10 +342,9 @@ def _triangle(
     columns: ComplexArray, transients: ComplexArray, target: ComplexArray
 ) -> FloatArray:
     """Triangle of a stretch's equations, without what its transient can do."""
-    both = _real(np.column_stack([columns, target]))
-    basis, _ = np.linalg.qr(_real(transients))
-    both -= basis @ (basis.T @ both)
-    return triangle_of(both)
+    every = triangle_of(_real(np.column_stack([transients, columns, target])))
+    own = transients.shape[1]
+    return every[own:, own:]
 
 
 def triangle_of(equations: FloatArray) -> FloatArray:

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy import fft
 
 from hystbench.blocks.held import Hold
 from hystbench.blocks.starts import path_from
@@ -78,19 +79,31 @@ class Way:
         self.record, self.mask = record, mask
         path, self.before = path_from(record.u, task.start)
         self.count = len(path)
-        f = np.asarray(np.fft.rfftfreq(2 * self.count, record.dt), np.float64)
+        self.length = fft.next_fast_len(2 * self.count, real=True)
+        f = np.asarray(fft.rfftfreq(self.length, record.dt), np.float64)
         self.s = np.asarray(2j * np.pi * f / task.scale, dtype=np.complex128)
         self.spectrum = self._lines(path - self.before) * held(f * record.dt, task.hold)
 
+    # Rows of a table are signals, which one call transforms together.
+
     def _lines(self, signal: FloatArray) -> ComplexArray:
-        return np.fft.rfft(signal, 2 * self.count)
+        return np.asarray(fft.rfft(signal, self.length))
 
     def _signal(self, lines: ComplexArray) -> FloatArray:
-        return np.asarray(np.fft.irfft(lines, 2 * self.count)[: self.count], np.float64)
+        signal = fft.irfft(lines, self.length)[..., : self.count]
+        return np.asarray(signal, np.float64)
 
     def _own(self, signal: FloatArray) -> FloatArray:
         """Leave out what was before the record."""
-        return signal[-len(self.record) :]
+        return signal[..., -len(self.record) :]
+
+    def _powers_of_s(self, lines: ComplexArray, count: int) -> ComplexArray:
+        """Multiply lines by so many powers of s, from zero on, a row each."""
+        rows = np.empty((count, len(lines)), dtype=np.complex128)
+        for row in rows:
+            row[:] = lines
+            lines = lines * self.s
+        return rows
 
     def between(self, halves: Halves) -> FloatArray:
         """Give the signal between the halves."""
@@ -107,35 +120,41 @@ class Way:
         return Sent(w, behind, self._own(y))
 
     def powers(self, halves: Halves, w: FloatArray) -> FloatArray:
-        """How the output changes with each number of the curve, and the constant."""
+        """How the output changes with each number of the curve, and the constant.
+
+        Returns
+        -------
+        ndarray, shape (samples, DEGREE + 1)
+        """
         was = self.before * halves.front.static
         back, still = halves.back.at(self.s), halves.back.static
-        columns = [
-            self._signal(back * self._lines(w**k - was**k)) + still * was**k
-            for k in range(1, DEGREE + 1)
-        ]
-        return self._own(np.column_stack([*columns, np.ones(self.count)]))
+        rests = was ** np.arange(1, DEGREE + 1)[:, None]
+        powers = np.multiply.accumulate(np.broadcast_to(w, (DEGREE, len(w))))
+        rows = self._signal(back * self._lines(powers - rests)) + still * rests
+        return self._own(np.vstack([rows, np.ones(self.count)])).T
 
     def derivatives(self, halves: Halves, sent: Sent) -> FloatArray:
-        """How the output changes with each number, but for what was for ever before."""
+        """How the output changes with each number, but for what was for ever before.
+
+        Returns
+        -------
+        ndarray, shape (samples, Halves.count)
+        """
         s, front, back = self.s, halves.front, halves.back.at(self.s)
         slopes = np.arange(1, DEGREE + 1) * halves.curve
         steep = np.polyval(slopes[::-1], sent.w)
-
-        def through(change: ComplexArray) -> FloatArray:
-            bent = self._lines(steep * self._signal(change))
-            return self._signal(back * bent)
-
         by_b = self.spectrum / below(front.a, s)
-        by_a = -front.at(s) * by_b
-        columns = [through(by_a * s**k) for k in range(len(front.a))]
-        columns += [through(by_b * s**k) for k in range(len(front.b))]
+        lines = self._by_coefficient(front, by_b)
+        in_front = self._signal(back * self._lines(steep * self._signal(lines)))
         by_b = sent.behind / below(halves.back.a, s)
-        by_a = -back * by_b
-        columns += [self._signal(by_a * s**k) for k in range(len(halves.back.a))]
-        columns += [self._signal(by_b * s**k) for k in range(len(halves.back.b))]
-        own = [self._own(column) for column in columns]
-        return np.column_stack([*own, self.powers(halves, sent.w)])
+        behind = self._signal(self._by_coefficient(halves.back, by_b))
+        own = self._own(np.vstack([in_front, behind])).T
+        return np.hstack([own, self.powers(halves, sent.w)])
+
+    def _by_coefficient(self, half: Rational, by_b: ComplexArray) -> ComplexArray:
+        """Give lines of the change with each coefficient, first the denominator's."""
+        by_a = self._powers_of_s(-half.at(self.s) * by_b, len(half.a))
+        return np.vstack([by_a, self._powers_of_s(by_b, len(half.b))])
 
 
 @dataclass(frozen=True)
