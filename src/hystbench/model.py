@@ -47,6 +47,8 @@ class Model:
         value; the others are free altogether.
     provenance : mapping of str to Provenance
         By parameter name.
+    exact : bool
+        Whether it says that none is free: ``free: []``.
     """
 
     name: str
@@ -56,6 +58,7 @@ class Model:
     free: tuple[str, ...] = ()
     provenance: Mapping[str, Provenance] = field(default_factory=dict)
     tolerances: Mapping[str, float] = field(default_factory=dict)
+    exact: bool = False
 
     def __post_init__(self) -> None:
         """Refuse a chain that does not fit together and names that it lacks."""
@@ -257,7 +260,7 @@ class Model:
         }
         if self.tolerances:
             content["free"] = {name: self.tolerances.get(name) for name in self.free}
-        elif self.free:
+        elif self.free or self.exact:
             content["free"] = list(self.free)
         content["chain"] = [{block.name: block.to_mapping()} for block in self.chain]
         if self.provenance:

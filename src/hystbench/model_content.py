@@ -68,6 +68,7 @@ def read_content(content: object) -> dict[str, Any]:
         "output": _channel(content["output"], "output: "),
         "chain": tuple(_block(item, position) for position, item in enumerate(chain)),
         "free": tuple(free),
+        "exact": "free" in content and not free,
         "tolerances": {key: item for key, item in shares.items() if item is not None},
         "provenance": {
             key: _provenance(item, f"provenance: {key}: ")

@@ -12,7 +12,7 @@ WORDS = {"SHAPE", "WORTH_A_WORD"}
 """A name, and what decides only what is told."""
 MADE_OF_OTHERS = {
     *("LEAST_WEIGHT", "CERTAIN", "UNKNOWN", "AS_GOOD", "ABOVE_NOISE"),
-    *("TIMING_PAYS", "ANOTHER_MODE"),
+    *("TIMING_PAYS", "ANOTHER_MODE", "SLIDES"),
 }
 
 

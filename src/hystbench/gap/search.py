@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache, partial
 
 import numpy as np
@@ -11,14 +11,16 @@ import numpy as np
 from hystbench.blocks.held import Hold
 from hystbench.blocks.store import Store
 from hystbench.gap.asked import USUAL, Asked
+from hystbench.gap.bases.known_about import known_about
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.excitations import Limits
 from hystbench.gap.fitting.augmented_model import augmented
-from hystbench.gap.fitting.model_score import score_of
+from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.own_values import NONE, OwnValues
+from hystbench.gap.fitting.re_tuned import re_tuned_words
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.named_inside import (
@@ -34,7 +36,7 @@ from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence, own_offsets
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.thresholds import LOOSE, PAYS
+from hystbench.gap.thresholds import FURTHER, LOOSE, PARAMETER, PAYS
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Record
@@ -47,6 +49,9 @@ OF_THE_PLACE = "asymmetry"
 """Closed as well where the base may hold a hysteresis: it then stands behind it. Before
 a linear base it bends what drives the mass, as a valve does that opens more one way."""
 
+NOT_EXACT = "the base does not call its numbers exact, and was re-tuned"
+EXACT = "'free: []'"
+
 
 def search(
     evidence: Evidence,
@@ -55,6 +60,10 @@ def search(
     quantities: Quantities | None = None,
 ) -> Decision:
     """Locate the gap, name what is missing and add it.
+
+    A given base is first taken as it is. If much is left then, its numbers and timing
+    may be off: effects are sought again beside it with these free, each by what it may
+    be off, and what explains the records better stands.
 
     Parameters
     ----------
@@ -71,9 +80,104 @@ def search(
     InputError
         If the base does not run on the records, or no excitation fits the limits.
     """
+    limits = Limits.of(evidence.fit, asked.limits) if asked.limits else None
+    found = _beside(base, evidence, asked, quantities)
+    about = None if is_identified(base) else known_about(base, evidence.fit)
+    if about is not None and found.may_be_simpler(asked.unnamed_share):
+        asked.say("the base's numbers or timing may be off: naming beside that")
+        again = _beside(about, evidence, asked, quantities)
+        # Neither is better for what a wrong shape of the base's hysteresis leaves.
+        score = make_score(found.start, found.floor.rms, forms=False)
+        if again.value(score) + FURTHER < found.value(score):
+            found = again
+        else:
+            asked.say("that explains no more: they stay as they are")
+    found = _apart(found, asked)
+    base, start, inside = found.base, found.start, found.inside
+    if inside is not None:
+        base, start = inside.base, inside.start
+    told = judge_and_tell(
+        evidence.name, base, start, found.floor, found.named, asked, limits, found.own
+    )
+    if inside is not None:
+        more = inside.sentence
+    elif base is about:
+        moved = re_tuned_words(start, found.named.state)
+        more = f"{NOT_EXACT}: {moved} ({EXACT} in the model file keeps it as it is)"
+    else:
+        return told
+    reason = f"{told.content['reason']}; {more}"
+    return replace(told, content={**told.content, "reason": reason})
+
+
+@dataclass(frozen=True)
+class _Searched:
+    """What was named beside a base.
+
+    Parameters
+    ----------
+    base : Model
+    start : ModelState
+        The same on the fit records.
+    floor : Floor
+    chain : Named or None
+        Effects in a chain; none where forces were enough.
+    inside : Inside or None
+        Forces inside the dynamics, where they do better than a chain.
+    own : OwnValues
+    """
+
+    base: Model
+    start: ModelState
+    floor: Floor
+    chain: Named | None
+    inside: Inside | None
+    own: OwnValues
+
+    @property
+    def named(self) -> Named:
+        """What does better."""
+        found = self.chain if self.inside is None else self.inside.named
+        assert found is not None  # noqa: S101  (one of them was looked for)
+        return found
+
+    @property
+    def re_tuned(self) -> bool:
+        """Whether numbers were fitted that nobody set free."""
+        return self.inside is not None and self.inside.counts > 0
+
+    def value(self, score: Score) -> float:
+        """Score it, with what its effects and re-tuned numbers have to pay."""
+        state = self.named.state
+        own = {place for item in state.added for place in item.blocks}
+        cost = self.own.charge + FURTHER * self.re_tuned
+        if state.added:
+            cost += PAYS + FURTHER * (len(state.added) - 1)
+        for free in state.free:
+            if free.block not in own:
+                cost += PARAMETER
+                if free.tolerance is not None:
+                    middle = (free.low + free.high) / 2
+                    cost += ((state.value(free) - middle) / free.tolerance) ** 2
+        return cost + score_of(state, score)
+
+    def may_be_simpler(self, share: float) -> bool:
+        """Tell whether there may be a better answer beside a re-tuned base.
+
+        That is to pay as an effect does. So either more is left than noise and than may
+        stay unnamed, or one effect and the base re-tuned would be fewer.
+        """
+        square, state = self.floor.rms**2, self.named.state
+        most = max(square, share * self.start.power(square))
+        return len(state.added) + self.re_tuned > 2 or state.power(square) > most
+
+
+def _beside(
+    base: Model, evidence: Evidence, asked: Asked, quantities: Quantities | None
+) -> _Searched:
+    """Name in a chain and inside the dynamics, on the records as they are."""
     records, hold, declared = evidence.fit, evidence.input_hold, evidence.noise_rms
     offered, say, share = asked.vocabulary.offered, asked.say, asked.unnamed_share
-    limits = Limits.of(records, asked.limits) if asked.limits else None
     if any(record.decay_s is not None for record in records):
         closed = (*NOT_IN_WINDOWS, *(() if quantities else (OF_THE_PLACE,)))
         offered = tuple(name for name in offered if name not in closed)
@@ -105,30 +209,34 @@ def search(
     if inside is not None:
         beside = beside_forces(inside.named, inside.start, floor.rms, share, say)
         inside = replace(inside, named=beside)
-    enough = ""
     # A base that was given is re-tuned where it is a host: that may stand for a chain.
     if inside is not None and identified:
         enough = _why_enough(inside.start, inside.named.state, floor, share)
-    if enough:
-        say(f"inside: {enough}, so no chain of effects is tried")
-    else:
-        same = start is first
-        chain = in_a_chain() if same else add_effects(start, floor.rms, asked)
-        named, theirs = chain, own
-        if inside is not None and not beats(inside, named, floor.rms, say):
-            inside = None
-        if not (own.records or _leaves_little(inside, floor)):
-            start, named, theirs = named_apart(start, floor.rms, named, asked)
-            if inside is not None and theirs.records:
-                inside = inside if beats(inside, named, floor.rms, say) else None
-        own = theirs if inside is None else own
-    if inside is not None:
-        base, start, named = inside.base, inside.start, inside.named
-    found = judge_and_tell(evidence.name, base, start, floor, named, asked, limits, own)
-    if inside is None:
+        if enough:
+            say(f"inside: {enough}, so no chain of effects is tried")
+            return _Searched(base, start, floor, None, inside, own)
+    chain = in_a_chain() if start is first else add_effects(start, floor.rms, asked)
+    if inside is not None and not beats(inside, chain, floor.rms, say):
+        inside = None
+    return _Searched(base, start, floor, chain, inside, own)
+
+
+def _apart(found: _Searched, asked: Asked) -> _Searched:
+    """Name anew beside what records have of their own, where effects leave much."""
+    if found.chain is None or found.own.records:
         return found
-    reason = f"{found.content['reason']}; {inside.sentence}"
-    return replace(found, content={**found.content, "reason": reason})
+    inside, floor = found.inside, found.floor
+    if _leaves_little(inside, floor):
+        return found
+    start, chain, own = named_apart(found.start, floor.rms, found.chain, asked)
+    if (
+        inside is not None
+        and own.records
+        and not beats(inside, chain, floor.rms, asked.say)
+    ):
+        inside = None
+    own = found.own if inside is not None else own
+    return replace(found, start=start, chain=chain, inside=inside, own=own)
 
 
 def _with_forces(

@@ -93,6 +93,10 @@ takes little of the whole."""
 
 # The vocabulary.
 
-SLIDES = 0.01
+SLIDES = AS_GOOD
 """A force that gives way within this share of the range of motion is dry friction: it
 slides on nearly all of its way. What yields on a longer way is a hysteretic force."""
+
+ABOUT = 0.1
+"""Share of itself by which a number of a base that nobody calls exact may be off, as in
+a data sheet. A number that a fit moves farther is told."""

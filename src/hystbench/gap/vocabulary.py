@@ -104,10 +104,17 @@ class Vocabulary:
             said.append(f"you put in {named}")
         if self.without:
             said.append(f"you left out {all_of(self.without, *untried)}")
-        if self.impossible:
+        from hystbench.gap.effects import effects  # late: as above
+        from hystbench.gap.effects.effect import StoreEffect
+
+        # Nobody looks for a level in what is no store.
+        impossible = tuple(
+            x for x in self.impossible if not isinstance(effects()[x], StoreEffect)
+        )
+        if impossible:
             said.append(
                 f"the device is {self.kind}, as dataset.yaml says, and cannot have "
-                f"{all_of(self.impossible, *untried)}"
+                f"{all_of(impossible, *untried)}"
             )
         return said
 

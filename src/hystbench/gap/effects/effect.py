@@ -46,9 +46,6 @@ class Effect(ABC):
     """Forms that bend to much of what is there, as a path does: no law."""
     laws: ClassVar[tuple[str, ...]] = ()
     """Blocks of other laws of the effect, beside the one that has its name."""
-    vanishing: ClassVar[Mapping[str, float]] = {}
-    """Of its blocks inside the dynamics: with a number at this value it is another
-    effect."""
     taken_from: ClassVar[str] = ""
     """The number of a mechanism that it may have been counted in before."""
     special: ClassVar[bool] = False
@@ -205,6 +202,10 @@ class Effect(ABC):
             How the linear mechanism moves on the records.
         """
         yield from ()
+
+    def vanishing(self, form: str) -> Mapping[str, float]:
+        """Give the numbers, and their values, at which a law is another effect."""
+        return {}
 
     def stored(self, filled: Filled) -> Iterator[Changed]:
         """Offer other numbers of stores in series.

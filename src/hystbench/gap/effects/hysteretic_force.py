@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import ClassVar
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -25,7 +24,6 @@ class HystereticForce(ForceEffect):
     name = "hysteretic-force"
     shows = "branch"
     laws = ("bouc-wen-force", "iwan-force")
-    vanishing: ClassVar = {"beta": 0.0, "sharing": 1.0}
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer it weak, with short and long ways to yield, or as one that stiffens."""
@@ -62,3 +60,7 @@ class HystereticForce(ForceEffect):
                 "exponent": (-np.inf, STEEPEST),
             }
             yield Law("plays", iwan, plays, ranges=ranges)
+
+    def vanishing(self, form: str) -> Mapping[str, float]:
+        """Without a loop it is a spring."""
+        return {"beta": 0.0, "sharing": 1.0}

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import ClassVar
+from collections.abc import Iterator, Mapping
 
 from hystbench.blocks.slider_with_gap import SliderWithGap as Block
 from hystbench.gap.effects.effect import ForceEffect
@@ -15,7 +14,6 @@ class SliderWithGap(ForceEffect):
 
     name = "slider-with-gap"
     shows = "branch"
-    vanishing: ClassVar = {"gap": 0.0}
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer narrow and wide clearances."""
@@ -27,3 +25,7 @@ class SliderWithGap(ForceEffect):
                 gap=share * moved.reach,
             )
             yield Law("", block, names)
+
+    def vanishing(self, form: str) -> Mapping[str, float]:
+        """Without its clearance it is dry friction."""
+        return {"gap": 0.0}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from hystbench.blocks.stop import SIDES
 from hystbench.blocks.stop import Stop as StopBlock
@@ -24,4 +24,12 @@ class Stop(ForceEffect):
                 block = StopBlock(
                     contact_stiffness=stiffness, gap=share * moved.reach, sides=sides
                 )
-                yield Law(f"sides: {sides}", block, ("contact_stiffness", "gap"))
+                yield Law(_form(sides), block, ("contact_stiffness", "gap"))
+
+    def vanishing(self, form: str) -> Mapping[str, float]:
+        """Without its clearance a stop on both sides is a linear spring."""
+        return {"gap": 0.0} if form == _form("both") else {}
+
+
+def _form(sides: str) -> str:
+    return f"sides: {sides}"

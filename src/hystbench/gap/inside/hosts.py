@@ -39,12 +39,15 @@ from hystbench.gap.inside.one_coordinate import (
 from hystbench.gap.inside.stores import in_other_order, stores
 from hystbench.gap.inside.two_masses import further_modes_of, two_masses
 from hystbench.gap.records.scored_samples import ScoredSamples
-from hystbench.gap.thresholds import AS_GOOD, FURTHER, PAYS
+from hystbench.gap.thresholds import ABOUT, AS_GOOD, FURTHER, PAYS
 from hystbench.quantities import Quantities
 from hystbench.record import Record
 
 STORES = {1: "a store stands", 2: "two stores in series stand"}
 """How many are tried, and how that is told."""
+KNOWN = ("mass", "stiffness", "gain", "value")
+"""Numbers that a given base tells well. Of damping a model may say little, and one with
+long steps has some of its own; an offset has no size that it could be compared with."""
 TRIED = 2
 """Modes of a base in which forces are tried, those that need it most."""
 
@@ -81,7 +84,11 @@ class Host:
 
 
 def hosts(
-    start: ModelState, quantities: Quantities, identified: bool, score: Score
+    start: ModelState,
+    quantities: Quantities,
+    identified: bool,
+    score: Score,
+    exact: bool = False,
 ) -> Iterator[Host]:
     """Give the linear models that forces are tried in.
 
@@ -94,6 +101,8 @@ def hosts(
     identified : bool
         Whether the base was identified from the records.
     score : Score
+    exact : bool
+        Whether a given base calls its numbers exact.
     """
     delay = start.chain[0]
     if identified and isinstance(delay, InputDelay):
@@ -129,7 +138,7 @@ def hosts(
             )
             same = same_as(start, quantities, score.floor)
         if same is not None:
-            yield from _as_given(same, score, words, bool(start.free))
+            yield from _as_given(same, score, words, start, exact)
     if quantities.causality not in ("force to motion", "unknown"):
         return
     known = quantities.output in MOTIONS
@@ -145,7 +154,7 @@ def hosts(
             best = fitted(mode, score)
             yield Host(best.state, best, words)
         else:
-            yield from _as_given(mode, score, words, bool(start.free))
+            yield from _as_given(mode, score, words, start, exact)
 
 
 def _of_stores(start: ModelState, identified: bool, score: Score) -> Iterator[Host]:
@@ -204,20 +213,33 @@ def stores_like(start: ModelState, count: int) -> ModelState | None:
 
 
 def _as_given(
-    state: ModelState, score: Score, words: str, may_change: bool
+    state: ModelState, score: Score, words: str, start: ModelState, exact: bool
 ) -> Iterator[Host]:
     """Give a host that does what a given base does, then the same fitted to records.
 
     The numbers of a given base are known, unless it says that some are free. That known
     ones are wrong all the same has to pay as a further effect does.
     """
-    if may_change:
+    free = start.free
+    if not free or any(x.tolerance is not None for x in free):
+        state = replace(state, free=tuple(_about(state, x) for x in state.free))
+    if free:
         yield Host(state, fitted(state, score), words)
         return
     held = replace(state, free=())
     yield Host(held, fitted(held, score), f"{words}, its numbers as they are")
-    words = f"{words}, its numbers fitted to the records"
-    yield Host(state, fitted(state, score), words, charge=FURTHER)
+    if not exact:
+        words = f"{words}, its numbers fitted to the records"
+        yield Host(state, fitted(state, score), words, charge=FURTHER)
+
+
+def _about(state: ModelState, free: Free) -> Free:
+    """Bound a number by three times what those that nobody calls exact are off."""
+    if free.parameter not in KNOWN:
+        return free
+    value = state.value(free)
+    size = 3 * ABOUT * abs(value)
+    return free._replace(low=value - size, high=value + size)
 
 
 def best_host(states: Sequence[ModelState], score: Score) -> Fitted | None:

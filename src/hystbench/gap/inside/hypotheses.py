@@ -17,7 +17,6 @@ from hystbench.gap.fitting.least_squares import (
     Fitted,
     fitted,
     fitted_to_the_end,
-    judged,
     record_weights,
 )
 from hystbench.gap.fitting.score import Score
@@ -324,16 +323,19 @@ def _to_the_end(begun: Iterable[Fitted], score: Score) -> list[Fitted]:
 def _vanishes(item: Fitted, score: Score) -> bool:
     """Tell whether an effect does as well without the number that makes it itself.
 
-    A slider without its clearance is dry friction, which is tried as such.
+    A slider without its clearance is dry friction, which is tried as such. The other
+    numbers may make up for what that number did.
     """
     state = item.state
     for added in state.added:
-        without = effects()[added.effect].vanishing.items()
+        without = effects()[added.effect].vanishing(added.form).items()
         for place, (name, value) in product(added.blocks, without):
             if name not in state.chain[place].parameters():
                 continue  # another law of the effect
             chain = list(state.chain)
             chain[place] = replace(chain[place], **{name: value})
-            if judged(state.with_chain(tuple(chain)), score) < item.score + SCALE:
+            others = (x for x in state.free if (x.block, x.parameter) != (place, name))
+            bare = replace(state.with_chain(tuple(chain)), free=tuple(others))
+            if fitted(bare, score, FEW).score < item.score + SCALE:
                 return True
     return False

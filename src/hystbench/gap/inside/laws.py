@@ -139,7 +139,8 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
         host = host_of(state)
         place = host + 1
         if law.stands_for and _is_free(state, host):
-            spring = (1.0 - law.stands_for) * base[host].stiffness
+            left = (1.0 - law.stands_for) * base[host].stiffness
+            spring = _in_range(state, host, "stiffness", left)
             base[host] = replace(base[host], stiffness=spring)
     chain = (*base[:place], law.block, *base[place:])
 
@@ -194,10 +195,12 @@ def evened(state: ModelState) -> ModelState:
     spring, damper, _ = np.linalg.lstsq(scaled, product / sizes, rcond=1e-9)[0] / sizes
     if max(abs(spring), abs(damper)) > HUGE:
         return state  # the host all but runs away
+    stiffness = max(host.stiffness - spring, REMAINS * host.stiffness)
+    damping = max(host.damping - damper, REMAINS * host.damping)
     chain[number] = replace(
         host,
-        stiffness=max(host.stiffness - spring, REMAINS * host.stiffness),
-        damping=max(host.damping - damper, REMAINS * host.damping),
+        stiffness=_in_range(state, number, "stiffness", stiffness),
+        damping=_in_range(state, number, "damping", damping),
     )
     return state.with_chain(tuple(chain))
 
@@ -218,6 +221,14 @@ def _as_strong(state: ModelState, place: int) -> ModelState:
             up = tuple(x / times for x in block.numerator)
             chain[k] = replace(block, numerator=up)
     return state.with_chain(tuple(chain))
+
+
+def _in_range(state: ModelState, place: int, name: str, value: float) -> float:
+    """Keep a number of a block within the range that it may have."""
+    for free in state.free:
+        if (free.block, free.parameter) == (place, name):
+            return float(np.clip(value, free.low, free.high))
+    return value
 
 
 def _is_free(state: ModelState, place: int) -> bool:

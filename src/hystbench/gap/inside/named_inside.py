@@ -38,6 +38,7 @@ from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.memory import may_have_hysteresis
 from hystbench.gap.thresholds import (
+    ABOUT,
     FURTHER,
     PARAMETER,
     PAYS,
@@ -46,11 +47,8 @@ from hystbench.gap.thresholds import (
 )
 from hystbench.model import Model
 from hystbench.quantities import Quantities
-from hystbench.sentences import percent
+from hystbench.sentences import finely, percent
 from hystbench.units import sized
-
-FAR = 0.1
-"""Share by which a fit may move a known number before it is told."""
 
 
 @dataclass(frozen=True)
@@ -115,7 +113,7 @@ def named_inside(
     offer = partial(laws_for, turns=turns, offered=start.offered, times=times)
     tried: list[tuple[Host, list[Fitted]]] = []
     limit, little, enough = np.inf, False, False
-    for host in hosts(fewer, quantities, identified, score):
+    for host in hosts(fewer, quantities, identified, score, base.exact):
         if (tried or not identified) and not little:
             limit = most()
         if limit - host.counts < 1:
@@ -181,6 +179,10 @@ def named_inside(
         f"it leaves {after} rms of the fit records above the noise floor, the base "
         f"{before})"
     )
+    if host.counts:
+        square = floor_rms**2
+        share = re_tuned.share(start, square, max(start.power(square), square))
+        sentence += f"; its numbers fitted without them take {finely(share)} of the gap"
     if not identified:
         sentence += re_tuning(alone, state)
     # The first rung is the host re-tuned, so that no effect has the credit of that.
@@ -212,6 +214,11 @@ def in_short_steps(state: ModelState, score: Score) -> ModelState:
     return state
 
 
+ZEROS = ("bias", "offset")
+"""Numbers of a host that are counted from a zero: what share of itself one moves by
+says nothing."""
+
+
 def re_tuning(alone: ModelState, state: ModelState) -> str:
     """Say which of a host's own numbers the fit with the effects moved most, if far.
 
@@ -226,13 +233,13 @@ def re_tuning(alone: ModelState, state: ModelState) -> str:
     moves = [(0.0, "")]
     for place, given in zip(own, alone.chain, strict=True):
         for free in state.free:
-            if free.block != place or free.parameter in meant:
+            if free.block != place or free.parameter in {*meant, *ZEROS}:
                 continue
             was = getattr(given, free.parameter)
             if free.element is None and was:
                 moves.append((abs(state.value(free) / was - 1.0), free.parameter))
     far, name = max(moves)
-    if far < FAR:
+    if far < ABOUT:
         return ""
     return (
         f"; of its own numbers the fit moved {name} most, by {percent(far)}: check "

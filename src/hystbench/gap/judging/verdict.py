@@ -280,7 +280,7 @@ def judge(
         return "unnamed", why
     if much and unnamed.trust(unnamed_share, of_base=True) < MOST:
         return "unnamed", unnamed.reason(unnamed_share)  # likelier wrong than right
-    if unnamed.stays > LOOSE:
+    if unnamed.stays > MOST:
         return "unnamed", (
             f"too much stays for a name: {left.sentence}, and most of it follows no "
             "known signal"

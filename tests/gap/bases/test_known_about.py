@@ -1,0 +1,146 @@
+"""Bases of a laboratory: numbers of a data sheet, channels not read at one time."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.signal import lsim
+
+from hystbench.blocks.gain import Gain
+from hystbench.blocks.input_delay import InputDelay
+from hystbench.blocks.prandtl_ishlinskii import PrandtlIshlinskii
+from hystbench.blocks.sensor_lag import SensorLag
+from hystbench.blocks.simulated_column import SimulatedColumn
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.bases.known_about import known_about
+from hystbench.gap.fitting.on_records import start_state
+from hystbench.gap.fitting.re_tuned import re_tuned_words
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.run import closed_gap
+from hystbench.model import Model
+from tests.gap.made import CURRENT, DISPLACEMENT, record
+
+DT, FINE, COUNT, NOISE = 1e-3, 10, 3000, 2e-3
+LAG = 7e-3
+LATE_BY = 0.8  # samples
+
+
+def second_order(frequency_hz, damping):
+    w = 2 * np.pi * frequency_hz
+    return TransferFunction(numerator=(w**2,), denominator=(1.0, 2 * damping * w, w**2))
+
+
+def base(*blocks, **about):
+    chain = blocks or (Gain(value=3.0), second_order(40.0, 0.3))
+    return Model("data-sheet", CURRENT, DISPLACEMENT, chain, **about)
+
+
+def device(frequency_hz, late):
+    """The device by scipy, in steps ten times as short: its sensor lags."""
+    w = 2 * np.pi * frequency_hz
+    poles = np.polymul([1.0, 2 * 0.27 * w, w**2], [LAG, 1.0])
+    rng = np.random.default_rng(3)
+    for k, use in enumerate(["fit", "fit", "hold-out"]):
+        lines = np.column_stack([rng.uniform(1, 90, 12), rng.uniform(0, 6, 12)])
+
+        def drive(time, lines=lines):
+            sines = sum(np.sin(2 * np.pi * f * time + p) for f, p in lines)
+            return sines * np.clip(time / 0.1, 0, 1) ** 2
+
+        fine = np.arange(COUNT * FINE) * DT / FINE
+        _, y, _ = lsim(([3.0 * w**2], poles), drive(fine - late * DT), fine)
+        u = drive(np.arange(COUNT) * DT)
+        y = y[::FINE] + NOISE * rng.standard_normal(COUNT)
+        yield record(u, y, name=f"run-{k}", dt=DT, use=use)
+
+
+def named(model, frequency_hz=38.5, late=LATE_BY):
+    *fit, held = device(frequency_hz, late)
+    evidence = Evidence("made", tuple(fit), (held,), noise_rms=NOISE)
+    return closed_gap(evidence, model).outcome.content
+
+
+def test_a_lag_is_named_beside_a_base_that_is_a_little_off():
+    content = named(base())
+    (effect,) = content["effects"]
+    assert (content["verdict"], effect["name"]) == ("named", "sensor-lag")
+    told = effect["parameters"]["time_constant_s"]["value"]
+    assert told == pytest.approx(LAG, rel=0.02)
+    assert content["gap"]["after"] < 1.5 * NOISE
+    assert "was re-tuned: denominator moved most" in content["reason"]
+    assert f"its input counts as {LATE_BY:.2g} samples late" in content["reason"]
+    first, _, last = content["base_parameters"]["transfer-function.denominator"][
+        "after"
+    ]
+    assert last / first == pytest.approx((2 * np.pi * 38.5) ** 2, rel=0.01)
+
+
+def test_a_base_that_calls_itself_exact_stays_as_it_is():
+    content = named(base(exact=True))
+    assert "re-tuned" not in content["reason"]
+    assert content["base_parameters"] == {}
+    assert content["gap"]["after"] > 10 * NOISE
+
+
+def test_beside_an_exact_base_nothing_is_re_tuned():
+    content = named(base(Gain(value=3.0), second_order(40.0, 0.27)), 40.0, late=0.0)
+    (effect,) = content["effects"]
+    # Before and behind a linear base a lag does the same.
+    assert {effect["name"], *effect["cannot_be_told_from"]} >= {
+        "sensor-lag",
+        "drive-lag",
+    }
+    assert content["base_parameters"] == {}
+
+
+def test_it_simulates_the_same_until_it_is_re_tuned():
+    u = np.random.default_rng(0).normal(size=500)
+    given = base()
+    about = known_about(given, [record(u)])
+    assert isinstance(about.chain[0], InputDelay)
+    np.testing.assert_allclose(about.simulate(u, DT), given.simulate(u, DT), atol=1e-12)
+    assert about.tolerances["gain.value"] == pytest.approx(0.1)
+    assert "gain.offset" not in about.free  # nobody stated it
+
+
+def test_of_a_hysteresis_only_the_timing_is_free():
+    loop = PrandtlIshlinskii(thresholds=(0.1, 0.2), weights=(1.0, 0.5))
+    about = known_about(base(loop, SensorLag(time_constant_s=0.01)), [record([0, 1])])
+    assert about.free == ("sensor-lag.time_constant_s", "input-delay.delay_s")
+
+
+def of_a_column():
+    other = record([0.0, 1.0], simulated=np.array([0.0, 1.0]))
+    return SimulatedColumn(column="y", records=(other,))
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        base(exact=True),
+        base(free=("gain.value",)),
+        base(of_a_column()),
+    ],
+    ids=["exact", "says what is free", "a column"],
+)
+def test_others_are_taken_as_they_say(given):
+    assert known_about(given, [record([0.0, 1.0])]) is None
+
+
+def test_an_empty_list_of_free_numbers_calls_a_model_exact():
+    content = base().to_mapping()
+    assert not Model.from_mapping(content, "model").exact
+    exact = Model.from_mapping(content | {"free": []}, "model")
+    assert exact.exact
+    assert exact.to_mapping()["free"] == []
+
+
+def test_what_moved_most_is_told_with_the_timing():
+    u = np.random.default_rng(1).normal(size=200)
+    records = (record(u, dt=DT),)
+    start, _ = start_state(records, known_about(base(), records), "linear")
+    chain = list(start.chain)
+    chain[0] = replace(chain[0], delay_s=chain[0].delay_s - 0.5 * DT)
+    chain[1] = replace(chain[1], value=2.88)
+    words = re_tuned_words(start, start.with_chain(tuple(chain)))
+    assert words == "value moved most, by 4 % and its input counts as 0.5 samples early"
