@@ -2,7 +2,7 @@
 
 import pytest
 
-from hystbench.gap.holdout.outcome import shortfall
+from hystbench.gap.holdout.outcome import no_surer_than_even, shortfall
 
 
 def content(
@@ -108,3 +108,19 @@ def test_records_that_lie_outside_alike_are_told_in_one_clause(count, told):
     ]
     assert told in shortfall(given)["sentence"]
     assert shortfall(given)["sentence"].count("outside") == 1
+
+
+def test_a_name_that_widens_the_gap_is_no_surer_than_even():
+    names = ("eddy-diffusion", "creep", "drift", "friction")
+    found = {
+        "effects": [{"name": name, "confidence": 0.9} for name in names[:3]]
+        + [{"name": "friction", "confidence": 0.2}],
+        "ladder": [
+            {"name": "base", "rms": 2.0},
+            {"name": "eddy-diffusion", "rms": 1.0},
+            {"name": "creep + friction", "rms": 1.2},
+            {"name": "drift", "rms": 1.205},
+        ],
+    }
+    less = {x["name"]: x["confidence"] for x in no_surer_than_even(found)}
+    assert less == dict(zip(names, (0.9, 0.5, 0.9, 0.2), strict=True))

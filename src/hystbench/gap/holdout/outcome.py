@@ -2,6 +2,7 @@
 
 They choose nothing. A model that is worse on them than the base goes as a whole: to
 keep those of its effects that do better there would be to choose by hold-out records.
+A name whose step widens the gap there is no surer than even.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.nuisance import left_rms
-from hystbench.gap.thresholds import ABOVE_NOISE, AS_GOOD
+from hystbench.gap.thresholds import ABOVE_NOISE, AS_GOOD, MOST
 from hystbench.gap.vocabulary import Vocabulary, with_device
 from hystbench.units import sized
 
@@ -69,6 +70,7 @@ def outcome(
         content = without_names({**content, **kept}, taken)
         shown = replace(alone, model=fitted.base.with_hold(fitted.state.hold))
     elif content["effects"] or content["verdict"] == "parameters":
+        content["effects"] = no_surer_than_even(content)
         content["reason"] = f"{first_figure(content)}; {content['reason']}"
     content["shortfall"] = shortfall(content)
     content = with_what_was_asked(content, vocabulary)
@@ -345,8 +347,34 @@ def _widens(content: Mapping[str, Any]) -> list[str]:
     return [
         f"On the hold-out records {step['name']} widens the gap, from "
         f"{last['rms']:.3g} to {step['rms']:.3g} {content['unit']}."
+        for last, step in _steps_up(content)
+    ]
+
+
+def _steps_up(content: Mapping[str, Any]) -> list[tuple[Any, Any]]:
+    return [
+        (last, step)
         for last, step in pairwise(content["ladder"])
         if last["rms"] and step["rms"] and step["rms"] > SHOWS * last["rms"]
+    ]
+
+
+def no_surer_than_even(content: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Give the effects: a name that widens the gap there is no surer than even.
+
+    Parameters
+    ----------
+    content : mapping
+        What gap.json holds.
+    """
+    doubtful = {
+        name for _, step in _steps_up(content) for name in step["name"].split(" + ")
+    }
+    return [
+        item | {"confidence": min(item["confidence"], MOST)}
+        if item["name"] in doubtful
+        else item
+        for item in content["effects"]
     ]
 
 
