@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import lsim
 
 from hystbench.blocks import registry
 from hystbench.blocks.drive_lag import DriveLag
@@ -609,3 +610,36 @@ def test_what_a_chain_needs_more_counts_against_it(monkeypatch, chain, gain, bet
         lambda _, found, score: gain if found is inside.named.state else 0.0,
     )
     assert beats(inside, named, NOISE) == better
+
+
+def test_a_stop_on_both_sides_without_a_clearance_is_a_spring_and_no_stop():
+    """A spring that is half as stiff again, beside a base that calls itself exact."""
+    rng = np.random.default_rng(2)
+    u = sum(30 * np.sin(2 * np.pi * f * TIME) for f in rng.uniform(0.3, 2.5, 8))
+    _, y, _ = lsim(([1.0], [1.0, 2.0, 90.0]), u, TIME)
+    given = (record("stiffer", u, y + 1e-4 * rng.standard_normal(len(y)), ("N", "m")),)
+    base = Mechanism(mass=1.0, damping=2.0, stiffness=60.0, hold="linear")
+    start = ModelState((base,), given, ScoredSamples.of(given)).settled()
+    score = Score(start.sample, np.zeros((len(start.sample), 0)), 1e-8)
+    host = Fitted(start, score.of(start.residual))
+    every = search(host, score, offered=["stop"])
+    assert {item.effects for item in every} == {()}
+
+
+@pytest.mark.parametrize("exact", [False, True])
+def test_the_numbers_of_a_given_base_move_by_a_share_or_not_at_all(exact):
+    u = np.sin(2.1 * TIME)
+    given = (record("run", u, u / 60.0, ("N", "m")),)
+    base = Mechanism(mass=1.0, damping=2.0, stiffness=60.0)
+    start = ModelState((base,), given, ScoredSamples.of(given))
+    score = Score(start.sample, np.zeros((len(start.sample), 0)), NOISE**2)
+    held, *others = hosts(start, MOVES, False, score, exact)
+    assert held.fitted.state.free == ()
+    if exact:
+        assert others == []
+        return
+    (fitted,) = others
+    ends = {x.parameter: (x.low, x.high) for x in fitted.fitted.state.free}
+    assert ends["stiffness"] == pytest.approx((42.0, 78.0))
+    assert ends["mass"] == pytest.approx((0.7, 1.3))
+    assert ends["damping"] == (-np.inf, np.inf)
