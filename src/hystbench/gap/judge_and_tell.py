@@ -196,7 +196,7 @@ def _judged(
     state = named.state
     box = black_box(before, floor.rms)
     unnamed = what_is_unnamed(start, state, floor.rms, share)
-    seems_new = left.is_new or unnamed.by_chance > 0.0
+    seems_new = left.is_new or unnamed.follows_nothing(share)
     verdict, why = judge(
         left,
         bool(state.added),

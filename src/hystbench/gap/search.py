@@ -20,7 +20,7 @@ from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.own_values import NONE, OwnValues
-from hystbench.gap.fitting.re_tuned import re_tuned_words
+from hystbench.gap.fitting.re_tuned import could_gain, re_tuned_words
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.named_inside import (
@@ -50,7 +50,7 @@ OF_THE_PLACE = "asymmetry"
 a linear base it bends what drives the mass, as a valve does that opens more one way."""
 
 NOT_EXACT = "the base does not call its numbers exact, and was re-tuned"
-EXACT = "'free: []'"
+EXACT = "write 'free: []' in a model file that is exact"
 
 
 def search(
@@ -83,12 +83,13 @@ def search(
     limits = Limits.of(evidence.fit, asked.limits) if asked.limits else None
     found = _beside(base, evidence, asked, quantities)
     about = None if is_identified(base) else known_about(base, evidence.fit)
-    if about is not None and found.may_be_simpler(asked.unnamed_share):
+    # Neither answer is better for what a wrong shape of the base's hysteresis leaves.
+    score = make_score(found.start, found.floor.rms, forms=False)
+    if about is not None and found.may_be_simpler(asked.unnamed_share, score):
         asked.say("the base's numbers or timing may be off: naming beside that")
         again = _beside(about, evidence, asked, quantities)
-        # Neither is better for what a wrong shape of the base's hysteresis leaves.
-        score = make_score(found.start, found.floor.rms, forms=False)
-        if again.value(score) + FURTHER < found.value(score):
+        alike = len(again.start.sample) == len(found.start.sample)
+        if alike and again.value(score) + FURTHER < found.value(score):
             found = again
         else:
             asked.say("that explains no more: they stay as they are")
@@ -99,15 +100,14 @@ def search(
     told = judge_and_tell(
         evidence.name, base, start, found.floor, found.named, asked, limits, found.own
     )
+    more = [told.content["reason"]]
     if inside is not None:
-        more = inside.sentence
-    elif base is about:
-        moved = re_tuned_words(start, found.named.state)
-        more = f"{NOT_EXACT}: {moved} ({EXACT} in the model file keeps it as it is)"
-    else:
-        return told
-    reason = f"{told.content['reason']}; {more}"
-    return replace(told, content={**told.content, "reason": reason})
+        more.append(inside.sentence)
+    if found.base is about:
+        more.append(f"{NOT_EXACT} ({EXACT})")
+        if inside is None:
+            more[-1] += f": {re_tuned_words(start, found.named.state)}"
+    return replace(told, content={**told.content, "reason": "; ".join(more)})
 
 
 @dataclass(frozen=True)
@@ -161,15 +161,18 @@ class _Searched:
                     cost += ((state.value(free) - middle) / free.tolerance) ** 2
         return cost + score_of(state, score)
 
-    def may_be_simpler(self, share: float) -> bool:
+    def may_be_simpler(self, share: float, score: Score) -> bool:
         """Tell whether there may be a better answer beside a re-tuned base.
 
-        That is to pay as an effect does. So either more is left than noise and than may
-        stay unnamed, or one effect and the base re-tuned would be fewer.
+        That is to pay as an effect does. So one effect and the base re-tuned would be
+        fewer; or more is left than noise and than may stay unnamed, and re-tuning could
+        gain as much.
         """
         square, state = self.floor.rms**2, self.named.state
+        if len(state.added) + self.re_tuned > 2:
+            return True
         most = max(square, share * self.start.power(square))
-        return len(state.added) + self.re_tuned > 2 or state.power(square) > most
+        return state.power(square) > most and could_gain(state, score) > FURTHER
 
 
 def _beside(

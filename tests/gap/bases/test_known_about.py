@@ -12,7 +12,7 @@ from hystbench.blocks.prandtl_ishlinskii import PrandtlIshlinskii
 from hystbench.blocks.sensor_lag import SensorLag
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.bases.known_about import known_about
+from hystbench.gap.bases.known_about import as_it_was, known_about
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.re_tuned import re_tuned_words
 from hystbench.gap.records.evidence import Evidence
@@ -67,7 +67,7 @@ def test_a_lag_is_named_beside_a_base_that_is_a_little_off():
     told = effect["parameters"]["time_constant_s"]["value"]
     assert told == pytest.approx(LAG, rel=0.02)
     assert content["gap"]["after"] < 1.5 * NOISE
-    assert "was re-tuned: denominator moved most" in content["reason"]
+    assert "denominator moved most" in content["reason"]
     assert f"its input counts as {LATE_BY:.2g} samples late" in content["reason"]
     first, _, last = content["base_parameters"]["transfer-function.denominator"][
         "after"
@@ -104,6 +104,7 @@ def test_of_a_hysteresis_only_the_timing_is_free():
     loop = PrandtlIshlinskii(thresholds=(0.1, 0.2), weights=(1.0, 0.5))
     about = known_about(base(loop, SensorLag(time_constant_s=0.01)), [record([0, 1])])
     assert about.free == ("sensor-lag.time_constant_s", "input-delay.delay_s")
+    assert as_it_was(about) == base(*about.chain[1:])
 
 
 def of_a_column():
@@ -116,9 +117,10 @@ def of_a_column():
     [
         base(exact=True),
         base(free=("gain.value",)),
+        replace(base(), name="linear"),
         base(of_a_column()),
     ],
-    ids=["exact", "says what is free", "a column"],
+    ids=["exact", "says what is free", "identified", "a column"],
 )
 def test_others_are_taken_as_they_say(given):
     assert known_about(given, [record([0.0, 1.0])]) is None
@@ -140,4 +142,15 @@ def test_what_moved_most_is_told_with_the_timing():
     chain[0] = replace(chain[0], delay_s=chain[0].delay_s - 0.5 * DT)
     chain[1] = replace(chain[1], value=2.88)
     words = re_tuned_words(start, start.with_chain(tuple(chain)))
-    assert words == "value moved most, by 4 % and its input counts as 0.5 samples early"
+    assert words == "value moved most, by 4 %, its input counts as 0.5 samples early"
+
+
+def test_what_stands_still_is_not_told_and_a_zero_stays_zero():
+    """An integrator has no pole but at zero."""
+    integrator = TransferFunction(numerator=(1.0,), denominator=(1.0, 30.0, 0.0))
+    u = np.random.default_rng(1).normal(size=200)
+    records = (record(u, dt=DT),)
+    start, _ = start_state(records, known_about(base(integrator), records), "linear")
+    assert [free.element for free in start.free[:3]] == [0, 0, 1]
+    assert all(np.isfinite([free.low, free.high]).all() for free in start.free)
+    assert re_tuned_words(start, start) == "nothing moved far"

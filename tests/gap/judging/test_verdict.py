@@ -22,7 +22,7 @@ from hystbench.gap.naming.rounds import Candidate, near
 from hystbench.gap.thresholds import (
     ABOVE_NOISE,
     FOREIGN,
-    MOST,
+    LOOSE,
     SCALE,
     SLIGHT,
     WIDE,
@@ -136,8 +136,8 @@ def test_what_stays_unnamed_decides_whether_a_name_holds(follows, changes, rest,
     found = Unnamed(follows, changes, rest)
     word, reason = judge(left(1.0), True, unnamed=found, unnamed_share=share)
     known = follows > share
-    assert word == ("unnamed" if known or follows + rest > MOST else "named")
-    assert ("too much stays" in reason) == (not known and follows + rest > MOST)
+    assert word == ("unnamed" if known or follows + rest > LOOSE else "named")
+    assert ("too much stays" in reason) == (not known and follows + rest > LOOSE)
     assert judge(left(1.0), True, unnamed=Unnamed(0.0))[0] == "named"
 
 
@@ -167,7 +167,7 @@ def test_what_would_be_no_gap_does_not_speak_against_a_name():
     for other in (large, alien, lone, differing):
         assert judge(other, True, unnamed=structure)[0] == "unnamed"
     # Nor does a name stand where most of the gap is left.
-    assert judge(found, True, unnamed=Unnamed(0.03, 0.0, 0.6))[0] == "unnamed"
+    assert judge(found, True, unnamed=Unnamed(0.03, 0.0, 0.3))[0] == "unnamed"
     for much, word in ((0.039, "named"), (0.041, "unnamed")):
         assert judge(found, True, unnamed=Unnamed(much))[0] == word
     word, reason = judge(found, True, unnamed=Unnamed(0.3))

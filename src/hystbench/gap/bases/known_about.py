@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 
 import numpy as np
@@ -10,9 +10,11 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.simulator import Simulator
+from hystbench.gap.bases.linear import LINEAR
 from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.thresholds import ABOUT
 from hystbench.model import Model
+from hystbench.model_content import Provenance
 from hystbench.record import Record
 
 LATE = 2
@@ -36,41 +38,54 @@ def known_about(base: Model, records: Sequence[Record]) -> Model | None:
     -------
     Model or None
         None where the base says itself what is free, or calls its numbers exact; where
-        it cannot be run again, or its calls are dear.
+        it cannot be run again, its calls are dear, or it was identified as a linear
+        one.
     """
     dear = any(isinstance(x, Simulator) or not x.reruns for x in base.chain)
-    if base.free or base.exact or dear:
+    if base.free or base.exact or dear or base.name == LINEAR:
         return None
-    chain = _in_time(base.chain, LATE * min(record.dt for record in records))
-    shift = len(chain) - len(base.chain)
+    chain = in_time(base.chain, LATE * min(record.dt for record in records))
     model = replace(base, chain=chain, provenance={})
-    labels = [label for label, _ in model.labelled()]
+    first, *labels = (label for label, _ in model.labelled())
     shares = {
         f"{label}.{name}": ABOUT
-        for label, block in zip(labels, chain, strict=True)
-        for name in _stated(block)
+        for label, block in zip(labels, base.chain, strict=True)
+        for name in stated(block)
     }
-    shares |= {f"{labels[0]}.delay_s": 1.0} if shift else {}
-    old = [label for label, _ in base.labelled()]
-    now = dict(zip(old, labels[shift:], strict=True))
-    told = {
-        f"{now[name.rpartition('.')[0]]}.{name.rpartition('.')[2]}": item
-        for name, item in base.provenance.items()
-    }
-    return replace(model, free=tuple(shares), tolerances=shares, provenance=told)
+    shares[f"{first}.delay_s"] = 1.0
+    now = dict(zip((label for label, _ in base.labelled()), labels, strict=True))
+    return replace(
+        model, free=tuple(shares), tolerances=shares, provenance=_told(base, now)
+    )
 
 
-def _in_time(chain: tuple[Block, ...], most: float) -> tuple[Block, ...]:
-    """Put a delay of nothing before a chain, which may grow, or become a lead.
-
-    Nothing where the chain begins with a delay.
-    """
-    if isinstance(chain[0], InputDelay):
-        return chain
+def in_time(chain: tuple[Block, ...], most: float) -> tuple[Block, ...]:
+    """Put a delay of nothing before a chain, which may grow, or become a lead."""
     return (InputDelay(delay_s=most, lead_s=most), *chain)
 
 
-def _stated(block: Block) -> list[str]:
+def as_it_was(model: Model) -> Model:
+    """Give back the base that :func:`known_about` was given; any other as it is."""
+    first, *rest = model.chain
+    timing = isinstance(first, InputDelay) and first.delay_s == first.lead_s > 0.0
+    if not (timing and model.tolerances):
+        return model
+    given = replace(model, chain=tuple(rest), free=(), tolerances={}, provenance={})
+    old, new = ([label for label, _ in each.labelled()] for each in (model, given))
+    now = dict(zip(old[1:], new, strict=True))
+    return replace(given, provenance=_told(model, now))
+
+
+def _told(model: Model, labels: Mapping[str, str]) -> dict[str, Provenance]:
+    """Give where numbers come from, by the labels that their blocks have now."""
+    found = {}
+    for name, item in model.provenance.items():
+        label, _, parameter = name.rpartition(".")
+        found[f"{labels[label]}.{parameter}"] = item
+    return found
+
+
+def stated(block: Block) -> list[str]:
     """Give the numbers of a block that are not what they are where nobody states them.
 
     None of a hysteresis, a wrong shape of which is looked for anyway, nor of a delay,

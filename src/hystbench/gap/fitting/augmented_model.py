@@ -7,6 +7,7 @@ from dataclasses import replace
 from hystbench.blocks import block_class
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import SETTINGS
+from hystbench.gap.bases.known_about import as_it_was
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.model import Model
@@ -21,11 +22,18 @@ def augmented(base: Model, state: ModelState) -> Model:
     stays with those that were not re-tuned.
     """
     chain = (*state.chain, *beside_blocks(state))
-    model = Model(f"{base.name}-augmented", base.input, base.output, chain)
+    about = f"{base.name}-augmented", base.input, base.output, chain
+    model = Model(*about, exact=base.exact)
     names = list(model.parameter_names())
     own = [k for item in state.added for k in item.blocks]
     labels = [label for label, _ in model.labelled()]
-    left = {f"{labels[item.block]}.{item.parameter}" for item in state.free}
+    # What nobody freed but the search is known now.
+    given = as_it_was(base) is base
+    left = {
+        f"{labels[item.block]}.{item.parameter}"
+        for item in state.free
+        if given or item.block in own
+    }
     effects = {labels[k] for k in own}
     free = tuple(n for n in names if n in left or n.rpartition(".")[0] in effects)
     free = tuple(name for name in free if _numeric(model, name))

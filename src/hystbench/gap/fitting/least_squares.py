@@ -164,6 +164,15 @@ def _tangents(state: ModelState, steps: FloatArray) -> FloatArray:
     By differences of so much; none with a number that a block does not take, nor where
     the motion runs away.
     """
+    # At the upper end of its range a number is moved down.
+    at_end = np.array(
+        [
+            state.value(free) + step > free.high
+            for free, step in zip(state.free, steps.tolist(), strict=True)
+        ],
+        dtype=bool,
+    )
+    steps = np.where(at_end, -steps, steps)
     chains = []
     for k, step in enumerate(steps.tolist()):
         try:

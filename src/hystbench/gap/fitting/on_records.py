@@ -94,7 +94,8 @@ def check_finite(
 def free_numbers(base: Model) -> tuple[Free, ...]:
     """Give the numbers that a model leaves free, with the size of a likely change.
 
-    A tolerance is a share of the value; of a zero it says nothing. It is the most that
+    A tolerance is a share of the value; of a zero it says nothing, and a zero among
+    several numbers, as of an integrator, stays. It is the most that
     a number may change by; a step of a refit is damped by its size.
     """
     places = {label: k for k, (label, _) in enumerate(base.labelled())}
@@ -105,6 +106,8 @@ def free_numbers(base: Model) -> tuple[Free, ...]:
         numbers = value if isinstance(value, tuple) else (value,)
         for element, number in enumerate(numbers):
             if isinstance(number, str):
+                continue
+            if share and not number and isinstance(value, tuple):
                 continue
             size = None if not share or not number else share * abs(number)
             place = element if isinstance(value, tuple) else None

@@ -1,10 +1,65 @@
-"""How far a base moved whose numbers and timing are known only about, in words."""
+"""What re-tuning a base that is known about could gain, and how far it went."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
 from hystbench.blocks.input_delay import InputDelay
-from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.bases.known_about import LATE, in_time, stated
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.thresholds import ABOUT
 from hystbench.sentences import finely, shortly
+
+LEAST = 5e-3
+"""Share by which a number has to move to be told."""
+
+
+def could_gain(state: ModelState, score: Score) -> float:
+    """Give what re-tuning a base could lower a score by, as slopes tell.
+
+    Parameters
+    ----------
+    state : ModelState
+        A model of a given base with effects.
+    score : Score
+    """
+    now = score.of(state.residual, state.freedom)
+    loose = _loosened(state)
+    columns, charges = loose.tangents, loose.change_charge
+    if not np.isfinite(columns).all():
+        return np.inf
+    given = loose.residual, columns, state.freedom, charges
+    return now - score.amplitudes(*given).score
+
+
+def _loosened(state: ModelState) -> ModelState:
+    """Free the numbers that a base states beside effects, and its timing."""
+    own = {place for item in state.added for place in item.blocks}
+    numbers = [free for free in _numbers_about(state) if free.block not in own]
+    state = replace(state, free=(*state.free, *numbers))
+    most = LATE * min(record.dt for record in state.records)
+    chain = in_time(state.chain, most)
+    state = state.rearranged(chain, {k: k + 1 for k in range(len(state.chain))})
+    timing = Free(0, "delay_s", None, most, 0.0, 2 * most)
+    state = replace(state, free=(*state.free, timing))
+    return state.settled()
+
+
+def _numbers_about(state: ModelState) -> Iterator[Free]:
+    """Give the numbers that blocks state and nobody freed, within what they may be."""
+    known = {(free.block, free.parameter) for free in state.free}
+    for place, block in enumerate(state.chain):
+        for name in stated(block):
+            value = getattr(block, name)
+            many = isinstance(value, tuple)
+            for element, number in enumerate(value if many else (value,)):
+                if number and (place, name) not in known:
+                    at, size = element if many else None, ABOUT * abs(number)
+                    yield Free(place, name, at, size, number - size, number + size)
 
 
 def re_tuned_words(start: ModelState, state: ModelState) -> str:
@@ -21,17 +76,23 @@ def re_tuned_words(start: ModelState, state: ModelState) -> str:
     left = [k for k in range(len(state.chain)) if k not in own]
     if len(left) != len(start.chain):
         return "its numbers and its timing were re-tuned"  # an effect stands for one
-    moves, late = [(0.0, "")], ""
+    dt = min(record.dt for record in start.records)
+    moves, samples = [(0.0, "")], 0.0
     for free in start.free:
-        block = state.chain[left[free.block]]
         was = start.value(free)
-        now = state.value(free._replace(block=left[free.block]))
-        if isinstance(block, InputDelay) and free.parameter == "delay_s":
-            samples = (now - was) / min(record.dt for record in start.records)
-            word = "late" if samples > 0 else "early"
-            late = f"its input counts as {shortly(abs(samples), 2)} samples {word}"
-        else:
+        place = left[free.block]
+        now = state.value(free._replace(block=place))
+        if isinstance(state.chain[place], InputDelay) and free.parameter == "delay_s":
+            samples = (now - was) / dt
+        elif was:
             moves.append((abs(now / was - 1.0), free.parameter))
     far, name = max(moves)
-    most = f"{name} moved most, by {finely(far)}" if name else ""
-    return " and ".join(part for part in (most, late) if part)
+    told = []
+    if far >= LEAST:
+        told.append(f"{name} moved most, by {finely(far)}")
+    if far > (1.0 - LEAST) * ABOUT:
+        told.append("which is as far as it may")
+    if abs(samples) >= 10 * LEAST:
+        word = "late" if samples > 0 else "early"
+        told.append(f"its input counts as {shortly(abs(samples), 2)} samples {word}")
+    return ", ".join(told) or "nothing moved far"

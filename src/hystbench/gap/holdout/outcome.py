@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.gap.bases.known_about import as_it_was
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.fitting.on_records import run_base
@@ -68,7 +69,8 @@ def outcome(
         alone = score_hold_out(unchanged, evidence.hold_out)
         kept = {key: alone.content[key] for key in ("gap", "records", "black_box")}
         content = without_names({**content, **kept}, taken)
-        shown = replace(alone, model=fitted.base.with_hold(fitted.state.hold))
+        given = as_it_was(fitted.base)
+        shown = replace(alone, model=given.with_hold(fitted.state.hold))
     elif content["effects"] or content["verdict"] == "parameters":
         content["effects"] = no_surer_than_even(content)
         content["reason"] = f"{first_figure(content)}; {content['reason']}"
@@ -338,8 +340,6 @@ def _less(
 
 SPELLED = 3
 """Records that are told by name, at most."""
-SHOWS = 1.01
-"""RMS over that of the step before, from which a step up is worth a sentence."""
 
 
 def _widens(content: Mapping[str, Any]) -> list[str]:
@@ -355,7 +355,9 @@ def _steps_up(content: Mapping[str, Any]) -> list[tuple[Any, Any]]:
     return [
         (last, step)
         for last, step in pairwise(content["ladder"])
-        if last["rms"] and step["rms"] and step["rms"] > SHOWS * last["rms"]
+        if last["rms"]
+        and step["rms"]
+        and step["rms"] ** 2 > (1 + AS_GOOD) * last["rms"] ** 2
     ]
 
 

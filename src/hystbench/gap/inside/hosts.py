@@ -115,7 +115,7 @@ def hosts(
         # A force that is not linear turns the phase: it may be what looked like timing.
         yield from hosts(_without_timing(start), quantities, identified, score)
         return
-    if quantities.causality in ("storage", "unknown"):
+    if quantities.causality in ("storage", "unknown") and not exact:
         yield from _of_stores(start, identified, score)
     moves = shows_a_pole(start) or quantities.causality == "motion to force"
     if identified and moves and not of_many_modes(start):
@@ -235,7 +235,7 @@ def _as_given(
 
 def _about(state: ModelState, free: Free) -> Free:
     """Bound a number by three times what those that nobody calls exact are off."""
-    if free.parameter not in KNOWN:
+    if free.tolerance is not None or free.parameter not in KNOWN:
         return free
     value = state.value(free)
     size = 3 * ABOUT * abs(value)

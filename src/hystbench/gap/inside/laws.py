@@ -174,7 +174,8 @@ def evened(state: ModelState) -> ModelState:
     if not _is_free(state, number):
         return state
     if isinstance(host, Mechanism) and place < number:
-        return _as_strong(state, place)
+        known = any(np.isfinite(x.low) for x in state.free if x.block == number)
+        return state if known else _as_strong(state, place)
     if not (isinstance(law, Force) and isinstance(host, Mechanism)):
         return state
     own = chain[number + 1 :]

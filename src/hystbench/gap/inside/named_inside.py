@@ -214,7 +214,7 @@ def in_short_steps(state: ModelState, score: Score) -> ModelState:
     return state
 
 
-ZEROS = ("bias", "offset")
+ZEROS = ("bias", "offset", "delay_s")
 """Numbers of a host that are counted from a zero: what share of itself one moves by
 says nothing."""
 

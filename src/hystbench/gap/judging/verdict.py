@@ -16,6 +16,7 @@ from hystbench.gap.judging.unnamed import NOTHING, Unnamed
 from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.thresholds import (
     ABOVE_NOISE,
+    AS_GOOD,
     DOUBT,
     FOREIGN,
     LOOSE,
@@ -233,8 +234,9 @@ def judge(
         What to write so that the noise is measured.
     """
     if not named:
-        none = unnamed.follows_nothing(unnamed_share) and (explained_by_box or 0.0) < 0
-        new = _why_new(left, unnamed if none else None)
+        seen = explained_by_box or 0.0
+        none = unnamed.follows_nothing(unnamed_share) and seen < AS_GOOD
+        new = _why_new(left, unnamed if none else None, explained_by_box)
         if left.slight and left.foreign and not new:
             return "unnamed", left.foreign
         if retuned and left.all_before > ABOVE_NOISE and left.share < LOOSE:
@@ -280,7 +282,7 @@ def judge(
         return "unnamed", why
     if much and unnamed.trust(unnamed_share, of_base=True) < MOST:
         return "unnamed", unnamed.reason(unnamed_share)  # likelier wrong than right
-    if unnamed.stays > MOST:
+    if unnamed.stays > LOOSE:
         return "unnamed", (
             f"too much stays for a name: {left.sentence}, and most of it follows no "
             "known signal"
@@ -293,7 +295,7 @@ def judge(
     return "named", left.sentence
 
 
-def _why_new(left: Left, unrelated: Unnamed | None) -> str:
+def _why_new(left: Left, unrelated: Unnamed | None, explained: float | None) -> str:
     """Say why what is left follows nothing that is recorded; or nothing."""
     if left.is_new:
         return (
@@ -307,7 +309,7 @@ def _why_new(left: Left, unrelated: Unnamed | None) -> str:
         follows = "the input no more than when it is moved in time against it"
     return (
         f"what is left on the fit records, {left.after:.2g} times the power of the "
-        f"noise floor, follows {follows}, and a black box makes it worse on folds"
+        f"noise floor, follows {follows}; {_box_words(explained, 'it')}"
     )
 
 
