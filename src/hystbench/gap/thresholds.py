@@ -99,4 +99,4 @@ slides on nearly all of its way. What yields on a longer way is a hysteretic for
 
 ABOUT = 0.1
 """Share of itself by which a number of a base that nobody calls exact may be off, as in
-a data sheet. A number that a fit moves farther is told."""
+a data sheet. If a host's number moves farther, that is told."""

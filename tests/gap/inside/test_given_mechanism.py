@@ -5,9 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.signal import lsim
 
+from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.bases.load import load_base
+from hystbench.gap.fitting.least_squares import fitted
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.run import closed_gap
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
@@ -161,3 +167,16 @@ def test_no_force_is_tried_where_one_effect_of_a_chain_leaves_noise(
     )
     content = closed(LINEAR, evidence_of(late, 0.01), tmp_path / "m.yaml")
     assert [item["name"] for item in content["effects"]] == ["input-delay"]
+
+
+def test_a_number_at_the_end_of_its_range_moves_back():
+    """A step of a slope that is cut off there would tell that nothing changes."""
+    u = np.sin(2.1 * np.arange(800) * 0.01)
+    y = lsim(([1.0], [1.0, 4.0, 900.0]), 50 * u, np.arange(800) * 0.01)[1]
+    about = Channel("force", "N"), Channel("position", "m"), "twin", "fit"
+    given = (Record("run", 0.01, 50 * u, y, *about),)
+    block = Mechanism(mass=1.0, damping=4.0, stiffness=1000.0, hold="linear")
+    free = (Free(0, "stiffness", low=600.0, high=1000.0),)
+    state = ModelState((block,), given, ScoredSamples.of(given), free=free).settled()
+    found = fitted(state, Score.plain(state.sample, 1e-12)).state
+    assert found.chain[0].stiffness == pytest.approx(900.0, rel=1e-3)

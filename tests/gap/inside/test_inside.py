@@ -627,19 +627,11 @@ def test_a_stop_on_both_sides_without_a_clearance_is_a_spring_and_no_stop():
 
 
 @pytest.mark.parametrize("exact", [False, True])
-def test_the_numbers_of_a_given_base_move_by_a_share_or_not_at_all(exact):
+def test_a_base_that_calls_itself_exact_is_not_fitted_as_a_host(exact):
     u = np.sin(2.1 * TIME)
     given = (record("run", u, u / 60.0, ("N", "m")),)
     base = Mechanism(mass=1.0, damping=2.0, stiffness=60.0)
     start = ModelState((base,), given, ScoredSamples.of(given))
     score = Score(start.sample, np.zeros((len(start.sample), 0)), NOISE**2)
-    held, *others = hosts(start, MOVES, False, score, exact)
-    assert held.fitted.state.free == ()
-    if exact:
-        assert others == []
-        return
-    (fitted,) = others
-    ends = {x.parameter: (x.low, x.high) for x in fitted.fitted.state.free}
-    assert ends["stiffness"] == pytest.approx((42.0, 78.0))
-    assert ends["mass"] == pytest.approx((0.7, 1.3))
-    assert ends["damping"] == (-np.inf, np.inf)
+    free = [len(x.fitted.state.free) for x in hosts(start, MOVES, False, score, exact)]
+    assert free == ([0] if exact else [0, 3])

@@ -39,15 +39,12 @@ from hystbench.gap.inside.one_coordinate import (
 from hystbench.gap.inside.stores import in_other_order, stores
 from hystbench.gap.inside.two_masses import further_modes_of, two_masses
 from hystbench.gap.records.scored_samples import ScoredSamples
-from hystbench.gap.thresholds import ABOUT, AS_GOOD, FURTHER, PAYS
+from hystbench.gap.thresholds import AS_GOOD, FURTHER, PAYS
 from hystbench.quantities import Quantities
 from hystbench.record import Record
 
 STORES = {1: "a store stands", 2: "two stores in series stand"}
 """How many are tried, and how that is told."""
-KNOWN = ("mass", "stiffness", "gain", "value")
-"""Numbers that a given base tells well. Of damping a model may say little, and one with
-long steps has some of its own; an offset has no size that it could be compared with."""
 TRIED = 2
 """Modes of a base in which forces are tried, those that need it most."""
 
@@ -138,7 +135,7 @@ def hosts(
             )
             same = same_as(start, quantities, score.floor)
         if same is not None:
-            yield from _as_given(same, score, words, start, exact)
+            yield from _as_given(same, score, words, bool(start.free), exact)
     if quantities.causality not in ("force to motion", "unknown"):
         return
     known = quantities.output in MOTIONS
@@ -154,7 +151,7 @@ def hosts(
             best = fitted(mode, score)
             yield Host(best.state, best, words)
         else:
-            yield from _as_given(mode, score, words, start, exact)
+            yield from _as_given(mode, score, words, bool(start.free), exact)
 
 
 def _of_stores(start: ModelState, identified: bool, score: Score) -> Iterator[Host]:
@@ -213,17 +210,14 @@ def stores_like(start: ModelState, count: int) -> ModelState | None:
 
 
 def _as_given(
-    state: ModelState, score: Score, words: str, start: ModelState, exact: bool
+    state: ModelState, score: Score, words: str, may_change: bool, exact: bool
 ) -> Iterator[Host]:
     """Give a host that does what a given base does, then the same fitted to records.
 
     The numbers of a given base are known, unless it says that some are free. That known
     ones are wrong all the same has to pay as a further effect does.
     """
-    free = start.free
-    if not free or any(x.tolerance is not None for x in free):
-        state = replace(state, free=tuple(_about(state, x) for x in state.free))
-    if free:
+    if may_change:
         yield Host(state, fitted(state, score), words)
         return
     held = replace(state, free=())
@@ -231,15 +225,6 @@ def _as_given(
     if not exact:
         words = f"{words}, its numbers fitted to the records"
         yield Host(state, fitted(state, score), words, charge=FURTHER)
-
-
-def _about(state: ModelState, free: Free) -> Free:
-    """Bound a number by three times what those that nobody calls exact are off."""
-    if free.tolerance is not None or free.parameter not in KNOWN:
-        return free
-    value = state.value(free)
-    size = 3 * ABOUT * abs(value)
-    return free._replace(low=value - size, high=value + size)
 
 
 def best_host(states: Sequence[ModelState], score: Score) -> Fitted | None:
