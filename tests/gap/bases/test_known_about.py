@@ -54,14 +54,20 @@ def device(frequency_hz, late):
         yield record(u, y, name=f"run-{k}", dt=DT, use=use)
 
 
-def named(model, frequency_hz=38.5, late=LATE_BY):
+def closed(model, frequency_hz=38.5, late=LATE_BY):
     *fit, held = device(frequency_hz, late)
     evidence = Evidence("made", tuple(fit), (held,), noise_rms=NOISE)
-    return closed_gap(evidence, model).outcome.content
+    return closed_gap(evidence, model).decision
+
+
+def named(model, **about):
+    return closed(model, **about).content
 
 
 def test_a_lag_is_named_beside_a_base_that_is_a_little_off():
-    content = named(base())
+    found = closed(base())
+    content = found.content
+    assert found.model.free == ("sensor-lag.time_constant_s",)  # the rest is known now
     (effect,) = content["effects"]
     assert (content["verdict"], effect["name"]) == ("named", "sensor-lag")
     told = effect["parameters"]["time_constant_s"]["value"]
@@ -83,7 +89,9 @@ def test_a_base_that_calls_itself_exact_stays_as_it_is():
 
 
 def test_beside_an_exact_base_nothing_is_re_tuned():
-    content = named(base(Gain(value=3.0), second_order(40.0, 0.27)), 40.0, late=0.0)
+    content = named(
+        base(Gain(value=3.0), second_order(40.0, 0.27)), frequency_hz=40.0, late=0.0
+    )
     (effect,) = content["effects"]
     # Before and behind a linear base a lag does the same.
     assert effect["name"] in {"sensor-lag", "drive-lag"}
