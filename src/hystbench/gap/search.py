@@ -83,11 +83,10 @@ def search(
     limits = Limits.of(evidence.fit, asked.limits) if asked.limits else None
     found = _beside(base, evidence, asked, quantities)
     about = None if is_identified(base) else known_about(base, evidence.fit)
-    # Neither answer is better for what a wrong shape of the base's hysteresis leaves.
-    score = make_score(found.start, found.floor.rms, forms=False)
-    if about is not None and found.may_be_simpler(asked.unnamed_share, score):
+    if about is not None and found.may_be_simpler(asked.unnamed_share):
         asked.say("the base's numbers or timing may be off: naming beside that")
         again = _beside(about, evidence, asked, quantities)
+        score = found.score_of_both
         alike = len(again.start.sample) == len(found.start.sample)
         if alike and again.value(score) + FURTHER < found.value(score):
             found = again
@@ -146,10 +145,18 @@ class _Searched:
         """Whether numbers were fitted that nobody set free."""
         return self.inside is not None and self.inside.counts > 0
 
+    @property
+    def score_of_both(self) -> Score:
+        """Give the score that this answer and another one are compared by.
+
+        Neither is better for what a wrong shape of the base's hysteresis leaves.
+        """
+        return make_score(self.start, self.floor.rms, forms=False)
+
     def value(self, score: Score) -> float:
         """Score it, with what its effects and re-tuned numbers have to pay."""
         state = self.named.state
-        own = {place for item in state.added for place in item.blocks}
+        own = state.places_added
         cost = self.own.charge + FURTHER * self.re_tuned
         if state.added:
             cost += PAYS + FURTHER * (len(state.added) - 1)
@@ -161,7 +168,7 @@ class _Searched:
                     cost += ((state.value(free) - middle) / free.tolerance) ** 2
         return cost + score_of(state, score)
 
-    def may_be_simpler(self, share: float, score: Score) -> bool:
+    def may_be_simpler(self, share: float) -> bool:
         """Tell whether there may be a better answer beside a re-tuned base.
 
         That is to pay as an effect does. So one effect and the base re-tuned would be
@@ -172,7 +179,9 @@ class _Searched:
         if len(state.added) + self.re_tuned > 2:
             return True
         most = max(square, share * self.start.power(square))
-        return state.power(square) > most and could_gain(state, score) > FURTHER
+        if state.power(square) <= most:
+            return False
+        return could_gain(state, self.score_of_both) > FURTHER
 
 
 def _beside(

@@ -25,7 +25,7 @@ def augmented(base: Model, state: ModelState) -> Model:
     about = f"{base.name}-augmented", base.input, base.output, chain
     model = Model(*about, exact=base.exact)
     names = list(model.parameter_names())
-    own = [k for item in state.added for k in item.blocks]
+    own = state.places_added
     labels = [label for label, _ in model.labelled()]
     # What nobody freed but the search is known now.
     given = as_it_was(base) is base

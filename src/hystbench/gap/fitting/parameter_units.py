@@ -95,7 +95,7 @@ def unit_behind(place: int, state: ModelState) -> str:
 
 
 def _turn(state: ModelState) -> int:
-    own = {k for item in state.added for k in item.blocks}
+    own = state.places_added
     base = [k for k in range(len(state.chain)) if k not in own]
     # An effect may stand for all of the base, as what hardens takes a mode out of it.
     for places in (base, range(len(state.chain))):

@@ -38,7 +38,7 @@ def could_gain(state: ModelState, score: Score) -> float:
 
 def _loosened(state: ModelState) -> ModelState:
     """Free the numbers that a base states beside effects, and its timing."""
-    own = {place for item in state.added for place in item.blocks}
+    own = state.places_added
     numbers = [free for free in _numbers_about(state) if free.block not in own]
     state = replace(state, free=(*state.free, *numbers))
     most = LATE * min(record.dt for record in state.records)
@@ -72,7 +72,7 @@ def re_tuned_words(start: ModelState, state: ModelState) -> str:
     state : ModelState
         A model with effects, beside which they were re-tuned.
     """
-    own = {place for item in state.added for place in item.blocks}
+    own = state.places_added
     left = [k for k in range(len(state.chain)) if k not in own]
     if len(left) != len(start.chain):
         return "its numbers and its timing were re-tuned"  # an effect stands for one

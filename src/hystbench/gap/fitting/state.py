@@ -147,6 +147,11 @@ class ModelState:
         return sum(item.charge for item in self.added)
 
     @cached_property
+    def places_added(self) -> frozenset[int]:
+        """Places of the blocks that the added effects have in the chain."""
+        return frozenset(place for item in self.added for place in item.blocks)
+
+    @cached_property
     def tangents(self) -> FloatArray:
         """How the output changes with each free number, shape (scored samples, k)."""
         columns = [self._tangent(k, step) for k, step in enumerate(self.steps)]

@@ -225,7 +225,7 @@ def re_tuning(alone: ModelState, state: ModelState) -> str:
     Nobody said that they are free: a wrong number of the base would hide behind a name.
     What an effect stands for is taken out of the host's own numbers, and is not meant.
     """
-    added = {place for item in state.added for place in item.blocks}
+    added = state.places_added
     own = [place for place in range(len(state.chain)) if place not in added]
     if len(own) != len(alone.chain):
         return ""  # effects of stores are the stores' own numbers

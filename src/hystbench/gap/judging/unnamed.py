@@ -315,7 +315,7 @@ def owned(state: ModelState) -> dict[str, FloatArray]:
 
 def _numbers(state: ModelState, increment: FloatArray) -> FloatArray:
     """Give what the effects add, and how it changes with each of their numbers."""
-    own = {k for item in state.added for k in item.blocks}
+    own = state.places_added
     at = [k for k, free in enumerate(state.free) if free.block in own]
     return np.column_stack([increment, state.tangents[:, at]])
 

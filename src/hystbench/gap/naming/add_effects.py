@@ -300,7 +300,7 @@ def to_the_end(state: ModelState, floor: float) -> ModelState:
     A linear base was fitted with the gap in it: what an effect bends much may take its
     numbers far, farther than steps from a linear fit lead.
     """
-    own = {place for item in state.added for place in item.blocks}
+    own = state.places_added
     re_tuned = [free for free in state.free if free.block not in own]
     bound = any(free.tolerance is not None for free in re_tuned)
     if bound or not re_tuned or state.beside or state.simulation.loop is not None:
