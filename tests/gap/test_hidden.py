@@ -15,8 +15,9 @@ from hystbench.challenge.spec import CaseSpec
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state
+from hystbench.gap.judging.left import what_is_left
 from hystbench.gap.judging.unnamed import what_is_unnamed
-from hystbench.gap.judging.verdict import judge, what_is_left
+from hystbench.gap.judging.verdict import judge
 from hystbench.gap.locate import locate
 from hystbench.gap.naming import add_effects as naming
 from hystbench.gap.naming.rank import rank

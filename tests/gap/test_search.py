@@ -17,7 +17,7 @@ from hystbench.gap.experiment.tell_apart import next_experiment
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.on_records import start_state
-from hystbench.gap.judging.verdict import Left
+from hystbench.gap.judging.left import Left
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
 from hystbench.gap.search import judge_and_tell

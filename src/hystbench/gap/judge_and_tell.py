@@ -32,14 +32,13 @@ from hystbench.gap.judging.effect_rows import (
     simulator_mapping,
 )
 from hystbench.gap.judging.fit_result import FitResult
+from hystbench.gap.judging.left import Left, what_is_left
 from hystbench.gap.judging.size_of_noise import size_follows
 from hystbench.gap.judging.unnamed import Unnamed, what_is_unnamed
 from hystbench.gap.judging.verdict import (
-    Left,
     Verdict,
     judge,
     likelier_wrong,
-    what_is_left,
     what_mends,
 )
 from hystbench.gap.locate import curves, locate

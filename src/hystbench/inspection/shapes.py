@@ -11,7 +11,8 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Declined
 from hystbench.gap.effects.variant import Variant
-from hystbench.gap.fitting.state import ModelState, beside_columns
+from hystbench.gap.fitting.beside import beside_columns
+from hystbench.gap.fitting.state import ModelState
 from hystbench.record import FloatArray
 
 POINTS = 6
@@ -105,7 +106,7 @@ def _at(
 ) -> Iterator[Shape]:
     about = (variant.effect, variant.form, variant.place, values)
     if variant.beside is not None:
-        columns = beside_columns(state, variant.beside, values)
+        columns = beside_columns(state.records, state.sample, variant.beside, values)
         yield Shape(*about, "", None, columns, 1.0, variant.freedom)
         return
     take, tail = state.sample.take, state.simulation.tail

@@ -11,7 +11,7 @@ from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.parameter_units import unit_at, unit_behind
 from hystbench.gap.judging.effect_rows import effect_mapping
-from hystbench.gap.judging.verdict import Left
+from hystbench.gap.judging.left import Left
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.thresholds import PAYS
 from tests.gap.small import ENVELOPE, GPI, block, hysteresis, measured, state_of

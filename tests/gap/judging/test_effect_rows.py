@@ -17,7 +17,7 @@ from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.parameters import at_ends, base_parameters
 from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.judging.effect_rows import effect_mapping, ranking_rows
-from hystbench.gap.judging.verdict import Left
+from hystbench.gap.judging.left import Left
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook, in_order
 from hystbench.gap.schema import RANK

@@ -7,15 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hystbench.gap.judging.left import Left, what_is_left
 from hystbench.gap.judging.unnamed import Unnamed
 from hystbench.gap.judging.verdict import (
     GIVE,
-    Left,
     confidence,
     error_of,
     judge,
     likelier_wrong,
-    what_is_left,
     what_mends,
 )
 from hystbench.gap.naming.rounds import Candidate, near

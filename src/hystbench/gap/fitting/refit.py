@@ -10,6 +10,7 @@ import numpy as np
 
 from hystbench.blocks.calls import CallsUsedUp
 from hystbench.errors import InputError
+from hystbench.gap.fitting.beside import beside_slope
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import beside_of, score_beside, score_of
@@ -19,7 +20,7 @@ from hystbench.gap.fitting.serialize import (
     state_again,
     state_with_correction,
 )
-from hystbench.gap.fitting.state import ModelState, beside_slope
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.variant_search import Trial
 from hystbench.gap.thresholds import SCALE
 from hystbench.record import FloatArray
@@ -173,7 +174,7 @@ def tuned(state: ModelState, score: Score) -> ModelState:
             before = score_of(state, score)
             beside, values = state.beside[number]
             own = state.by_signal(state.beside_amplitudes)[number].ravel()
-            slope = beside_slope(state, beside, values, key, own)
+            slope = beside_slope(state.records, state.sample, beside, values, key, own)
             columns = np.column_stack([state.tangents, state.beside_columns, slope])
             stiffness = state.change_charges(columns.shape[1])
             step = score.amplitudes(state.residual, columns, 0.0, stiffness).values[-1]

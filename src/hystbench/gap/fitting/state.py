@@ -16,6 +16,7 @@ from hystbench.blocks.held import Hold
 from hystbench.blocks.transfer_function import stable
 from hystbench.errors import InputError
 from hystbench.gap.effects.variant import Beside, Refused, Values
+from hystbench.gap.fitting.beside import beside_columns
 from hystbench.gap.records.scored_samples import ScoredSamples, rms
 from hystbench.gap.simulation.reshape import orthonormal, reshapings
 from hystbench.gap.simulation.shared import in_short_steps, quick
@@ -57,9 +58,6 @@ ROUNDING = 16 * float(np.finfo(float).eps)
 """Share of the output's rms: a smaller change is what a simulation rounds off."""
 FORMS = (0.3, 0.6, 1.6, 3.0)
 """Factors on a number of an added effect: what other forms of it could do."""
-
-SMALL = 1e-6
-"""Change of a number of the shapes beside, as a share, by which a slope is taken."""
 
 MANY = 4
 """An effect of more numbers has no other forms."""
@@ -221,7 +219,9 @@ class ModelState:
 
     @cached_property
     def _beside_each(self) -> list[FloatArray]:
-        return [beside_columns(self, *item) for item in self.beside]
+        return [
+            beside_columns(self.records, self.sample, *item) for item in self.beside
+        ]
 
     def by_signal(self, amplitudes: NDArray[Any]) -> list[NDArray[Any]]:
         """Share the amplitudes of all shapes beside out: (records, k) a signal."""
@@ -380,32 +380,6 @@ def _moved_effect(item: Added, moved: Mapping[int, int]) -> Added:
             values[key] = value
     blocks = tuple(moved[k] for k in item.blocks if k in moved)
     return item._replace(blocks=blocks, values=values)
-
-
-def beside_columns(state: ModelState, beside: Beside, values: Values) -> FloatArray:
-    """Scored samples of the shapes beside, one block of columns a record."""
-    sample = state.sample
-    parts = []
-    for record, where, positions in zip(
-        state.records, sample.slices, sample.positions, strict=True
-    ):
-        own = beside.columns(record, values, beside.order, positions)
-        full = np.zeros((len(sample), own.shape[1]))
-        full[where] = own
-        parts.append(full)
-    return np.hstack(parts)
-
-
-def beside_slope(
-    state: ModelState, beside: Beside, values: Values, key: str, amplitudes: FloatArray
-) -> FloatArray:
-    """How the output changes with a number of the shapes beside."""
-    step = SMALL * max(abs(values[key]), SMALL)
-    ends = [
-        beside_columns(state, beside, {**values, key: values[key] + sign * step})
-        for sign in (1, -1)
-    ]
-    return np.asarray((ends[0] - ends[1]) @ amplitudes / (2 * step))
 
 
 def _stack(columns: Sequence[FloatArray], rows: int) -> FloatArray:

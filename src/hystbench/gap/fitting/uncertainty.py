@@ -11,9 +11,10 @@ from scipy.special import ndtri, stdtrit
 
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.variant import Beside, Values
+from hystbench.gap.fitting.beside import SMALL, beside_slope
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import SMALL, ModelState, beside_slope
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.record import FloatArray
 
@@ -249,7 +250,10 @@ def beside_errors(state: ModelState, score: Score) -> list[Errors]:
     for (beside, values), rows in zip(state.beside, own, strict=True):
         amplitudes.append(fitted[rows.ravel()])
         searched = [
-            beside_slope(state, beside, values, key, amplitudes[-1]) for key in values
+            beside_slope(
+                state.records, state.sample, beside, values, key, amplitudes[-1]
+            )
+            for key in values
         ]
         behind = columns.shape[1] + np.arange(len(searched))
         places.append([*rows.ravel(), *behind])

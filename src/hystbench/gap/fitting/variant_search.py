@@ -15,9 +15,10 @@ from hystbench.blocks.parameter import HUGE
 from hystbench.errors import InputError
 from hystbench.gap.effects.effect import Declined
 from hystbench.gap.effects.variant import Values, Variant
+from hystbench.gap.fitting.beside import beside_columns
 from hystbench.gap.fitting.score import Amplitudes, Score, Shared
 from hystbench.gap.fitting.serialize import remembered_of
-from hystbench.gap.fitting.state import ModelState, beside_columns
+from hystbench.gap.fitting.state import ModelState
 from hystbench.record import FloatArray
 
 HALVINGS = 4
@@ -170,7 +171,9 @@ class Attempt:
         variant, state = self.variant, self.state
         values = dict(zip(variant.grids, point, strict=True))
         if variant.beside is not None:
-            return beside_columns(state, variant.beside, values), state.residual
+            return beside_columns(
+                state.records, state.sample, variant.beside, values
+            ), state.residual
         if variant.unit:
             return self._scaled(values)
         after = state.sample.take(

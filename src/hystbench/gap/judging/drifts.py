@@ -13,7 +13,8 @@ from functools import partial
 
 import numpy as np
 
-from hystbench.gap.fitting.state import ModelState, beside_columns
+from hystbench.gap.fitting.beside import beside_columns
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.judging.grouped_evidence import ColumnProducts
 from hystbench.gap.judging.known_signals import PATH, random_walks
 from hystbench.gap.thresholds import LOOSE
@@ -75,7 +76,7 @@ def beside_a_drift(
 def without_paths(state: ModelState, own: Groups) -> dict[str, FloatArray]:
     """Give what is owned but for the paths of a drift; tones of the mains stay."""
     tones = [
-        beside_columns(state, beside, values)
+        beside_columns(state.records, state.sample, beside, values)
         for beside, values in state.beside
         if beside.effect != PATH
     ]

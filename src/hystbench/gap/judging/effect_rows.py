@@ -13,7 +13,8 @@ from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.fitting.parameters import parameters_of
 from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.fitting.uncertainty import Errors
-from hystbench.gap.judging.verdict import Left, confidence, error_of
+from hystbench.gap.judging.left import Left
+from hystbench.gap.judging.verdict import confidence, error_of
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, near
 from hystbench.model import Model

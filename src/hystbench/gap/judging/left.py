@@ -1,0 +1,174 @@
+"""What the base and what a model leaves, in noise floors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.thresholds import (
+    ABOVE_NOISE,
+    FOREIGN,
+    LOOSE,
+    SLIGHT,
+    WIDE,
+    WORTH_A_WORD,
+)
+from hystbench.sentences import finely
+
+
+@dataclass(frozen=True)
+class Left:
+    """What a model leaves, in mean squares over the records.
+
+    Parameters
+    ----------
+    before, after : float
+        Above the floor and beyond what a wrong shape of the hysteresis could leave,
+        of the base and of the model with its effects, in floors.
+    all_before, all_after : float
+        Above the floor, of the whole residual, in floors.
+    output : float
+        Mean square of the measured output about its mean, in floors.
+    lone : float
+        Share of the power of what is left that stands in samples far off.
+    unrepeated : float or None
+        Power of what is left that differs between periods of the same input, above the
+        floor and in floors; none where no record repeats.
+    """
+
+    before: float
+    after: float
+    all_before: float
+    all_after: float
+    output: float = 0.0
+    lone: float = 0.0
+    unrepeated: float | None = None
+
+    @property
+    def slight(self) -> bool:
+        """Whether no more is left than a hysteresis of a slightly wrong shape leaves.
+
+        No model of a few play operators fits a material much better than to a percent
+        of its output. So little tells of an effect only if most of it is nothing that
+        reshaping the hysteresis could do.
+        """
+        return self._slight(self.after, self.all_after)
+
+    @property
+    def slight_before(self) -> bool:
+        """Whether the base leaves no more than that."""
+        return self._slight(self.before, self.all_before)
+
+    def _slight(self, beyond: float, whole: float) -> bool:
+        if whole <= ABOVE_NOISE:
+            return True
+        if whole >= (WIDE * SLIGHT) ** 2 * self.output:
+            return False
+        small = beyond < SLIGHT**2 * self.output
+        return beyond <= ABOVE_NOISE or (small and beyond < (1 - LOOSE) * whole)
+
+    @property
+    def little_named(self) -> bool:
+        """Whether effects leave most of what may be a slightly wrong shape alone."""
+        return self.slight_before and self.share > LOOSE
+
+    @property
+    def share(self) -> float:
+        """Share of the gap that no effect takes away.
+
+        The lesser of two: of the whole residual, which a wrong base fills too, and of
+        what lies beyond a wrong shape of the base, which may be little of an effect
+        that looks like one.
+        """
+        beyond = max(self.after, 0.0) / max(self.before, self.after, 1e-9)
+        return min(beyond, self.whole)
+
+    @property
+    def whole(self) -> float:
+        """Share of the gap that stays of the whole residual."""
+        return max(self.all_after, 0.0) / max(self.all_before, self.all_after, 1e-9)
+
+    @property
+    def sentence(self) -> str:
+        """Say how much of the gap stays on the fit records, and of what it is a share.
+
+        The part beyond a wrong shape, by which the verdict is given, is told where it
+        is clearly another figure.
+        """
+        told = (
+            f"on the fit records {finely(self.whole)} of the gap's power above the "
+            "noise floor stays"
+        )
+        if self.whole - self.share < WORTH_A_WORD:
+            return told
+        return (
+            f"{told}; of the part that no wrong shape of the hysteresis could leave, "
+            f"{finely(self.share)}"
+        )
+
+    @property
+    def may_be_of_base(self) -> bool:
+        """Whether what names leave may all be the base's own error.
+
+        With nothing named it would be no gap, so it cannot speak against a name.
+        """
+        return self.slight and not self.foreign
+
+    @property
+    def far_off(self) -> bool:
+        """Whether much of what is left stands in lone samples."""
+        return self.lone * (1.0 + self.all_after) > FOREIGN * max(self.all_before, 1.0)
+
+    @property
+    def is_new(self) -> bool:
+        """Whether more than noise differs from period to period, and little repeats."""
+        if self.unrepeated is None or self.unrepeated <= ABOVE_NOISE or self.far_off:
+            return False
+        repeats = self.all_after - self.unrepeated
+        return repeats <= max(ABOVE_NOISE, LOOSE * self.unrepeated)
+
+    @property
+    def foreign(self) -> str:
+        """Say what is left that no effect and no wrong hysteresis does, if any is."""
+        if self.far_off:
+            return (
+                f"{100 * self.lone:.0f} % of the power that is left on the fit records "
+                "stands in lone samples, far off from the others, which no effect of "
+                "the vocabulary does"
+            )
+        if self.unrepeated is None or self.unrepeated <= max(
+            ABOVE_NOISE, FOREIGN * self.all_after
+        ):
+            return ""
+        return (
+            f"on the fit records {self.unrepeated:.2g} times the noise power is left "
+            "that differs from one period of the same input to the next, which neither "
+            "a named effect nor a wrong hysteresis does"
+        )
+
+
+def what_is_left(base: ModelState, state: ModelState, floor_rms: float) -> Left:
+    """Measure what the base and what a model leaves, each beside its directions."""
+    floor = floor_rms**2
+    before, after = (_beyond(x, make_score(x, floor_rms)) for x in (base, state))
+    return Left(
+        before,
+        after,
+        base.power(floor) / floor,
+        state.power(floor) / floor,
+        float(np.var(base.measured)) / floor,
+    )
+
+
+def _beyond(model: ModelState, score: Score) -> float:
+    residual, beside = model.residual, model.beside_columns
+    rest, _ = score.split(residual)
+    if beside.shape[1]:
+        columns = np.hstack([beside, score.directions])
+        rest = residual - columns @ np.linalg.lstsq(columns, residual, rcond=1e-10)[0]
+    squares = [float(np.mean(rest[part] ** 2)) for part in model.sample.slices]
+    return float(np.mean(squares)) / score.floor - 1.0
