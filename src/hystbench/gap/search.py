@@ -163,10 +163,7 @@ class _Searched:
         for free in state.free:
             if free.block not in own:
                 cost += PARAMETER
-                if free.tolerance is not None:
-                    middle = (free.low + free.high) / 2
-                    cost += ((state.value(free) - middle) / free.tolerance) ** 2
-        return cost + score_of(state, score)
+        return cost + state.moved_charge + score_of(state, score)
 
     def may_be_simpler(self, share: float) -> bool:
         """Tell whether there may be a better answer beside a re-tuned base.

@@ -7,14 +7,16 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.signal import lsim
 
+from hystbench.blocks.gain import Gain
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.bases.load import load_base
-from hystbench.gap.fitting.least_squares import fitted
+from hystbench.gap.fitting.least_squares import fitted, fitted_to_the_end
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.run import closed_gap
+from hystbench.gap.thresholds import SCALE
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 
@@ -180,3 +182,29 @@ def test_a_number_at_the_end_of_its_range_moves_back():
     state = ModelState((block,), given, ScoredSamples.of(given), free=free).settled()
     found = fitted(state, Score.plain(state.sample, 1e-12)).state
     assert found.chain[0].stiffness == pytest.approx(900.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("noise", [0.02, 0.2, 2.0])
+def test_a_number_of_a_known_tolerance_is_where_the_score_with_its_charge_is_least(
+    noise,
+):
+    """Of one gain, beside a search along it."""
+    rng = np.random.default_rng(8)
+    u = rng.standard_normal(400)
+    y = 1.3 * u + noise * rng.standard_normal(400)
+    about = Channel("force", "N"), Channel("force", "N"), "twin", "fit"
+    given = tuple(Record(f"run-{k}", DT, u, y, *about) for k in range(2))
+    free = (Free(0, "value", tolerance=0.1, given=1.0),)
+    state = ModelState((Gain(value=1.0),), given, ScoredSamples.of(given), free=free)
+    score = Score.plain(state.sample, 1e-6)
+    gains = np.linspace(0.9, 1.5, 1201)
+    values = [
+        score.of(y2 - gain * u2) + ((gain - 1.0) / 0.1) ** 2
+        for y2, u2 in [(state.measured, state.sample.take([u, u]))]
+        for gain in gains
+    ]
+    found = fitted_to_the_end(state, score)
+    assert found.score == pytest.approx(
+        found.state.moved_charge + score.of(found.state.residual)
+    )
+    assert found.score < min(values) + SCALE  # by less no name is another one

@@ -635,3 +635,20 @@ def test_a_base_that_calls_itself_exact_is_not_fitted_as_a_host(exact):
     score = Score(start.sample, np.zeros((len(start.sample), 0)), NOISE**2)
     free = [len(x.fitted.state.free) for x in hosts(start, MOVES, False, score, exact)]
     assert free == ([0] if exact else [0, 3])
+
+
+def test_a_host_of_a_given_base_is_fitted_about_what_is_stated():
+    """A lag of one pole stands before the output: no mass, which would do as much."""
+    rng = np.random.default_rng(3)
+    u = sum(30 * np.sin(2 * np.pi * f * TIME) for f in rng.uniform(0.3, 2.5, 8))
+    _, y, _ = lsim(([1.0], [0.5 * 0.2, 0.5 + 2.0 * 0.2, 2.0]), u, TIME)
+    noise = 1e-3 * rng.standard_normal(len(y))
+    given = (record("run", u, y + noise, ("N", "m")),)
+    base = TransferFunction(numerator=(1.0,), denominator=(0.5, 2.0))
+    start = ModelState((base,), given, ScoredSamples.of(given)).settled()
+    score = Score(start.sample, np.zeros((len(start.sample), 0)), 1e-6)
+    held, fitted = hosts(start, MOVES, False, score)
+    mass = held.alone.chain[0].mass
+    assert fitted.fitted.state.chain[0].mass == pytest.approx(mass, rel=0.1)
+    moved = fitted.fitted.state.moved_charge
+    assert 0.0 < moved < held.fitted.score - fitted.fitted.score

@@ -13,7 +13,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import Fitted, judged
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.hosts import best_host, hosts, may_be_stores
 from hystbench.gap.inside.named_inside import chosen
 from hystbench.gap.inside.stores import how_it_fills, stores
@@ -263,3 +263,51 @@ def test_overflow_is_named_beside_a_base_of_stores_that_was_given():
     assert np.sqrt(np.mean(best.state.residual**2)) < 1.5 * NOISE
     assert best.state.chain[0].height == pytest.approx(60.0, rel=0.03)
     assert best.state.chain[0].rate == upper.rate
+
+
+@pytest.mark.parametrize("about", [False, True])
+def test_a_base_that_is_the_tangent_of_the_outflow_lacks_its_root(about):
+    """A laboratory's linear tank, about the level of 26: its rate is no rate of a root.
+
+    Nor where its numbers may be off by a tenth.
+    """
+    rate, level = 0.9, 26.0
+    rng = np.random.default_rng(4)
+    u = np.clip(4.5 + np.repeat(rng.normal(0, 1.5, COUNT // 20), 20), 0.5, 9)
+    step, now, out = DT / FINE / 20, level, []
+    for volts in u:
+        out.append(now)
+        for _ in range(FINE):
+            now += step * (volts - rate * np.sqrt(max(now, 0.0)))
+    y = np.array(out) + NOISE * rng.standard_normal(COUNT)
+    record = Record("run", DT / 20, u, y, *CHANNELS, "measured")
+    slope = rate / (2 * np.sqrt(level))
+    linear = Store(
+        gain=1.0,
+        rate=slope,
+        exponent=1.0,
+        bias=slope * level - rate * np.sqrt(level),
+        start_level=level,
+        hold="zero-order",
+    )
+    numbers = ("gain", "rate", "bias") if about else ()
+    free = tuple(
+        Free(0, x, None, *_ends(getattr(linear, x)), given=getattr(linear, x))
+        for x in numbers
+    )
+    sample = ScoredSamples.of((record,))
+    start = ModelState((linear,), (record,), sample, free, hold="zero-order").settled()
+    score = Score.plain(start.sample, NOISE**2)
+    (host,) = hosts(start, Quantities(output="level"), False, score)
+    best = chosen(search(host.fitted, score), score.floor)
+    assert best.effects == ("outflow",)
+    (store,) = best.state.chain
+    assert store.rate == pytest.approx(rate, rel=0.02)
+    assert store.exponent == pytest.approx(0.5, abs=0.02)
+    assert np.sqrt(np.mean(best.state.residual**2)) < 1.1 * NOISE
+
+
+def _ends(value):
+    """Give the tolerance of a number, and the ends of its range."""
+    size = 0.1 * abs(value)
+    return size, value - size, value + size

@@ -89,10 +89,12 @@ class Filled(NamedTuple):
     """How high stores are filled: place, block and highest level of each.
 
     Of the last one, where its level is the output, also the highest that was measured.
+    They are known if a given base states their numbers.
     """
 
     tops: tuple[tuple[int, Store, float], ...]
     measured: float | None = None
+    known: bool = False
 
 
 class Changed(NamedTuple):

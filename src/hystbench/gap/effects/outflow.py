@@ -16,14 +16,25 @@ class Outflow(StoreEffect):
     numbers = ("exponent",)
 
     def stored(self, filled: Filled) -> Iterator[Changed]:
-        """Offer the root of the level, and any power, in all stores alike."""
+        """Offer the root of the level, and any power, in all stores alike.
+
+        As much is to leave as before where a store is half full. A linear outflow that
+        is known is the tangent of the root at a level that its constant part tells:
+        that part goes then.
+        """
         values = {}
         for place, store, top in filled.tops:
-            middle = top / 2  # where as much is to leave as before
-            rate = store.rate * middle ** (store.exponent - ROOT)
+            rate = store.rate * (top / 2) ** (store.exponent - ROOT)
             values[place] = {"exponent": ROOT, "rate": float(rate)}
-        yield Changed("root", values, ())
-        yield Changed("power", values, tuple((place, "exponent") for place in values))
+            level = -store.bias / store.rate if store.rate else 0.0
+            if filled.known and store.exponent == 1.0 and level > 0.0:
+                rate = store.rate * level ** (1.0 - ROOT) / ROOT
+                values[place] = {"exponent": ROOT, "rate": float(rate), "bias": 0.0}
+        rates, powers = (
+            tuple((place, name) for place in values) for name in ("rate", "exponent")
+        )
+        yield Changed("root", values, rates)
+        yield Changed("power", values, (*rates, *powers))
 
 
 ROOT = 0.5

@@ -70,7 +70,8 @@ def fitted(
     """Fit the free numbers of a model to its records.
 
     Each record counts alike: its residual is divided by its rms before. A number that
-    cannot be negative is fitted by its logarithm.
+    cannot be negative is fitted by its logarithm. A number of a known tolerance is held
+    by it, as a measured value is by its standard error.
 
     Parameters
     ----------
@@ -90,6 +91,16 @@ def fitted(
     sizes = np.where(logs, values, _sizes(state, values, tangents))
     weights = record_weights(state)
     most = OUT * weights * float(np.max(np.abs(state.measured)))
+    known = [
+        k
+        for k, free in enumerate(state.free)
+        if free.given is not None and free.tolerance is not None
+    ]
+    given = np.array([state.free[k].given for k in known], dtype=float)
+    tolerances = np.array([state.free[k].tolerance for k in known], dtype=float)
+    # What is lowered is, near its least, the score times samples by what they weigh.
+    samples = len(weights) / len(state.sample.slices)
+    per_tolerance = np.sqrt(samples / score.weight) / tolerances
 
     def values_at(point: FloatArray) -> FloatArray:
         times = np.exp(np.clip(point, -100, 100))
@@ -102,8 +113,9 @@ def fitted(
         try:
             rest = moved(point).residual * weights
         except InputError:
-            return most  # out of what the blocks accept
-        return np.where(np.isfinite(rest), np.clip(rest, -most, most), most)
+            rest = most  # out of what the blocks accept
+        rest = np.where(np.isfinite(rest), np.clip(rest, -most, most), most)
+        return np.append(rest, (values_at(point)[known] - given) * per_tolerance)
 
     def slopes(point: FloatArray) -> FloatArray:
         # MINPACK's wrapper asks for the first ones once more, to see their shape.
@@ -111,7 +123,9 @@ def fitted(
         if point.any():
             scale = np.where(logs, values_at(point), sizes)
             own = _tangents(moved(point), STEP * scale)
-        return -weights[:, None] * own * scale
+        held = np.zeros((len(known), len(scale)))
+        held[np.arange(len(known)), known] = scale[known] * per_tolerance
+        return np.vstack([-weights[:, None] * own * scale, held])
 
     point, *_ = leastsq(
         residual,
@@ -140,11 +154,11 @@ def fitted_to_the_end(state: ModelState, score: Score) -> Fitted:
 
 
 def judged(state: ModelState, score: Score) -> float:
-    """Score a model; one that runs away has an infinite score."""
+    """Score a model, with what moved numbers cost; infinite if it runs away."""
     residual = state.residual
     if not np.all(np.isfinite(residual)):
         return float("inf")
-    return score.of(residual, state.freedom)
+    return score.of(residual, state.freedom) + state.moved_charge
 
 
 def at_values(state: ModelState, values: FloatArray) -> ModelState:

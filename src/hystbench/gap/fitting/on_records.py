@@ -113,7 +113,7 @@ def free_numbers(base: Model) -> tuple[Free, ...]:
             place = element if isinstance(value, tuple) else None
             own = Free(places[label], parameter, place, size)
             if size is not None:
-                own = own._replace(low=number - size, high=number + size)
+                own = own._replace(low=number - size, high=number + size, given=number)
             found.append(own)
     return tuple(found)
 

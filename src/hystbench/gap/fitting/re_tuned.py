@@ -59,7 +59,8 @@ def _numbers_about(state: ModelState) -> Iterator[Free]:
             for element, number in enumerate(value if many else (value,)):
                 if number and (place, name) not in known:
                     at, size = element if many else None, ABOUT * abs(number)
-                    yield Free(place, name, at, size, number - size, number + size)
+                    ends = number - size, number + size
+                    yield Free(place, name, at, size, *ends, given=number)
 
 
 def re_tuned_words(start: ModelState, state: ModelState) -> str:

@@ -36,6 +36,8 @@ class Free(NamedTuple):
     high: float = np.inf
     refused: Refused = ""
     """Which ends of its range make another thing of its effect."""
+    given: float | None = None
+    """What a tolerance counts from."""
 
 
 class Added(NamedTuple):
@@ -206,6 +208,18 @@ class ModelState:
         """Charge for the square of a change of each free number."""
         return np.array(
             [0.0 if f.tolerance is None else f.tolerance**-2.0 for f in self.free]
+        )
+
+    @property
+    def moved_charge(self) -> float:
+        """Charge for how far numbers are from what they were given as.
+
+        A number that is off by its tolerance costs one, as by one standard error.
+        """
+        return sum(
+            ((self.value(free) - free.given) / free.tolerance) ** 2
+            for free in self.free
+            if free.given is not None and free.tolerance is not None
         )
 
     def change_charges(self, columns: int) -> FloatArray:

@@ -25,7 +25,7 @@ from hystbench.blocks.store import Store
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.cache import records_digest
-from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
+from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted, fitted_to_the_end
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.laws import host_places
@@ -39,12 +39,14 @@ from hystbench.gap.inside.one_coordinate import (
 from hystbench.gap.inside.stores import in_other_order, stores
 from hystbench.gap.inside.two_masses import further_modes_of, two_masses
 from hystbench.gap.records.scored_samples import ScoredSamples
-from hystbench.gap.thresholds import AS_GOOD, FURTHER, PAYS
+from hystbench.gap.thresholds import ABOUT, AS_GOOD, FURTHER, PAYS
 from hystbench.quantities import Quantities
 from hystbench.record import Record
 
 STORES = {1: "a store stands", 2: "two stores in series stand"}
 """How many are tried, and how that is told."""
+ZEROS = ("bias", "offset", "delay_s")
+"""Numbers that are counted from a zero: a share of them says nothing."""
 TRIED = 2
 """Modes of a base in which forces are tried, those that need it most."""
 
@@ -224,7 +226,16 @@ def _as_given(
     yield Host(held, fitted(held, score), f"{words}, its numbers as they are")
     if not exact:
         words = f"{words}, its numbers fitted to the records"
-        yield Host(state, fitted(state, score), words, charge=FURTHER)
+        about = replace(state, free=tuple(_about(state, x) for x in state.free))
+        yield Host(state, fitted_to_the_end(about, score), words, charge=FURTHER)
+
+
+def _about(state: ModelState, free: Free) -> Free:
+    """Give a number with what it may be off; one that is counted from a zero as is."""
+    value = state.value(free)
+    if free.parameter in ZEROS or value == 0.0:
+        return free
+    return free._replace(tolerance=ABOUT * abs(value), given=value)
 
 
 def best_host(states: Sequence[ModelState], score: Score) -> Fitted | None:

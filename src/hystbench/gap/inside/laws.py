@@ -233,8 +233,8 @@ def _in_range(state: ModelState, place: int, name: str, value: float) -> float:
 
 
 def _is_free(state: ModelState, place: int) -> bool:
-    """Tell whether numbers of a block may change."""
-    return any(free.block == place for free in state.free)
+    """Tell whether numbers of a block may be anything, as of one that nobody knows."""
+    return any(free.block == place and free.given is None for free in state.free)
 
 
 def host_of(state: ModelState) -> int:

@@ -28,7 +28,7 @@ from hystbench.gap.inside.further_modes import (
     in_further_modes,
     with_modes,
 )
-from hystbench.gap.inside.hosts import Host, hosts
+from hystbench.gap.inside.hosts import ZEROS, Host, hosts
 from hystbench.gap.inside.hypotheses import may_gain, singles, together
 from hystbench.gap.inside.laws import Times, host_places, laws_for
 from hystbench.gap.naming.add_effects import Named
@@ -214,11 +214,6 @@ def in_short_steps(state: ModelState, score: Score) -> ModelState:
     return state
 
 
-ZEROS = ("bias", "offset", "delay_s")
-"""Numbers of a host that are counted from a zero: what share of itself one moves by
-says nothing."""
-
-
 def re_tuning(alone: ModelState, state: ModelState) -> str:
     """Say which of a host's own numbers the fit with the effects moved most, if far.
 
@@ -323,6 +318,7 @@ def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> 
     better = "better" if gain > 0 else "worse"
     say(f"inside: on folds {abs(gain):.1f} {better} than what a chain has found")
     more = len(chain.added) - len(state.added) - inside.counts
+    gain -= state.moved_charge - chain.moved_charge
     return gain + FURTHER * max(more, 0) >= PAYS
 
 

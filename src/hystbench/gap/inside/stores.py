@@ -140,11 +140,15 @@ def how_it_fills(state: ModelState) -> Filled:
     measured = max(float(record.y.max()) for record in state.records)
     last = state.chain[-1]
     is_shown = isinstance(last, Store) and last.output == "level" and measured > 0
-    return Filled(tuple(tops), measured if is_shown else None)
+    known = all(free.given is not None for free in state.free)
+    return Filled(tuple(tops), measured if is_shown else None, known)
 
 
 def with_changed(state: ModelState, effect: str, changed: Changed) -> ModelState:
-    """Give stores with other numbers, some of them free as well."""
+    """Give stores with other numbers, some of them free as well.
+
+    What was known of such a number says nothing of it any more.
+    """
     chain = list(state.chain)
     old = {
         f"{place}.{name}": float(getattr(chain[place], name))
@@ -154,10 +158,16 @@ def with_changed(state: ModelState, effect: str, changed: Changed) -> ModelState
     for place, values in changed.values.items():
         chain[place] = replace(chain[place], **values)
     places = tuple(changed.values)
-    charge = max(float(len(changed.free)), 1.0)
-    item = Added(effect, "inside", changed.form, places, old, charge)
-    already = set(state.free)
-    more = tuple(x for x in (Free(*own) for own in changed.free) if x not in already)
+    free = tuple(
+        Free(x.block, x.parameter)
+        if x.given is not None and x.parameter in changed.values.get(x.block, {})
+        else x
+        for x in state.free
+    )
+    more = tuple(x for x in (Free(*own) for own in changed.free) if x not in free)
+    item = Added(
+        effect, "inside", changed.form, places, old, max(float(len(more)), 1.0)
+    )
     return replace(
-        state, chain=tuple(chain), free=(*state.free, *more), added=(*state.added, item)
+        state, chain=tuple(chain), free=(*free, *more), added=(*state.added, item)
     )
