@@ -67,6 +67,10 @@ LAWS = {
         {"amplitude": 2.0, "angle": 0.4},
         lambda q, v: 2 * (np.sin(q + 0.4) - np.sin(0.4)),
     ),
+    "gravity from a slack spring": (
+        {"amplitude": 2.0, "angle": 0.4, "carried": 0.0},
+        lambda q, v: 2 * np.sin(q + 0.4),
+    ),
 }
 
 

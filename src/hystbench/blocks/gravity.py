@@ -5,7 +5,11 @@ from hystbench.blocks.parameter import HUGE, number
 
 
 class Gravity(Force, name="gravity", law="gravity"):
-    """A pendulum's moment, ``F = amplitude (sin(q + angle) - sin(angle))``, q in rad.
+    """A pendulum's moment on an angle q in rad.
+
+    ``F = amplitude (sin(q + angle) - carried sin(angle))``: what the spring carries of
+    the weight at ``q = 0`` is no force beside it. All of it, if the angle is counted
+    from where the weight is at rest; none, if from where the spring is.
 
     References
     ----------
@@ -14,3 +18,4 @@ class Gravity(Force, name="gravity", law="gravity"):
 
     amplitude: float = number("U", "weight times its arm", -HUGE, HUGE)
     angle: float = number("rad", "of the arm to the vertical at q = 0", -3.2, 3.2, 0.0)
+    carried: float = number("-", "share that the spring carries there", 0.0, 1.0, 1.0)

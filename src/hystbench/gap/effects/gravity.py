@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from hystbench.blocks.gravity import Gravity as GravityBlock
 from hystbench.gap.effects.effect import ForceEffect
@@ -20,12 +21,13 @@ class Gravity(ForceEffect):
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer a weight that makes half of the spring, and one that works against it.
 
-        The coordinate is an angle. It is counted from the vertical, or from any angle.
+        The coordinate is an angle. It is counted from the vertical, or from any angle:
+        from where the weight is at rest, or from where the spring is.
         """
+        both = ("amplitude", "angle")
         for share in (0.5, -0.5) if moved.turns and not moved.anywhere else ():
             block = GravityBlock(amplitude=share * moved.stiffness)
-            for form, free in (
-                ("", ("amplitude",)),
-                ("tilted", ("amplitude", "angle")),
-            ):
-                yield Law(form, block, free, stands_for=share)
+            yield Law("", block, both[:1], stands_for=share)
+            yield Law("tilted", block, both, stands_for=share)
+            slack = replace(block, carried=0.0)
+            yield Law("tilted, from a slack spring", slack, both, stands_for=share)
