@@ -28,7 +28,7 @@ from hystbench.gap.inside.hypotheses import (
     starts,
     with_one_fewer,
 )
-from hystbench.gap.inside.laws import evened, how_it_moves, laws_for, with_law
+from hystbench.gap.inside.laws import Times, evened, how_it_moves, laws_for, with_law
 from hystbench.gap.inside.named_inside import (
     Inside,
     beats,
@@ -683,3 +683,29 @@ def test_a_host_of_a_given_base_is_fitted_about_what_is_stated():
     assert fitted.fitted.state.chain[0].mass == pytest.approx(mass, rel=0.1)
     moved = fitted.fitted.state.moved_charge
     assert 0.0 < moved < held.fitted.score - fitted.fitted.score
+
+
+@pytest.mark.parametrize("identified", [False, True])
+def test_the_zero_of_a_sensor_is_offered_behind_a_given_host(identified):
+    """One that was identified from the records has an offset of its own."""
+    u = np.sin(2.1 * TIME)
+    given = (record("run", u, u / 60.0, ("N", "m")),)
+    base = Mechanism(mass=1.0, damping=2.0, stiffness=60.0)
+    state = ModelState((base,), given, ScoredSamples.of(given))
+    times = Times.of(given, identified)
+    offered = laws_for(Fitted(state, 0.0), times=times)
+    forms = [law.form for law in offered.get("calibration-error", ())]
+    assert forms == ([] if identified else ["gain", "offset", "gain and offset"])
+
+
+def test_what_is_known_about_of_a_base_is_known_about_of_its_host():
+    """A mass that the base does not have is not what a free pole becomes."""
+    u = np.sin(2.1 * TIME) + np.sin(9.0 * TIME)
+    _, y, _ = lsim(([1.0], [0.5, 2.0]), u, TIME)
+    given = (record("run", u, y + 0.1 * u, ("N", "m")),)
+    base = TransferFunction(numerator=(1.0,), denominator=(0.5, 2.0))
+    free = (Free(0, "numerator", 0, 0.1, 0.9, 1.1, given=1.0),)
+    start = ModelState((base,), given, ScoredSamples.of(given), free=free).settled()
+    score = Score(start.sample, np.zeros((len(start.sample), 0)), 1e-6)
+    (host,) = hosts(start, MOVES, False, score)
+    assert all(item.given is not None for item in host.fitted.state.free)

@@ -318,7 +318,8 @@ def test_what_is_new_in_each_period_is_told_as_that():
 
 def test_noise_that_follows_nothing_is_no_gap_but_where_the_noise_is_known():
     """As surrogates tell it where no record repeats."""
-    found, chance = left(30.0), Unnamed(0.0, None, 0.3, by_chance=0.3)
+    found = replace(left(30.0), output=2e4)
+    chance = Unnamed(0.0, None, 0.3, by_chance=0.3)
     for bound, expected in ((True, "no-gap"), (False, "unnamed")):
         word, reason = judge(
             found, False, -0.1, unnamed=chance, floor_is_upper_bound=bound
@@ -341,3 +342,12 @@ def test_noise_that_follows_nothing_is_no_gap_but_where_the_noise_is_known():
     )
     assert word == "unnamed"
     assert "its size follows signals" in reason
+
+
+@pytest.mark.parametrize(("share", "word"), [(0.04, "no-gap"), (0.05, "unnamed")])
+def test_what_follows_nothing_is_noise_only_if_it_is_little(share, word):
+    """A torque of cogging follows no known signal either, at a tenth of the output."""
+    found = replace(left(2300.0), output=2300.0 / share**2)
+    nothing = Unnamed(1e-4, unrelated=0.9)
+    given = {"unnamed": nothing, "floor_is_upper_bound": True}
+    assert judge(found, False, -0.1, **given)[0] == word

@@ -8,7 +8,8 @@ import pytest
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect, without_effect
 from hystbench.gap.fitting.model_score import make_score
-from hystbench.gap.fitting.refit import finished
+from hystbench.gap.fitting.refit import added, finished
+from hystbench.gap.fitting.tried import tried
 from hystbench.gap.judging.effect_rows import ranking_rows
 from hystbench.gap.naming import second_looks as reconsider
 from hystbench.gap.naming.add_effects import Named
@@ -19,6 +20,7 @@ from hystbench.gap.thresholds import PAYS
 from tests.gap.small import block, measured, state_of
 
 NOISE = 0.02
+FORMS = "generalized plays", "plays"
 
 
 @pytest.fixture(scope="module")
@@ -206,3 +208,22 @@ def test_another_form_of_an_effect_is_taken_where_it_does_better(
     assert [look.taken for look in looks] == ["drive-lag", "asymmetry"]
     row = next(x for x in looks[0].ranking if x.effect == "drive-lag")
     assert (row.form, row.score, row.gain) == (form, score, 30.0 - score)
+
+
+@pytest.mark.parametrize("loop", [False, True])
+def test_a_hysteresis_without_a_loop_gives_way_to_a_curve(loop):
+    """Plays that bend much fit a saturation too; all of them then do nothing."""
+    gain = block("gain", value=12.0)
+    device = (
+        block("prandtl-ishlinskii", thresholds=(0.0, 0.2), weights=(0.0, -0.3))
+        if loop
+        else block("saturation", level=0.6)
+    )
+    before = state_of((gain,), measured((device, gain), NOISE), count=600)
+    score = make_score(before, NOISE)
+    every, _ = tried(effects()["hysteresis"], before, score)
+    plays = next(trial for _, trial in every if trial.variant.form == FORMS[loop])
+    state, _ = added(before, plays, score)
+    kept, _ = reconsidered(state, (), NOISE, silent)
+    names = [item.effect for item in kept.added]
+    assert names == (["hysteresis"] if loop else ["saturation"])

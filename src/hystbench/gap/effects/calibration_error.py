@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from hystbench.blocks.calibration_error import CalibrationError as Sensor
 from hystbench.gap.effects.effect import Declined, Effect
+from hystbench.gap.effects.law import Law, Passed
 from hystbench.gap.effects.variant import Variant
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import SHAPE
@@ -32,7 +34,7 @@ class CalibrationError(Effect):
             raise Declined("the other shape of the hysteresis has a gain of its own")
         end = len(simulation.chain)
         step = {"gain": 1e-3, "offset": 1e-3 * simulation.largest(end)}
-        for used in (("gain",), ("offset",), ("gain", "offset")):
+        for used in FORMS:
             yield self.inserted(
                 simulation,
                 end,
@@ -44,3 +46,15 @@ class CalibrationError(Effect):
                 form=" and ".join(used),
                 unit={name: step[name] for name in used},
             )
+
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer them behind a host whose numbers were given.
+
+        One that was identified from the records has a gain and an offset of its own.
+        """
+        if passed.shortest < passed.step:
+            for used in FORMS:
+                yield Law(" and ".join(used), Sensor(gain=1.0), used, "behind")
+
+
+FORMS = (("gain",), ("offset",), ("gain", "offset"))

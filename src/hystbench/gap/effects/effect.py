@@ -207,6 +207,10 @@ class Effect(ABC):
         """Give the numbers, and their values, at which a law is another effect."""
         return {}
 
+    def without_itself(self, block: Block) -> Block | None:
+        """Give a block of the effect without what makes it one; none where all does."""
+        return None
+
     def stored(self, filled: Filled) -> Iterator[Changed]:
         """Offer other numbers of stores in series.
 

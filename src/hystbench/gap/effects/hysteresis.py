@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import fields, replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
+from hystbench.blocks.base import Block
+from hystbench.blocks.wrapping import PlayBlock
 from hystbench.envelope import Envelope
 from hystbench.gap.effects.effect import Declined, Effect
 from hystbench.gap.effects.variant import Values, Variant, logarithmic
@@ -52,6 +54,14 @@ class Hysteresis(Effect):
         yield self._generalized(simulation)
         yield self._plays(simulation)
         yield self._bouc_wen(simulation)
+
+    def without_itself(self, block: Block) -> Block | None:
+        """Let all plays be that of the least threshold: a curve, without a loop."""
+        if not isinstance(block, PlayBlock):
+            return None
+        plays: Any = block
+        together = (sum(plays.weights), *(0.0 for _ in plays.weights[1:]))
+        return cast(Block, replace(plays, weights=together))
 
     def _plays(self, simulation: Simulation) -> Variant:
         """Plays beside a linear path.

@@ -137,7 +137,7 @@ def hosts(
             )
             same = same_as(start, quantities, score.floor)
         if same is not None:
-            yield from _as_given(same, score, words, bool(start.free), exact)
+            yield from _as_given(same, score, words, start.free, exact)
     if quantities.causality not in ("force to motion", "unknown"):
         return
     known = quantities.output in MOTIONS
@@ -153,7 +153,7 @@ def hosts(
             best = fitted(mode, score)
             yield Host(best.state, best, words)
         else:
-            yield from _as_given(mode, score, words, bool(start.free), exact)
+            yield from _as_given(mode, score, words, start.free, exact)
 
 
 def _of_stores(start: ModelState, identified: bool, score: Score) -> Iterator[Host]:
@@ -212,21 +212,23 @@ def stores_like(start: ModelState, count: int) -> ModelState | None:
 
 
 def _as_given(
-    state: ModelState, score: Score, words: str, may_change: bool, exact: bool
+    state: ModelState, score: Score, words: str, free: tuple[Free, ...], exact: bool
 ) -> Iterator[Host]:
     """Give a host that does what a given base does, then the same fitted to records.
 
     The numbers of a given base are known, unless it says that some are free. That known
-    ones are wrong all the same has to pay as a further effect does.
+    ones are wrong all the same has to pay as a further effect does. What is only known
+    about of the base, is only known about of the host.
     """
-    if may_change:
-        yield Host(state, fitted(state, score), words)
+    about = replace(state, free=tuple(_about(state, x) for x in state.free))
+    if free:
+        known = all(item.given is not None for item in free)
+        yield Host(state, fitted_to_the_end(about if known else state, score), words)
         return
     held = replace(state, free=())
     yield Host(held, fitted(held, score), f"{words}, its numbers as they are")
     if not exact:
         words = f"{words}, its numbers fitted to the records"
-        about = replace(state, free=tuple(_about(state, x) for x in state.free))
         yield Host(state, fitted_to_the_end(about, score), words, charge=FURTHER)
 
 

@@ -63,6 +63,11 @@ class Left:
         """Whether the base leaves no more than that."""
         return self._slight(self.before, self.all_before)
 
+    @property
+    def may_be_noise(self) -> bool:
+        """Whether what is left may be noise of any colour: as little as that in all."""
+        return self.all_after < (WIDE * SLIGHT) ** 2 * self.output
+
     def _slight(self, beyond: float, whole: float) -> bool:
         if whole <= ABOVE_NOISE:
             return True

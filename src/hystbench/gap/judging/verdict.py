@@ -96,8 +96,9 @@ def judge(
         if new and size_follows:
             return "unnamed", f"{new}, but its size follows signals, as no noise does"
         if new:
-            # Only where the noise is not known may all of it be noise.
-            word: Verdict = "no-gap" if floor_is_upper_bound else "unnamed"
+            # Only where the noise is not known may all of it be noise, and little.
+            noise = floor_is_upper_bound and left.may_be_noise
+            word: Verdict = "no-gap" if noise else "unnamed"
             return word, (
                 f"{new}: it is noise of another colour, or has a cause that is in no "
                 "record"

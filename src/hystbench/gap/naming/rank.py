@@ -9,16 +9,17 @@ import numpy as np
 
 from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
 from hystbench.blocks.simulator import Simulator
+from hystbench.device_kinds import behaviour_of
 from hystbench.errors import InputError
-from hystbench.gap.effects import among
+from hystbench.gap.effects import among, effects
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.hysteresis import Hysteresis
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.model_score import score_of
-from hystbench.gap.fitting.refit import added, finished
+from hystbench.gap.fitting.refit import added, finished, refit
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.fitting.tried import Seen, Tried, on_all_records, seen
 from hystbench.gap.fitting.variant_search import Trial, fine
 from hystbench.gap.naming.rivals import (
@@ -27,7 +28,7 @@ from hystbench.gap.naming.rivals import (
     simplest_of_a_tie,
 )
 from hystbench.gap.naming.rounds import Candidate, TriedVariant, best_forms, in_order
-from hystbench.gap.thresholds import CERTAIN, LOOSE, PARAMETER, PAYS, SHAPE
+from hystbench.gap.thresholds import CERTAIN, LOOSE, PARAMETER, PAYS, SCALE, SHAPE
 
 NEAR = 80.0
 """Variants that score worse than the best by more are not searched further."""
@@ -41,6 +42,7 @@ EXACT = 3
 """Of the finalists, those that are simulated exactly before one is taken."""
 FITTED_WITH_IT = "the shape of a hysteresis whose weights are free is fitted with it"
 AT_AN_END = "fits best at the end of what it can be"
+ALIKE_WITHOUT = "the same curves fit alike without"
 
 
 def rank(
@@ -253,11 +255,43 @@ def _judged(
         return declined(f"fits best where {error}")
     if end := at_end(after):
         return declined(f"{AT_AN_END}: {end}")
+    if does_without_itself(after, after.added[-1], value, score):
+        return declined(f"{ALIKE_WITHOUT} {behaviour_of(variant.effect)}")
     hidden = score.directions.shape[1] > 0  # what a wrong shape may do hardly counts
     power = state.power(score.floor)
     if hidden and after.share(state, score.floor, power) < -LOOSE:
         return declined("makes the gap wider")
     return replace(item, score=value, gain=now - value, state=after)
+
+
+def does_without_itself(
+    state: ModelState, item: Added, value: float, score: Score
+) -> bool:
+    """Tell whether a model fits alike without what makes an effect that effect.
+
+    Parameters
+    ----------
+    state : ModelState
+    item : Added
+        The effect.
+    value : float
+        What the model scores.
+    score : Score
+    """
+    for place in item.blocks:
+        block = effects()[item.effect].without_itself(state.chain[place])
+        if block is None:
+            continue
+        chain = (*state.chain[:place], block, *state.chain[place + 1 :])
+        free = tuple(
+            x
+            for x in state.free
+            if x.block != place or not x.element or x.parameter != "weights"
+        )
+        bare = replace(state.with_chain(chain), free=free)
+        if refit(bare, score)[1] < value + SCALE:
+            return True
+    return False
 
 
 def _not_cut_short(item: Candidate, state: ModelState) -> Candidate:

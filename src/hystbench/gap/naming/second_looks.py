@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from hystbench.gap.effects import among
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import last_to, removable, without_effect
-from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import finished
-from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.naming.rank import rank
+from hystbench.gap.fitting.state import Added, ModelState
+from hystbench.gap.naming.rank import does_without_itself, rank
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook, in_order
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import PAYS, SCALE, SHAPE
@@ -31,6 +33,8 @@ def reconsidered(
 
     The first effect was named while the others were missing: one like it may have
     looked better for that, or another form of it. A rival has to do better than both.
+    A hysteresis that has no loop any more gives way to the best of all others: it is a
+    curve.
 
     Parameters
     ----------
@@ -58,12 +62,16 @@ def reconsidered(
         score = make_score(short, floor_rms)
         as_is, now = finished(state, score)
         have = tuple(other.effect for other in short.added)
-        names = {item.effect, *(rivals or _near(item.effect, rounds))}
-        known = list(among(names - set(have)).values())
+        near = rivals or _near(item.effect, rounds)
+        is_itself = bool(rivals) or _is_itself(state, item, floor_rms)
+        if not is_itself:
+            near = among(state.offered)
+        known = list(among({item.effect, *near} - set(have)).values())
         ranking = rank(short, score, known, folds=False)
         best = ranking[0]
         own = next((x for x in ranking if x.effect == item.effect and x.state), None)
         least = now if own is None else min(now, own.score)
+        least = least if is_itself else np.inf  # anything but that
         if best.state and best.effect != item.effect and best.score < least - SCALE:
             held_back = gain_held_back(short, best.state, score)
             ranking = (replace(best, held_back=held_back), *ranking[1:])
@@ -86,6 +94,12 @@ def reconsidered(
         looks[place] = replace(looks[place], ranking=ranking)
         say(f"{looks[place].instead_of} is fitted anew")
     return state, tuple(looks)
+
+
+def _is_itself(state: ModelState, item: Added, floor_rms: float) -> bool:
+    """Tell whether an effect has not lost what makes it that to a later one."""
+    score = make_score(state, floor_rms)
+    return not does_without_itself(state, item, score_of(state, score), score)
 
 
 def _with(
