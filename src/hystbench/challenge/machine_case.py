@@ -51,7 +51,6 @@ def make_machine_case(spec: CaseSpec) -> Case:
     if hidden:
         noise = min(sizes) / 10.0 ** (spec.ratio_db / 20.0)
     step = 3.0 * max(float(np.max(np.abs(y))) for _, y in signals) / STEPS
-    given, measured = machine.channels
     records = []
     for item, (u, y) in zip(machine.records, signals, strict=True):
         noisy = y + noise * random.standard_normal(len(y))
@@ -61,8 +60,7 @@ def make_machine_case(spec: CaseSpec) -> Case:
                 1.0 / machine.rate_hz,
                 np.array([float(f"{value:.8g}") for value in u]),
                 np.round(noisy / step) * step,
-                given,
-                measured,
+                *machine.channels,
                 "twin",
                 item.use,
                 item.period_samples,
@@ -72,8 +70,9 @@ def make_machine_case(spec: CaseSpec) -> Case:
     held_out = _left(machine, _used(machine, signals, "hold-out"))
     noise_rms = float(np.hypot(noise, step / np.sqrt(12.0)))
     base = "linear" if model is None else "model-file"
+    unit = machine.channels[1].unit
     own = {"closed_loop": machine.gains[0] > 0.0, "base": base}
-    truth = told_of(spec, measured.unit, noise_rms, output, **own) | {
+    truth = told_of(spec, unit, noise_rms, output, **own) | {
         "linear": _linear(machine),
         "effects": [
             _told(item, size, noise_rms, reach)

@@ -144,7 +144,12 @@ def effects_of(
         Whether it is those alone instead.
     """
     if family in inside.MACHINES:
-        names = list(inside.hidden_in(family, kind != "unlisted"))
+        listed = kind != "unlisted"
+        names = [
+            name
+            for name, about in inside.IN_MACHINE.items()
+            if family in about.families and about.listed == listed
+        ]
     elif kind == "unlisted":
         names = list(UNLISTED)
     else:

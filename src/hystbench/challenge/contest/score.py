@@ -167,7 +167,9 @@ def judge(
         members = tuple(name for name in members if name != SHAPE)
     confirmed = confirm(members) if single and len(members) > 1 else members
     # An effect outside the vocabulary has no name to be called by.
-    right, right_strict = _right(kind, hidden, gap["verdict"], named, strict)
+    shape_alone = kind == "none" and names and bool(strict) and not named
+    right = shape_alone or _right(kind, hidden, gap["verdict"], named)
+    right_strict = _right(kind, hidden, gap["verdict"], strict)
     views = gap["where"]
     retuned = [effect["ratio_retuned_db"] for effect in truth["effects"]]
     return Row(
@@ -269,22 +271,13 @@ def _numbers(value: Any) -> bool:
     )
 
 
-def _right(
-    kind: str, hidden: list[str], verdict: str, named: list[str], strict: list[str]
-) -> tuple[bool, bool]:
-    """Tell whether all is right, with the shape let pass and without."""
+def _right(kind: str, hidden: list[str], verdict: str, named: list[str]) -> bool:
+    """Tell whether an answer is right, and nothing beside it is named."""
     if kind == "none":
-        shape_alone = verdict == "named" and bool(strict) and not named
-        return verdict == "no-gap" or shape_alone, verdict == "no-gap"
+        return verdict == "no-gap"
     if kind == "unlisted":
-        return (
-            verdict == "unnamed" and not named,
-            verdict == "unnamed" and not strict,
-        )
-    exactly = verdict == "named"
-    return exactly and sorted(named) == sorted(hidden), exactly and sorted(
-        strict
-    ) == sorted(hidden)
+        return verdict == "unnamed" and not named
+    return verdict == "named" and sorted(named) == sorted(hidden)
 
 
 #: Words of gap.json for each place; a force beside an impedance is one inside it.

@@ -250,14 +250,14 @@ def shares(cases: pd.DataFrame, figure: str) -> Share:
 
 def middle(cases: pd.DataFrame, figure: str) -> float | None:
     """Median of a figure; None where no case has it."""
-    values = cases[figure].dropna()
-    return float(values.median()) if len(values) else None
+    value = cases[figure].median()
+    return None if pd.isna(value) else float(value)
 
 
 def mean(cases: pd.DataFrame, figure: str) -> float | None:
     """Mean of a figure; None where no case has it."""
-    values = cases[figure].dropna()
-    return float(values.mean()) if len(values) else None
+    value = cases[figure].mean()
+    return None if pd.isna(value) else float(value)
 
 
 def coverage(cases: pd.DataFrame) -> Share:
