@@ -131,11 +131,6 @@ class PageTable:
         return found
 
 
-def words(text: str, mark: str = "") -> Cell:
-    """Make a cell of text."""
-    return Cell(text, None, mark)
-
-
 def number(value: float | None, shown: str = "", mark: str = "") -> Cell:
     """Make a cell of a number, with four digits where no text is given.
 
@@ -167,7 +162,7 @@ def table_of(
         What else a :class:`PageTable` is told.
     """
     rows = [
-        [cell if isinstance(cell, Cell) else words(cell) for cell in cells]
+        [cell if isinstance(cell, Cell) else Cell(cell) for cell in cells]
         for cells in ([show(item) for show in shown.values()] for item in items)
     ]
     return PageTable(name, caption, list(shown), [Body(rows)], **about)
