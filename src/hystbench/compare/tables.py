@@ -52,10 +52,6 @@ class PrintedTable:
     legend: str
     frame: pd.DataFrame
 
-    def grid(self, style: str) -> str:
-        """Give the cells alone in one of the styles of tabulate."""
-        return grid(self.frame, style)
-
     def csv(self) -> str:
         """Give the table as CSV, with the caption in a column of its own."""
         caption = f"{self.caption} {self.legend}".strip()

@@ -34,15 +34,6 @@ def plays(evidence: ClaimEvidence) -> tuple[FloatArray, FloatArray]:
     return sine(limit, 3), np.arange(count) / count * limit
 
 
-def generalized_plays(
-    evidence: ClaimEvidence,
-) -> tuple[FloatArray, FloatArray, Envelope]:
-    """Give the sine, the thresholds and the published envelopes."""
-    text = evidence.text
-    limit, envelope = text.amplitude_a, text.envelope
-    return sine(limit, 3), thresholds(text.filter_length, limit, envelope), envelope
-
-
 def of_play(evidence: ClaimEvidence) -> Numbers:
     """Run plays along a sine at two speeds, and mirror the loop of equal weights."""
     v, r = plays(evidence)
@@ -72,7 +63,8 @@ def of_generalized_play(evidence: ClaimEvidence) -> Numbers:
     The loop of equal weights is mirrored, and the envelopes' slopes at the ends of the
     range are taken.
     """
-    v, r, envelope = generalized_plays(evidence)
+    limit, envelope = evidence.text.amplitude_a, evidence.text.envelope
+    v, r = sine(limit, 3), thresholds(evidence.text.filter_length, limit, envelope)
     run = generalized_play(v, r, envelope)
     apart = np.abs(run - generalized_play_eq12(v, r, envelope)).max(axis=1)
     found = {
@@ -90,7 +82,7 @@ def of_generalized_play(evidence: ClaimEvidence) -> Numbers:
         formula = np.maximum(gamma_right(at, envelope) - r, inner)
         return float(np.abs(formula - reached).max() / height)
 
-    u = np.linspace(-evidence.text.amplitude_a, evidence.text.amplitude_a, 2001)
+    u = np.linspace(-limit, limit, 2001)
     for side, gamma, pick in (
         ("left", gamma_left, np.min),
         ("right", gamma_right, np.max),
