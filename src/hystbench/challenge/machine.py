@@ -92,8 +92,13 @@ class Machine:
         self, item: RecordCommand, hidden: Sequence[HiddenEffect], reach: Reach
     ) -> PartMotion:
         """Give force and motion under a record, on the fine grid."""
-        command = self.driven(item, hidden, reach)
         part = self.with_forces(hidden, reach)
+        if self.output == "force":
+            position = self.command(item)
+            velocity = np.gradient(position, self.dt)
+            force = resist(part, position, self.dt)
+            return PartMotion(force, position, velocity, np.gradient(velocity, self.dt))
+        command = self.driven(item, hidden, reach)
         return move(part, command, self.dt, gains=self.gains)
 
     def driven(
@@ -122,19 +127,16 @@ class Machine:
     def _read(
         self, item: RecordCommand, hidden: Sequence[HiddenEffect], reach: Reach
     ) -> tuple[FloatArray, FloatArray]:
+        u = self.command(item)
         if self.part is None:
-            u = self.command(item)
             tanks = with_holes(self.tanks, hidden, reach)
             inflow = self.driven(item, hidden, reach)
             y = fill(tanks, inflow, self.dt, (0.0,) * len(tanks))
-        elif self.output == "force":
-            u = self.command(item)
-            y = resist(self.with_forces(hidden, reach), u, self.dt)
         else:
             motion = self.run(item, hidden, reach)
             y = getattr(motion, self.output)
             # an effect before the machine is not seen in the recorded command
-            u = motion.force if self.gains[0] else self.command(item)
+            u = motion.force if self.gains[0] else u
         for effect in hidden:
             if effect.kind.place == "behind" and effect.law.curve:
                 y = effect.law.curve(y, effect.parameters, reach)
@@ -188,22 +190,10 @@ def reach_of(machine: Machine) -> Reach:
         pumped = max(float(np.max(machine.command(item))) for item in chosen)
         settling = machine.tanks[0].area / machine.tanks[0].coefficient
         return Reach(most, most / settling, pumped, most, 1.0)
-    force, position, velocity, output = [], [], [], []
-    for item in chosen:
-        if machine.output == "force":
-            q = machine.command(item)
-            f = resist(machine.part, q, machine.dt)
-            motion = PartMotion(f, q, np.gradient(q, machine.dt), q)
-            output.append(f)
-        else:
-            motion = machine.run(item, (), nothing)
-            output.append(getattr(motion, machine.output))
-        force.append(motion.force)
-        position.append(motion.position)
-        velocity.append(motion.velocity)
+    motions = [machine.run(item, (), nothing) for item in chosen]
     reach, speed, most, read = (
-        float(max(np.max(np.abs(x)) for x in parts))
-        for parts in (position, velocity, force, output)
+        max(float(np.max(np.abs(getattr(motion, name)))) for motion in motions)
+        for name in ("position", "velocity", "force", machine.output)
     )
     return Reach(reach, speed, most, read, machine.part.stiffness or most / reach)
 
@@ -256,8 +246,6 @@ def draw_machine(
     if family == "free-mass":
         part = replace(part, stiffness=0.0, damping=between(0.02, 0.3) * mass * w)
     controlled = coin < (0.6 if family == "free-mass" else 0.3)
-    if family == "free-mass" and closed is False and output == "position":
-        output = "velocity"
     if controlled and closed is not False:
         gains = (2.0 * mass * w**2, 1.4 * mass * w)
     elif output == "position" and family == "free-mass":

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from statistics import median
 from typing import Literal
 
 from hystbench.compare.evidence import Cell, ClaimEvidence, Run
@@ -116,14 +117,12 @@ def compare_cells(
     cells = []
     for pair in evidence.published:
         run = runs.get((pair.signal, pair.model))
+        drawn = evidence.drawn.get(pair.signal)
         for metric in METRICS:
+            errors = drawn.errors.get((pair.model, metric), ()) if drawn else ()
             ours = None
             if run is not None and run.diverged is None:
-                ours = run.error(metric)
-            drawn = evidence.drawn.get(pair.signal)
-            errors = drawn.errors.get((pair.model, metric), ()) if drawn else ()
-            if ours is not None and drawn and errors:
-                middle = drawn.median(pair.model, metric)
+                middle = median(errors or [run.error(metric)])
                 ours = middle if math.isfinite(middle) else None
             low, high = evidence.spreads.get(
                 (pair.signal, pair.model, metric), (None, None)

@@ -94,7 +94,7 @@ def compare_evidence(
     unseen, own = frozenset(held_out), evidence.of_the_paper
     cells = compare_cells(own, unseen)
     claims = judge_all(own, unseen)
-    counts = {name: drawn.count for name, drawn in own.drawn.items()}
+    counts = {name: len(drawn.rms) for name, drawn in own.drawn.items()}
     return Comparison(
         evidence,
         unseen,

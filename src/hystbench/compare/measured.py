@@ -29,9 +29,8 @@ def compare_measured(
     ----------
     out_dir : path
         Folder for ``errors.csv`` (a row a record and model), ``tables/errors``
-        (CSV, Markdown, LaTeX: a row a record), ``tables.txt`` and ``verdict.rst``.
+        (a row a record), ``tables.txt`` and ``verdict.rst``.
     dataset : str
-        Name of the dataset.
     runs : iterable of paths
         One JSON file for each record and model.
     """

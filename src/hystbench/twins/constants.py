@@ -7,7 +7,7 @@ a constant tap.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from statistics import geometric_mean
 from typing import Any
 
@@ -88,15 +88,14 @@ def vary_constants(
             pairs_held_out="{} of {}".format(*pairs[1]),
             diverged=sum(map(math.isinf, mse.values())),
             **{
-                f"mean_mse_{model}_um2": _mean([mse.get((s, model)) for s in records])
+                f"mean_mse_{model}_um2": _mean(
+                    mse.get((s, model), math.inf) for s in records
+                )
                 for model in FILTERS
             },
         )
 
 
-def _mean(values: list[float | None]) -> float:
-    """Give the geometric mean to three digits; infinite where one is or has not run."""
-    known = [value for value in values if value is not None and math.isfinite(value)]
-    if len(known) < len(values):
-        return math.inf
-    return float(f"{geometric_mean(known):.3g}")
+def _mean(values: Iterable[float]) -> float:
+    """Give the geometric mean to three digits; infinite where one is."""
+    return float(f"{geometric_mean(values):.3g}")

@@ -7,14 +7,18 @@ from typing import Any
 import pandas as pd
 
 from hystbench.challenge.contest import table, tables
-from hystbench.challenge.contest.frames import frame, write_frame
+from hystbench.challenge.contest.frames import write_frame
 from hystbench.challenge.contest.never_seen import never_seen
-from hystbench.challenge.contest.summary import AskedFigure, further, reach, summary
+from hystbench.challenge.contest.summary import (
+    AskedFigure,
+    carried_over,
+    further,
+    reach,
+    summary,
+)
 from hystbench.challenge.kept import GROUPS
 from hystbench.files import write_csv, write_json
 
-#: No transfer set.
-NOTHING = frame([])
 #: With room for the rounding of a difference of two shares.
 FIVE_POINTS = 0.05 + 1e-9
 #: Columns of each table but those of cases.
@@ -51,7 +55,10 @@ def write_score(
     """
     own = cases[cases["solver"] == solver]
     carried = list(_carried(own, transfer))
-    asked = [*reach(own, transfer), *_off(carried)]
+    asked = reach(own)
+    if len(transfer):
+        asked.append(carried_over(own, transfer))
+    asked += _off(carried)
     found: dict[str, Iterable[Sequence[Any]]] = {
         "in-words.csv": _in_words(own, transfer),
         "contest.csv": _held(own, transfer, about),
@@ -115,9 +122,7 @@ def _carried(
 
     Within 5 points is said of shares; seconds are none.
     """
-    for here, there in zip(
-        reach(cases, NOTHING), reach(transfer, NOTHING), strict=True
-    ):
+    for here, there in zip(reach(cases), reach(transfer), strict=True):
         if here.reached is not None and there.reached is not None:
             apart = there.reached - here.reached
             share = here.figure != "seconds_per_case"
@@ -130,8 +135,7 @@ def _in_words(
 ) -> Iterator[tuple[str, str, str]]:
     """Tell in plain words how often the answer was right, failures among it."""
     here, there = (
-        {item.figure: item for item in reach(judged, NOTHING)}
-        for judged in (cases, transfer)
+        {item.figure: item for item in reach(judged)} for judged in (cases, transfer)
     )
     for row in table("in_words"):
         figure, wrong = row["figure"], row.get("wrong", False)
@@ -174,7 +178,7 @@ def _rivals(
 
 
 def _rival(name: str, mine: pd.DataFrame) -> tuple[Any, ...]:
-    found = {item.figure: item.reached for item in reach(mine, NOTHING)}
+    found = {item.figure: item.reached for item in reach(mine)}
     lost = mine["lost"][mine["lost"] != ""]
     figures = [found[figure] for figure in _RIVALS[3:-1]]
     note = f"first loss: {lost.iloc[0]}" if len(lost) else ""

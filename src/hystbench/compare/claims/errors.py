@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
+from statistics import median
 from typing import Any
 
 import numpy as np
@@ -48,9 +49,9 @@ def errors_on(
         runs = twin_runs(evidence.runs)
         found = {cell: run.error(metric) for cell, run in runs.items()}
         for signal, drawn in evidence.drawn.items():
-            for model, each in drawn.errors:
+            for (model, each), errors in drawn.errors.items():
                 if each == metric and (signal, model) in found:
-                    found[signal, model] = drawn.median(model, metric)
+                    found[signal, model] = median(errors)
     need_runs([(signal, model) for signal in signals for model in models], found)
     values = [[found[signal, model] for model in models] for signal in signals]
     return pd.DataFrame(values, index=list(signals), columns=models)
