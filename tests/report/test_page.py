@@ -276,8 +276,7 @@ def test_a_table_knows_its_groups_choices_and_rows():
         [Body([[Cell("p"), number(1.0), number(None)]]), Body([[Cell("q")]])],
         filtered=("a",),
     )
-    assert [(group.title, group.span) for group in table.groups] == [("", 1), ("g", 2)]
-    (choice,) = table.choices
-    assert (choice.column, choice.options) == (0, ("p", "q"))
+    assert table.groups == [("", 1), ("g", 2)]
+    assert table.choices == [("a", 0, ("p", "q"))]
     assert table.count == 2
     assert number(math.inf).shown == "diverged"

@@ -131,7 +131,7 @@ class Machine:
         if self.part is None:
             tanks = with_holes(self.tanks, hidden, reach)
             inflow = self.driven(item, hidden, reach)
-            y = fill(tanks, inflow, self.dt, (0.0,) * len(tanks))
+            y = fill(tanks, inflow, self.dt)
         else:
             motion = self.run(item, hidden, reach)
             y = getattr(motion, self.output)
@@ -318,7 +318,7 @@ def _simulated(machine: Machine, values: FloatArray, u: FloatArray) -> FloatArra
             Tank(float(value), 1.0, back=tank.back)
             for value, tank in zip(values, machine.tanks, strict=True)
         )
-        return decimated(fill(tanks, u, dt, (0.0,) * len(tanks)), COARSE)
+        return decimated(fill(tanks, u, dt), COARSE)
     part = MovingPart(
         1.0, float(values[0]), float(values[1]) if len(values) > 1 else 0.0
     )

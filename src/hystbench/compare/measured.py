@@ -73,12 +73,13 @@ def errors_table(name: str, of: str, why: str, runs: Sequence[Run]) -> PrintedTa
                 run = by_cell.get((signal, model))
                 line[model] = _cell(run, metric)
             content.append(line)
-    diverged = [run for run in runs if run.diverged is not None]
     return PrintedTable(
         name=name,
         caption=f"{of} {error_kind(models)}. {why}",
         legend="; ".join(
-            f"{run.signal}, {run.model}: {run.diverged}" for run in diverged
+            f"{run.signal}, {run.model}: {run.diverged}"
+            for run in runs
+            if run.diverged is not None
         ),
         frame=pd.DataFrame(content, dtype=str),
     )

@@ -55,10 +55,6 @@ def vary_constants(
     tap = next(iter(jobs.values()))["constant_tap"]
     cases = [(zero, tap) for zero in sorted({*settings["zero_errors"], usual})]
     cases += [(usual, each) for each in settings["constant_taps"] if each != tap]
-    halves = [
-        {name for name in signals if (name in settings["calibrated"]) is inside}
-        for inside in (True, False)
-    ]
     for zero, size in cases:
         measured = {**settings["measure"], "input_zero_error": zero}
         records = measure_twin(twin, signals.values(), measured, 0)
@@ -69,12 +65,10 @@ def vary_constants(
             mse |= {cell: run.error("mse") for cell, run in runs.items()}
         first = {s: min(jobs, key=lambda model: mse[s, model]) for s in records}
         others = {s: model for s, model in first.items() if model != "gpo"}
-        pairs = [
-            pairs_in_order(
-                {cell: mse[cell] for cell in mse if cell[0] in half}, published
-            )
-            for half in halves
-        ]
+        fitted, held_out = (
+            {c: e for c, e in mse.items() if (c[0] in settings["calibrated"]) is inside}
+            for inside in (True, False)
+        )
         yield Ranking(
             twin=twin.name,
             family=twin.family,
@@ -84,8 +78,8 @@ def vary_constants(
             gpo_first=len(records) - len(others),
             signals=len(records),
             first_elsewhere="; ".join(f"{s}: {model}" for s, model in others.items()),
-            pairs_calibrated="{} of {}".format(*pairs[0]),
-            pairs_held_out="{} of {}".format(*pairs[1]),
+            pairs_calibrated="{} of {}".format(*pairs_in_order(fitted, published)),
+            pairs_held_out="{} of {}".format(*pairs_in_order(held_out, published)),
             diverged=sum(map(math.isinf, mse.values())),
             **{
                 f"mean_mse_{model}_um2": _mean(

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from hystbench.challenge.plant import mechanics
-from hystbench.challenge.plant.hysteresis import PlantLoop, middle
+from hystbench.challenge.plant.hysteresis import GeneralizedPlays, PlantLoop, middle
 from hystbench.challenge.plant.interpolation import cubic
 from hystbench.challenge.plant.kind import HiddenEffect, PlantRun, Stage
 from hystbench.record import FloatArray
@@ -133,9 +133,11 @@ class Actuator:
         """
         if isinstance(self.loop, float):
             return self.loop * (field - field[0]), 0.0
-        stages = {effect.stage for effect in self.effects}
-        growth = act("threshold", field) if "threshold" in stages else None
-        z = self.loop.respond(field, growth)
+        grows = any(effect.stage == "threshold" for effect in self.effects)
+        if grows and isinstance(self.loop, GeneralizedPlays):
+            z = self.loop.respond(field, act("threshold", field))
+        else:
+            z = self.loop.respond(field)
         if field[0] == 0.0:
             return z, 0.0
         shift = middle(self.loop, float(field[0])) - middle(self.loop, 0.0)

@@ -29,7 +29,7 @@ class PlantLoop(Protocol):
     def family(self) -> str:
         """Name of the family."""
 
-    def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
+    def respond(self, v: FloatArray) -> FloatArray:
         """Compute the displacement in um for a current that starts at rest."""
 
     def scaled(self, factor: float) -> PlantLoop:
@@ -131,17 +131,13 @@ class Everett:
         sizes[1::2] *= -1.0
         return sizes
 
-    def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
+    def respond(self, v: FloatArray) -> FloatArray:
         """Follow the input by the turning points that are not wiped out."""
-        del growth  # plays alone have thresholds
-        v = np.ascontiguousarray(v)
-        past, start = self.history(), np.zeros(1)
-        table, y = self.table, np.empty_like(v)
-        begin = np.empty(1)
-        common = (self.points, self.limit, table, past)
-        kernels.call("hc_everett", 1, len(past), *common, start, begin)
-        kernels.call("hc_everett", len(v), len(past), *common, v, y)
-        return np.asarray(y - begin[0] + self.reversible * np.tanh(v / self.knee))
+        past = self.history()
+        plane = (len(past), self.points, self.limit, self.table, past)
+        start = kernels.run("hc_everett", *plane, over=np.zeros(1))[0]
+        y = kernels.run("hc_everett", *plane, over=v) - start
+        return np.asarray(y + self.reversible * np.tanh(v / self.knee))
 
     def scaled(self, factor: float) -> Everett:
         """Multiply both parts."""
@@ -172,9 +168,8 @@ class JilesAthertonLoop:
     strain: float  # um at saturation
     family: str = "jiles-atherton"
 
-    def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
+    def respond(self, v: FloatArray) -> FloatArray:
         """Integrate the magnetization over the field, by Runge-Kutta."""
-        del growth  # plays alone have thresholds
         piece = 0.01 * self.shape
         constants = (self.shape, self.coupling, self.pinning, self.reversible, piece)
         cycles = LARGEST_CURRENT * np.linspace(1.2, 0.0, 60)
@@ -216,9 +211,8 @@ class Duhem:
     height: float  # um
     family: str = "duhem"
 
-    def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
+    def respond(self, v: FloatArray) -> FloatArray:
         """Follow the equation in steps of the input, exactly for a straight f."""
-        del growth  # plays alone have thresholds
         constants = (self.rate, self.stiff, self.knee, self.bias)
         return self.height * kernels.run("hc_duhem", *constants, over=v)
 
