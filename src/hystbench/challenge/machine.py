@@ -203,12 +203,7 @@ def draw_machine(
 ) -> Machine:
     """Draw a machine of a family, how it is driven and what is measured.
 
-    Parameters
-    ----------
-    family : str
-    random : numpy.random.Generator
-    closed : bool, optional
-        False for no controller; by default a coin of a mass tells.
+    With ``closed=False`` it has no controller; by default a coin of a mass tells.
     """
 
     def between(low: float, high: float) -> float:
@@ -257,19 +252,13 @@ def draw_machine(
 
 
 def linear_parts(machine: Machine, signals: InputsAndOutputs) -> InputsAndOutputs:
-    """Fit the same machine without any effect; give each record's model output.
-
-    Parameters
-    ----------
-    machine : Machine
-    signals : list of (input, output)
-        At the samples, without noise.
+    """Fit the same machine without any effect to inputs and outputs without noise.
 
     Returns
     -------
     list of (output, model's output)
-        The model is the best of the machine's own equation in least squares, with an
-        offset of its output, and hence what no effect could improve on.
+        Of each record. The model is the best of the machine's own equation in least
+        squares, with an offset of its output: no effect could improve on it.
     """
     if machine.output == "force":
         return _linear_impedance(machine, signals)

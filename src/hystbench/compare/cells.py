@@ -105,11 +105,7 @@ def compare_cells(
 ) -> tuple[ComparedCell, ...]:
     """Set ours beside each of the 124 printed numbers, run or not.
 
-    Parameters
-    ----------
-    evidence : ClaimEvidence
-    held_out : iterable of str
-        Signals whose published errors the twin was not fitted to.
+    ``held_out`` are signals whose published errors the twin was not fitted to.
     """
     unseen = set(held_out)
     consistent = standings(evidence.published)

@@ -53,13 +53,8 @@ def compare_measured(
 def errors_table(name: str, of: str, why: str, runs: Sequence[Run]) -> PrintedTable:
     """Set the errors of all models side by side, a row a record and metric.
 
-    Parameters
-    ----------
-    name : str
-        Stem of the table's files.
-    of, why : str
-        First and last sentence of its caption; between them stands the kind of error.
-    runs : sequence of Run
+    ``name`` is the stem of the table's files, ``of`` and ``why`` the first and the last
+    sentence of its caption; between them stands the kind of error.
     """
     by_cell = {(run.signal, run.model): run for run in runs}
     signals = dict.fromkeys(run.signal for run in runs)

@@ -53,13 +53,12 @@ def search(
     Parameters
     ----------
     task : Task
-    effect : str
+    effect, form : str
+        The block, and its form where it has several.
     place : int
         Of the block in the chain.
     searched : mapping of str to Searched
         Its parameters.
-    form : str
-        Of the block, where it has several.
     """
     from scipy.optimize import least_squares  # late: imported by jobs that fit only
 

@@ -135,14 +135,8 @@ def table_of(
 ) -> PageTable:
     """Make a table with a row an item.
 
-    Parameters
-    ----------
-    name, caption : str
-    items : iterable
-    shown : mapping
-        Each column, and what it shows of an item: text or a cell.
-    **about
-        What else a :class:`PageTable` is told.
+    ``shown`` tells of each column what it shows of an item: text or a cell; ``about``
+    is what else a :class:`PageTable` is told.
     """
     rows = [
         [cell if isinstance(cell, Cell) else Cell(cell) for cell in cells]

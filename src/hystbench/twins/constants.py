@@ -47,7 +47,7 @@ def vary_constants(
     published : mapping
         The paper's MSE (um^2) by signal and filter.
     """
-    signals = draw_signals(settings["signals"], 0)
+    signals = draw_signals(settings["signals"], 0).values()
     usual = settings["measure"]["input_zero_error"]
     jobs = filter_jobs(settings)
     if not jobs:
@@ -57,7 +57,7 @@ def vary_constants(
     cases += [(usual, each) for each in settings["constant_taps"] if each != tap]
     for zero, size in cases:
         measured = {**settings["measure"], "input_zero_error": zero}
-        records = measure_twin(twin, signals.values(), measured, 0)
+        records = measure_twin(twin, signals, measured, 0)
         mse: dict[Cell, float] = {}
         for model, job in jobs.items():
             changed = {**job, "constant_tap": size}

@@ -90,7 +90,7 @@ class Figure(NamedTuple):
         return Share(MADE[made](cases, column), None, None, len(cases))
 
 
-MADE: dict[str, Callable[[pd.DataFrame, str], float | None]] = {
+MADE: dict[str, Callable[[pd.DataFrame, str], Any]] = {
     "mean": mean,
     "median": middle,
     "distance": lambda cases, _: calibration_error(cases),
@@ -208,8 +208,7 @@ _SUMS: dict[str, Callable[[pd.DataFrame, str], Any]] = {
     "ratio": _by_ratio,
     "family": _by_family,
     "share": _share,
-    "mean": mean,
-    "median": middle,
+    **MADE,
 }
 
 

@@ -28,16 +28,11 @@ def sine(amplitude: float, cycles: int, samples: int = 400) -> FloatArray:
     return amplitude * np.sin(phase)
 
 
-def plays(evidence: ClaimEvidence) -> tuple[FloatArray, FloatArray]:
-    """Give a sine of the paper's amplitude, and thresholds of 31 plays across it."""
-    count, limit = evidence.text.filter_length + 1, evidence.text.amplitude_a
-    return sine(limit, 3), np.arange(count) / count * limit
-
-
 def of_play(evidence: ClaimEvidence) -> Numbers:
-    """Run plays along a sine at two speeds, and mirror the loop of equal weights."""
-    v, r = plays(evidence)
-    return {**at_two_speeds(play, v, r), "asymmetry": loop_asymmetry(play, v, r)}
+    """Run 31 plays along a sine at two speeds, and mirror the loop of equal weights."""
+    count, limit = evidence.text.filter_length + 1, evidence.text.amplitude_a
+    v, r = sine(limit, 3), np.arange(count) / count * limit
+    return {**at_two_speeds(play, v, r), "asymmetry": loop_asymmetry(play(v, r))}
 
 
 def at_two_speeds(operator: Operator, v: FloatArray, r: FloatArray) -> Numbers:
@@ -49,10 +44,13 @@ def at_two_speeds(operator: Operator, v: FloatArray, r: FloatArray) -> Numbers:
     return {"apart": apart, "excess": max(float(steps.max()), 0.0)}
 
 
-def loop_asymmetry(operator: Operator, v: FloatArray, r: FloatArray) -> float:
-    """Largest |F(t) - c + F(t + half a period) - c| of a steady loop, per height."""
-    period = (len(v) - 1) // 3
-    loop = operator(v, r)[-period:].mean(axis=1)
+def loop_asymmetry(run: FloatArray) -> float:
+    """Largest |F(t) - c + F(t + half a period) - c| of a steady loop, per height.
+
+    The loop is the last of three, of all operators with equal weights.
+    """
+    period = (len(run) - 1) // 3
+    loop = run[-period:].mean(axis=1)
     centred = loop - (loop.max() + loop.min()) / 2
     return float(np.abs(centred + np.roll(centred, period // 2)).max() / np.ptp(loop))
 
@@ -68,9 +66,7 @@ def of_generalized_play(evidence: ClaimEvidence) -> Numbers:
     run = generalized_play(v, r, envelope)
     apart = np.abs(run - generalized_play_eq12(v, r, envelope)).max(axis=1)
     found = {
-        "asymmetry": loop_asymmetry(
-            lambda v, r: generalized_play(v, r, envelope), v, r
-        ),
+        "asymmetry": loop_asymmetry(run),
         "apart": apart.max(),
         "later": apart[len(v) // 3 :].max(),
     }
