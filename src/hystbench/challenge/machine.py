@@ -20,7 +20,7 @@ from hystbench.challenge.plant.machine import (
     move,
     resist,
 )
-from hystbench.record import Channel, FloatArray
+from hystbench.record import Channel, FloatArray, Use
 
 #: Samples behind a record's end, which the low-pass in front of the converter sees.
 TAIL = 16
@@ -59,6 +59,7 @@ class Machine:
     gains : tuple of float
         Of a controller, the records being its reference; zeros for none.
     records : tuple of RecordCommand
+        Those to fit first.
     """
 
     family: str
@@ -120,9 +121,12 @@ class Machine:
                 part = replace(part, **effect.law.numbers(effect.parameters, reach))
         return part
 
-    def read(self, hidden: Sequence[HiddenEffect], reach: Reach) -> InputsAndOutputs:
-        """Give input and output of every record at its samples, without noise."""
-        return [self._read(item, hidden, reach) for item in self.records]
+    def read(
+        self, hidden: Sequence[HiddenEffect], reach: Reach, use: Use
+    ) -> InputsAndOutputs:
+        """Give noise-free input and output of the records of a use at their samples."""
+        chosen = [item for item in self.records if item.use == use]
+        return [self._read(item, hidden, reach) for item in chosen]
 
     def _read(
         self, item: RecordCommand, hidden: Sequence[HiddenEffect], reach: Reach
@@ -185,8 +189,7 @@ def reach_of(machine: Machine) -> Reach:
     nothing = Reach(1.0, 1.0, 1.0, 1.0, 1.0)
     chosen = [item for item in machine.records if item.use == "fit"]
     if machine.part is None:
-        levels = [machine._read(item, (), nothing)[1] for item in chosen]
-        most = max(float(np.max(level)) for level in levels)
+        most = max(float(np.max(y)) for _, y in machine.read((), nothing, "fit"))
         pumped = max(float(np.max(machine.command(item))) for item in chosen)
         settling = machine.tanks[0].area / machine.tanks[0].coefficient
         return Reach(most, most / settling, pumped, most, 1.0)
