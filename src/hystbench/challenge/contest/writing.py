@@ -54,13 +54,12 @@ def write_score(
         Folder for :data:`WRITTEN`.
     """
     own = cases[cases["solver"] == solver]
-    carried = list(_carried(own, transfer))
-    asked = reach(own)
-    if len(transfer):
-        asked.append(carried_over(own, transfer))
-    asked += _off(carried)
+    here, there = reach(own), reach(transfer)
+    carried = list(_carried(here, there))
+    over = [carried_over(own, transfer)] if len(transfer) else []
+    asked = [*here, *over, *_off(carried)]
     found: dict[str, Iterable[Sequence[Any]]] = {
-        "in-words.csv": _in_words(own, transfer),
+        "in-words.csv": _in_words(here, there),
         "contest.csv": _held(own, transfer, about),
         "kept.csv": list(_groups(about["kept"])),
         "reach.csv": asked,
@@ -116,13 +115,13 @@ def _groups(kept: int) -> Iterator[tuple[Any, ...]]:
 
 
 def _carried(
-    cases: pd.DataFrame, transfer: pd.DataFrame
+    reached: Sequence[AskedFigure], transfer: Sequence[AskedFigure]
 ) -> Iterator[tuple[str, float, float, float, bool | None]]:
     """Hold each figure on the transfer set beside the published set's.
 
     Within 5 points is said of shares; seconds are none.
     """
-    for here, there in zip(reach(cases), reach(transfer), strict=True):
+    for here, there in zip(reached, transfer, strict=True):
         if here.reached is not None and there.reached is not None:
             apart = there.reached - here.reached
             share = here.figure != "seconds_per_case"
@@ -131,20 +130,16 @@ def _carried(
 
 
 def _in_words(
-    cases: pd.DataFrame, transfer: pd.DataFrame
+    reached: Sequence[AskedFigure], transfer: Sequence[AskedFigure]
 ) -> Iterator[tuple[str, str, str]]:
     """Tell in plain words how often the answer was right, failures among it."""
-    here, there = (
-        {item.figure: item for item in reach(judged)} for judged in (cases, transfer)
-    )
+    both = zip(reached, transfer, strict=True)
+    known = {here.figure: (here, there) for here, there in both}
     for row in table("in_words"):
-        figure, wrong = row["figure"], row.get("wrong", False)
-        if here[figure].reached is not None:
-            yield (
-                row["words"],
-                _rightly(here[figure], wrong),
-                _rightly(there[figure], wrong),
-            )
+        here, there = known[row["figure"]]
+        if here.reached is not None:
+            wrong = row.get("wrong", False)
+            yield row["words"], _rightly(here, wrong), _rightly(there, wrong)
 
 
 def _rightly(asked: AskedFigure, wrong: bool) -> str:
