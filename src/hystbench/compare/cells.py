@@ -1,12 +1,12 @@
 """Ours beside every printed number: one row a signal, model and metric."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from statistics import median
 from typing import Literal
 
-from hystbench.compare.evidence import Cell, ClaimEvidence, Run
+from hystbench.compare.evidence import ClaimEvidence, Run
 from hystbench.published import METRICS, Metric
 from hystbench.published.consistency import Standing, standings
 
@@ -87,11 +87,6 @@ class ComparedCell:
         return math.inf if ratio is None else abs(ratio)
 
 
-def twin_runs(runs: Mapping[Cell, Run]) -> dict[Cell, Run]:
-    """Keep the runs on the twin: measured records have no published errors."""
-    return {cell: run for cell, run in runs.items() if run.origin == "twin"}
-
-
 def _status(run: Run | None, ours: float | None) -> str:
     if run is None:
         return NOT_RUN
@@ -109,7 +104,7 @@ def compare_cells(
     """
     unseen = set(held_out)
     consistent = standings(evidence.published)
-    runs = twin_runs(evidence.runs)
+    runs = evidence.twin_runs
     cells = []
     for pair in evidence.published:
         run = runs.get((pair.signal, pair.model))

@@ -135,6 +135,11 @@ class ClaimEvidence:
     constants: tuple[Ranking, ...] = ()
 
     @property
+    def twin_runs(self) -> dict[Cell, Run]:
+        """Runs on the twin: measured records have no published errors."""
+        return {cell: run for cell, run in self.runs.items() if run.origin == "twin"}
+
+    @property
     def added_models(self) -> tuple[str, ...]:
         """Models among the runs that the paper does not have."""
         return tuple(in_order({model for _, model in self.runs} - {*MODELS}))

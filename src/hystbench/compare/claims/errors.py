@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from hystbench.compare.cells import twin_runs
 from hystbench.compare.claims.claim import NotTestable, Numbers, need_runs, number
 from hystbench.compare.claims.statistics import rank_correlation
 from hystbench.compare.evidence import Cell, ClaimEvidence
@@ -46,8 +45,8 @@ def errors_on(
             for pair in evidence.published
         }
     else:
-        runs = twin_runs(evidence.runs)
-        found = {cell: run.error(metric) for cell, run in runs.items()}
+        runs = evidence.twin_runs.items()
+        found = {cell: run.error(metric) for cell, run in runs}
         for signal, drawn in evidence.drawn.items():
             for (model, each), errors in drawn.errors.items():
                 if each == metric and (signal, model) in found:
