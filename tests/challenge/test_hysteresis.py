@@ -54,7 +54,7 @@ def test_plays_by_their_definition(samples, growth):
 
 def relay_sum(plane, v):
     """Every relay of the plane's cells by itself; switching at the cells' corners."""
-    table = plane.table()
+    table = plane.table
     # a cell's weight is the mixed difference of Everett's function
     mass = table[1:, :-1] - table[:-1, :-1] - table[1:, 1:] + table[:-1, 1:]
     edges = np.linspace(-plane.limit, plane.limit, plane.points)
@@ -77,7 +77,7 @@ def test_everett_is_a_sum_of_relays(nodes):
 
 
 def test_everett_weighs_what_it_says():
-    assert PLANE.table()[-1, 0] == pytest.approx(20.0)
+    assert PLANE.table[-1, 0] == pytest.approx(20.0)
 
 
 @given(st.lists(inside, max_size=20), st.lists(inside, min_size=1, max_size=10))

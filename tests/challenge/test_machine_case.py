@@ -7,8 +7,8 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.challenge.kept import GROUPS
 from hystbench.challenge.machine import draw_machine
 from hystbench.challenge.make import make
-from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES, hidden_in
-from hystbench.challenge.spec import CaseSpec, draw_spec
+from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES
+from hystbench.challenge.spec import CaseSpec, draw_spec, effects_of
 from hystbench.challenge.writing import write_case
 from hystbench.dataset import load_dataset
 from hystbench.errors import InputError
@@ -79,7 +79,7 @@ def test_a_mass_with_nothing_hidden_is_the_linear_equation_but_for_noise(seed):
 PAIRS = [
     (family, name, of_kept)
     for family in MACHINES
-    for name in (*hidden_in(family), *hidden_in(family, listed=False))
+    for name in (*effects_of("single", family), *effects_of("unlisted", family))
     for of_kept in (False, True)
     # where it has no form of its own for the group, the case is the same
     if not of_kept

@@ -463,7 +463,7 @@ def test_an_asymmetric_operator_is_seen():
     def skewed(v, r):
         return (v + 0.3 * v**2)[:, None] * np.ones(len(r))
 
-    assert loop_asymmetry(skewed, sine(1.0, 3), np.zeros(1)) > 0.01
+    assert loop_asymmetry(skewed(sine(1.0, 3), np.zeros(1))) > 0.01
 
 
 @pytest.mark.parametrize("name", sorted(ON_THE_PLAY))

@@ -11,7 +11,7 @@ import pytest
 from hystbench.errors import InputError
 from hystbench.report.markup import first_sentence, inline, paragraphs
 from hystbench.report.picture import embedded
-from hystbench.report.table import Body, Heading, PageTable, number, words
+from hystbench.report.table import Body, Cell, Heading, PageTable, number
 from tests.conftest import table as rows
 from tests.report.made import (
     SIGNALS,
@@ -273,11 +273,10 @@ def test_a_table_knows_its_groups_choices_and_rows():
         "t",
         "",
         [Heading("a"), Heading("x", True, "g"), Heading("y", True, "g")],
-        [Body([[words("p"), number(1.0), number(None)]]), Body([[words("q")]])],
+        [Body([[Cell("p"), number(1.0), number(None)]]), Body([[Cell("q")]])],
         filtered=("a",),
     )
-    assert [(group.title, group.span) for group in table.groups] == [("", 1), ("g", 2)]
-    (choice,) = table.choices
-    assert (choice.column, choice.options) == (0, ("p", "q"))
+    assert table.groups == [("", 1), ("g", 2)]
+    assert table.choices == [("a", 0, ("p", "q"))]
     assert table.count == 2
     assert number(math.inf).shown == "diverged"

@@ -36,25 +36,23 @@ def base_model(
         The plant's hysteresis. Plays are handed over as they are; of another family
         the best quasi-static GPI is identified from its slow loop and minor loops.
     mode : KnownMode, optional
-        The mode that the base knows.
     records : tuple of RecordCommand
     linear : bool
         Whether the base has a gain in the place of hysteresis.
     """
     u = quasi_static(records)
-    block: Block
+    chain: list[Block] = []
     if linear:
-        value = slope(loop, u)
-        block = Gain(value=value, offset=0.0)
-    elif isinstance(loop, GeneralizedPlays):
-        block = GeneralizedPrandtlIshlinskii(
-            envelope=loop.envelope,
-            thresholds=tuple(map(float, loop.thresholds)),
-            weights=tuple(map(float, loop.weights)),
-        )
+        chain.append(Gain(value=slope(loop, u), offset=0.0))
     else:
-        block = _identified(u, loop.respond(u))
-    chain: list[Block] = [block]
+        plays = loop if isinstance(loop, GeneralizedPlays) else _nearest(loop, u)
+        chain.append(
+            GeneralizedPrandtlIshlinskii(
+                envelope=plays.envelope,
+                thresholds=tuple(map(float, plays.thresholds)),
+                weights=tuple(map(float, plays.weights)),
+            )
+        )
     if mode is not None:
         chain.append(Resonance(hold="band-limited", **asdict(mode)))
     return Model("base", INPUT, OUTPUT, tuple(chain))
@@ -76,10 +74,11 @@ def slope(loop: PlantLoop, u: FloatArray) -> float:
     return float(u @ y / (u @ u))
 
 
-def _identified(u: FloatArray, y: FloatArray) -> GeneralizedPrandtlIshlinskii:
+def _nearest(loop: PlantLoop, u: FloatArray) -> GeneralizedPlays:
+    """Identify the plays that are nearest to a loop of another family."""
     found = identify(
         u,
-        y,
+        loop.respond(u),
         ORDER,
         offset=False,
         nonnegative=True,
@@ -87,8 +86,5 @@ def _identified(u: FloatArray, y: FloatArray) -> GeneralizedPrandtlIshlinskii:
         starts=STARTS,
         max_iterations=ITERATIONS,
     )
-    return GeneralizedPrandtlIshlinskii(
-        envelope=tuple(found.envelope.to_dict().values()),
-        thresholds=tuple(map(float, found.thresholds)),
-        weights=tuple(map(float, found.weights)),
-    )
+    envelope = tuple(found.envelope.to_dict().values())
+    return GeneralizedPlays(envelope, found.thresholds, found.weights)

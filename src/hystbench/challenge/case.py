@@ -17,7 +17,7 @@ from hystbench.challenge.plant.kind import draw as draw_effect
 from hystbench.challenge.spec import CaseSpec
 from hystbench.challenge.where import where
 from hystbench.model import Model
-from hystbench.record import FloatArray, Record
+from hystbench.record import FloatArray, Record, Use
 
 #: An effect's difference is to be within these shares of the output's rms on the fit
 #: records; outside, its size is changed, within what physics allows. Where the base is
@@ -77,111 +77,103 @@ class Plant:
 
 
 def make_case(spec: CaseSpec) -> Case:
-    """Make a case; the same spec gives the same numbers.
-
-    Parameters
-    ----------
-    spec : CaseSpec
-
-    Returns
-    -------
-    Case
-    """
-    excitations = CAMPAIGNS[spec.campaign](spec.random(EXCITATION))
-    fit = tuple(item for item in excitations if item.use == "fit")
-    plant, drawn = _draw(spec, excitations)
-    bare = Readings(plant.actuator(()), excitations)
-    size = rms(bare.of(fit))
-    effects = tuple(_resized(plant, effect, bare, fit, size) for effect in drawn)
-    full = Readings(plant.actuator(effects), excitations)
+    """Make a case of an actuator; the same spec gives the same numbers."""
+    commands = CAMPAIGNS[spec.campaign](spec.random(EXCITATION))
+    plant, drawn = _draw(spec, commands)
+    bare = Readings(plant.actuator(()), commands)
+    size = rms(bare.of("fit"))
+    effects = tuple(_resized(plant, effect, bare, size) for effect in drawn)
+    full = Readings(plant.actuator(effects), commands)
     without = [
         bare
         if len(effects) == 1
-        else Readings(plant.actuator((*effects[:k], *effects[k + 1 :])), excitations)
+        else Readings(plant.actuator((*effects[:k], *effects[k + 1 :])), commands)
         for k in range(len(effects))
     ]
-    sizes = [rms(full.minus(item, fit)) for item in without]
+    differences = [full.minus(item, "fit") for item in without]
     random = spec.random(NOISE)
     noise = float(np.exp(random.uniform(*np.log(PLAIN_NOISE))))
     if effects:
-        noise = min(sizes) / 10.0 ** (spec.ratio_db / 20.0)
+        noise = min(map(rms, differences)) / 10.0 ** (spec.ratio_db / 20.0)
     records = tuple(
-        _record(full, number, noise, random) for number in range(len(excitations))
+        _record(full, number, noise, random) for number in range(len(commands))
     )
-    linear = "hysteresis" in spec.effects
-    model = base_model(plant.loop, plant.mode, excitations, linear)
-    noise_rms = float(np.hypot(noise, RESOLUTION / np.sqrt(12.0)))
-    truth = told_of(spec, OUTPUT.unit, noise_rms, size)
-    truth["mode"] = None if plant.mode is None else asdict(plant.mode)
-    truth["effects"] = []
     fit_records = [record for record in records if record.use == "fit"]
-    for k, effect in enumerate(effects):
-        difference = full.minus(without[k], fit)
-        truth["effects"].append(
+    linear = "hysteresis" in spec.effects
+    model = base_model(plant.loop, plant.mode, commands, linear)
+    noise_rms = float(np.hypot(noise, RESOLUTION / np.sqrt(12.0)))
+    outputs = [item.of("fit") for item in without]
+    gap = full.minus(bare, "fit")
+    truth = told_of(spec, OUTPUT.unit, noise_rms, size) | {
+        "mode": None if plant.mode is None else asdict(plant.mode),
+        "effects": [
             effect_told(effect)
             | {
-                "resized": effect is not drawn[k],
-                "rms": sizes[k],
-                "ratio_db": _decibel(sizes[k], noise),
-                "ratio_retuned_db": _decibel(
-                    _retuned(difference, without[k].of(fit)), noise
-                ),
-                "where": where(
-                    effect.kind, fit_records, difference, without[k].of(fit)
-                ),
+                "resized": effect is not first,
+                "rms": rms(difference),
+                "ratio_db": _decibel(rms(difference), noise),
+                "ratio_retuned_db": _decibel(_retuned(difference, output), noise),
+                "where": where(effect.kind, fit_records, difference, output),
             }
-        )
-    gap = full.minus(bare, fit)
-    truth["ratio_all_db"] = _decibel(rms(gap), noise) if effects else None
-    truth["ratio_all_retuned_db"] = _decibel(_retuned(gap, bare.of(fit)), noise)
-    held_out = tuple(item for item in excitations if item.use == "hold-out")
-    truth["hold_out"] = _hold_out(full, bare, held_out, model)
-    base_error = _minus(bare.of(fit), _simulated(model, fit))
-    truth["base_error_fit_rms"] = rms(base_error)
+            for effect, first, difference, output in zip(
+                effects, drawn, differences, outputs, strict=True
+            )
+        ],
+        "ratio_all_db": _decibel(rms(gap), noise) if effects else None,
+        "ratio_all_retuned_db": _decibel(_retuned(gap, bare.of("fit")), noise),
+        "hold_out": {
+            "gap_rms": full.beside(model, "hold-out"),
+            "explainable_rms": rms(full.minus(bare, "hold-out")),
+            "base_error_rms": bare.beside(model, "hold-out"),
+        },
+        "base_error_fit_rms": bare.beside(model, "fit"),
+    }
     return Case(records, model, truth)
 
 
 class Readings:
-    """Noise-free readings of a plant on all records.
+    """Noise-free readings of a plant on all records, each computed when it is needed.
 
     Parameters
     ----------
     actuator : Actuator
-    excitations : tuple of RecordCommand
-        All records; a record's number is its place here.
+    commands : tuple of RecordCommand
+        Of all records; a record's number is its place here.
     """
 
-    def __init__(
-        self, actuator: Actuator, excitations: tuple[RecordCommand, ...]
-    ) -> None:
-        self.actuator, self.excitations = actuator, excitations
-        self._read: dict[str, FloatArray] = {}
+    def __init__(self, actuator: Actuator, commands: tuple[RecordCommand, ...]) -> None:
+        self.actuator, self.commands = actuator, commands
+        self._read: dict[int, FloatArray] = {}
 
-    def raw(self, item: RecordCommand) -> FloatArray:
+    def raw(self, number: int) -> FloatArray:
         """Reading before the converter, computed once."""
-        if item.name not in self._read:
-            number = self.excitations.index(item)
-            self._read[item.name] = self.actuator.read(
-                item, item.dt, item.samples, number
-            )
-        return self._read[item.name]
+        if number not in self._read:
+            item = self.commands[number]
+            reading = self.actuator.read(item, item.dt, item.samples, number)
+            self._read[number] = reading
+        return self._read[number]
 
-    def of(self, chosen: tuple[RecordCommand, ...]) -> list[FloatArray]:
-        """Readings as they are written down, but for noise."""
+    def of(self, use: Use) -> list[FloatArray]:
+        """Readings of the records of a use as they are written down, but for noise."""
         return [
-            self.actuator.convert(self.raw(item), item.dt, self.excitations.index(item))
-            for item in chosen
+            self.actuator.convert(self.raw(number), item.dt, number)
+            for number, item in enumerate(self.commands)
+            if item.use == use
         ]
 
-    def minus(
-        self, less: Readings, chosen: tuple[RecordCommand, ...]
-    ) -> list[FloatArray]:
+    def minus(self, less: Readings, use: Use) -> list[FloatArray]:
         """Difference to another plant's readings."""
-        return _minus(self.of(chosen), less.of(chosen))
+        return [a - b for a, b in zip(self.of(use), less.of(use), strict=True)]
+
+    def beside(self, model: Model, use: Use) -> float:
+        """RMS of the difference to a model's output."""
+        chosen = [item for item in self.commands if item.use == use]
+        simulated = [model.simulate(item.sampled(), item.dt) for item in chosen]
+        return rms([a - b for a, b in zip(self.of(use), simulated, strict=True)])
 
 
 def _draw(
-    spec: CaseSpec, excitations: tuple[RecordCommand, ...]
+    spec: CaseSpec, commands: tuple[RecordCommand, ...]
 ) -> tuple[Plant, tuple[HiddenEffect, ...]]:
     random = spec.random(PLANT)
     loop = draw(spec.family, random)
@@ -204,9 +196,9 @@ def _draw(
             values = {**effect.parameters, **asdict(mode)}
             effect = HiddenEffect(kind, effect.form, values)
         if name == "hysteresis-shape":
-            hidden = _other_loop(effect.form, loop, excitations, random)
+            hidden = _other_loop(effect.form, loop, commands, random)
         if name == "hysteresis":
-            gain = slope(loop, quasi_static(excitations))
+            gain = slope(loop, quasi_static(commands))
         effects.append(effect)
     plant = Plant(loop, hidden, gain, mode if has_mode else None, spec.seed)
     return plant, tuple(effects)
@@ -222,28 +214,24 @@ def _forms(name: str, spec: CaseSpec) -> tuple[str, ...]:
 def _other_loop(
     form: str,
     loop: PlantLoop,
-    excitations: tuple[RecordCommand, ...],
+    commands: tuple[RecordCommand, ...],
     random: np.random.Generator,
 ) -> PlantLoop:
     """Draw a loop of another shape and of the same mean gain."""
     other = draw("gpi" if form == "other-gpi" else form, random)
-    u = quasi_static(excitations)
+    u = quasi_static(commands)
     mine, others = loop.respond(u), other.respond(u)
     return other.scaled(float(mine @ others / (others @ others)))
 
 
 def _resized(
-    plant: Plant,
-    effect: HiddenEffect,
-    bare: Readings,
-    fit: tuple[RecordCommand, ...],
-    size: float,
+    plant: Plant, effect: HiddenEffect, bare: Readings, size: float
 ) -> HiddenEffect:
     """Change the size of an effect that drowns, or drowns the rest."""
 
     def share(changed: HiddenEffect) -> float:
-        readings = Readings(plant.actuator((changed,)), bare.excitations)
-        return rms(readings.minus(bare, fit)) / size
+        readings = Readings(plant.actuator((changed,)), bare.commands)
+        return rms(readings.minus(bare, "fit")) / size
 
     within = SMALLEST_EFFECT[plant.loop.family], LARGEST_EFFECT
     return effect.resized(share, within, margin=0.1, most=16.0)
@@ -253,8 +241,8 @@ def _record(
     full: Readings, number: int, noise: float, random: np.random.Generator
 ) -> Record:
     """Add noise, convert and round as a laboratory's computer would."""
-    item = full.excitations[number]
-    noisy = full.raw(item) + noise * random.standard_normal(item.samples)
+    item = full.commands[number]
+    noisy = full.raw(number) + noise * random.standard_normal(item.samples)
     y = full.actuator.convert(noisy, item.dt, number)
     u = np.round(item.sampled(), 8)
     rounded = np.round(y / RESOLUTION) * RESOLUTION
@@ -294,26 +282,6 @@ def effect_told(effect: HiddenEffect, **own: Any) -> dict[str, Any]:
         **own,
         "views": list(effect.kind.views),
     }
-
-
-def _hold_out(
-    full: Readings, bare: Readings, chosen: tuple[RecordCommand, ...], model: Model
-) -> dict[str, float]:
-    """Gap on the hold-out records: all of it, and what the effects explain."""
-    base = _simulated(model, chosen)
-    return {
-        "gap_rms": rms(_minus(full.of(chosen), base)),
-        "explainable_rms": rms(full.minus(bare, chosen)),
-        "base_error_rms": rms(_minus(bare.of(chosen), base)),
-    }
-
-
-def _simulated(model: Model, chosen: tuple[RecordCommand, ...]) -> list[FloatArray]:
-    return [model.simulate(item.sampled(), item.dt) for item in chosen]
-
-
-def _minus(some: list[FloatArray], others: list[FloatArray]) -> list[FloatArray]:
-    return [one - other for one, other in zip(some, others, strict=True)]
 
 
 def _retuned(difference: list[FloatArray], output: list[FloatArray]) -> float:

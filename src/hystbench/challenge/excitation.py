@@ -35,8 +35,8 @@ class RecordCommand:
 
     Parameters
     ----------
-    name : str
     use : {"fit", "hold-out"}
+    name : str
     rate_hz : float
         Sampling rate.
     samples : int
@@ -46,8 +46,8 @@ class RecordCommand:
         Period of what follows the switch-on.
     """
 
-    name: str
     use: Use
+    name: str
     rate_hz: float
     samples: int
     function: Function
@@ -177,12 +177,7 @@ def _levels(random: np.random.Generator, count: int, largest: float) -> list[flo
     return [float(value) for value in sizes * signs]
 
 
-def _of(use: Use) -> Callable[..., RecordCommand]:
-    """Give what makes commands of one use: name, rate, samples, function, period."""
-    return lambda name, *about: RecordCommand(name, use, *about)
-
-
-fit, held_out = _of("fit"), _of("hold-out")
+fit, held_out = partial(RecordCommand, "fit"), partial(RecordCommand, "hold-out")
 
 
 def standard(random: np.random.Generator) -> tuple[RecordCommand, ...]:

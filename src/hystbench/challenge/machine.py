@@ -20,7 +20,7 @@ from hystbench.challenge.plant.machine import (
     move,
     resist,
 )
-from hystbench.record import Channel, FloatArray
+from hystbench.record import Channel, FloatArray, Use
 
 #: Samples behind a record's end, which the low-pass in front of the converter sees.
 TAIL = 16
@@ -59,6 +59,7 @@ class Machine:
     gains : tuple of float
         Of a controller, the records being its reference; zeros for none.
     records : tuple of RecordCommand
+        Those to fit first.
     """
 
     family: str
@@ -92,8 +93,13 @@ class Machine:
         self, item: RecordCommand, hidden: Sequence[HiddenEffect], reach: Reach
     ) -> PartMotion:
         """Give force and motion under a record, on the fine grid."""
-        command = self.driven(item, hidden, reach)
         part = self.with_forces(hidden, reach)
+        if self.output == "force":
+            position = self.command(item)
+            velocity = np.gradient(position, self.dt)
+            force = resist(part, position, self.dt)
+            return PartMotion(force, position, velocity, np.gradient(velocity, self.dt))
+        command = self.driven(item, hidden, reach)
         return move(part, command, self.dt, gains=self.gains)
 
     def driven(
@@ -115,26 +121,26 @@ class Machine:
                 part = replace(part, **effect.law.numbers(effect.parameters, reach))
         return part
 
-    def read(self, hidden: Sequence[HiddenEffect], reach: Reach) -> InputsAndOutputs:
-        """Give input and output of every record at its samples, without noise."""
-        return [self._read(item, hidden, reach) for item in self.records]
+    def read(
+        self, hidden: Sequence[HiddenEffect], reach: Reach, use: Use
+    ) -> InputsAndOutputs:
+        """Give noise-free input and output of the records of a use at their samples."""
+        chosen = [item for item in self.records if item.use == use]
+        return [self._read(item, hidden, reach) for item in chosen]
 
     def _read(
         self, item: RecordCommand, hidden: Sequence[HiddenEffect], reach: Reach
     ) -> tuple[FloatArray, FloatArray]:
+        u = self.command(item)
         if self.part is None:
-            u = self.command(item)
             tanks = with_holes(self.tanks, hidden, reach)
             inflow = self.driven(item, hidden, reach)
-            y = fill(tanks, inflow, self.dt, (0.0,) * len(tanks))
-        elif self.output == "force":
-            u = self.command(item)
-            y = resist(self.with_forces(hidden, reach), u, self.dt)
+            y = fill(tanks, inflow, self.dt)
         else:
             motion = self.run(item, hidden, reach)
             y = getattr(motion, self.output)
             # an effect before the machine is not seen in the recorded command
-            u = motion.force if self.gains[0] else self.command(item)
+            u = motion.force if self.gains[0] else u
         for effect in hidden:
             if effect.kind.place == "behind" and effect.law.curve:
                 y = effect.law.curve(y, effect.parameters, reach)
@@ -183,27 +189,14 @@ def reach_of(machine: Machine) -> Reach:
     nothing = Reach(1.0, 1.0, 1.0, 1.0, 1.0)
     chosen = [item for item in machine.records if item.use == "fit"]
     if machine.part is None:
-        levels = [machine._read(item, (), nothing)[1] for item in chosen]
-        most = max(float(np.max(level)) for level in levels)
+        most = max(float(np.max(y)) for _, y in machine.read((), nothing, "fit"))
         pumped = max(float(np.max(machine.command(item))) for item in chosen)
         settling = machine.tanks[0].area / machine.tanks[0].coefficient
         return Reach(most, most / settling, pumped, most, 1.0)
-    force, position, velocity, output = [], [], [], []
-    for item in chosen:
-        if machine.output == "force":
-            q = machine.command(item)
-            f = resist(machine.part, q, machine.dt)
-            motion = PartMotion(f, q, np.gradient(q, machine.dt), q)
-            output.append(f)
-        else:
-            motion = machine.run(item, (), nothing)
-            output.append(getattr(motion, machine.output))
-        force.append(motion.force)
-        position.append(motion.position)
-        velocity.append(motion.velocity)
+    motions = [machine.run(item, (), nothing) for item in chosen]
     reach, speed, most, read = (
-        float(max(np.max(np.abs(x)) for x in parts))
-        for parts in (position, velocity, force, output)
+        max(float(np.max(np.abs(getattr(motion, name)))) for motion in motions)
+        for name in ("position", "velocity", "force", machine.output)
     )
     return Reach(reach, speed, most, read, machine.part.stiffness or most / reach)
 
@@ -213,12 +206,7 @@ def draw_machine(
 ) -> Machine:
     """Draw a machine of a family, how it is driven and what is measured.
 
-    Parameters
-    ----------
-    family : str
-    random : numpy.random.Generator
-    closed : bool, optional
-        False for no controller; by default a coin of a mass tells.
+    With ``closed=False`` it has no controller; by default a coin of a mass tells.
     """
 
     def between(low: float, high: float) -> float:
@@ -256,8 +244,6 @@ def draw_machine(
     if family == "free-mass":
         part = replace(part, stiffness=0.0, damping=between(0.02, 0.3) * mass * w)
     controlled = coin < (0.6 if family == "free-mass" else 0.3)
-    if family == "free-mass" and closed is False and output == "position":
-        output = "velocity"
     if controlled and closed is not False:
         gains = (2.0 * mass * w**2, 1.4 * mass * w)
     elif output == "position" and family == "free-mass":
@@ -269,19 +255,13 @@ def draw_machine(
 
 
 def linear_parts(machine: Machine, signals: InputsAndOutputs) -> InputsAndOutputs:
-    """Fit the same machine without any effect; give each record's model output.
-
-    Parameters
-    ----------
-    machine : Machine
-    signals : list of (input, output)
-        At the samples, without noise.
+    """Fit the same machine without any effect to inputs and outputs without noise.
 
     Returns
     -------
     list of (output, model's output)
-        The model is the best of the machine's own equation in least squares, with an
-        offset of its output, and hence what no effect could improve on.
+        Of each record. The model is the best of the machine's own equation in least
+        squares, with an offset of its output: no effect could improve on it.
     """
     if machine.output == "force":
         return _linear_impedance(machine, signals)
@@ -330,7 +310,7 @@ def _simulated(machine: Machine, values: FloatArray, u: FloatArray) -> FloatArra
             Tank(float(value), 1.0, back=tank.back)
             for value, tank in zip(values, machine.tanks, strict=True)
         )
-        return decimated(fill(tanks, u, dt, (0.0,) * len(tanks)), COARSE)
+        return decimated(fill(tanks, u, dt), COARSE)
     part = MovingPart(
         1.0, float(values[0]), float(values[1]) if len(values) > 1 else 0.0
     )

@@ -39,8 +39,9 @@ def make_machine_case(spec: CaseSpec) -> Case:
     kinds = [IN_MACHINE[name] for name in spec.effects]
     hidden = tuple(draw(k, random, spec.spread, spec.forms(k)) for k in kinds)
     hidden = tuple(_resized(machine, item, reach) for item in hidden)
-    signals = machine.read(hidden, reach)
-    fit = _used(machine, signals, "fit")
+    fit = machine.read(hidden, reach, "fit")
+    held_out = machine.read(hidden, reach, "hold-out")
+    signals = [*fit, *held_out]
     output = rms([y - y.mean() for _, y in fit])
     sizes = []
     for k in range(len(hidden)):
@@ -51,7 +52,6 @@ def make_machine_case(spec: CaseSpec) -> Case:
     if hidden:
         noise = min(sizes) / 10.0 ** (spec.ratio_db / 20.0)
     step = 3.0 * max(float(np.max(np.abs(y))) for _, y in signals) / STEPS
-    given, measured = machine.channels
     records = []
     for item, (u, y) in zip(machine.records, signals, strict=True):
         noisy = y + noise * random.standard_normal(len(y))
@@ -61,27 +61,27 @@ def make_machine_case(spec: CaseSpec) -> Case:
                 1.0 / machine.rate_hz,
                 np.array([float(f"{value:.8g}") for value in u]),
                 np.round(noisy / step) * step,
-                given,
-                measured,
+                *machine.channels,
                 "twin",
                 item.use,
                 item.period_samples,
             )
         )
     model = _model(machine, spec)
-    held_out = _left(machine, _used(machine, signals, "hold-out"))
+    gap = _left(machine, held_out)
     noise_rms = float(np.hypot(noise, step / np.sqrt(12.0)))
     base = "linear" if model is None else "model-file"
+    unit = machine.channels[1].unit
     own = {"closed_loop": machine.gains[0] > 0.0, "base": base}
-    truth = told_of(spec, measured.unit, noise_rms, output, **own) | {
+    truth = told_of(spec, unit, noise_rms, output, **own) | {
         "linear": _linear(machine),
         "effects": [
             _told(item, size, noise_rms, reach)
             for item, size in zip(hidden, sizes, strict=True)
         ],
         "hold_out": {
-            "gap_rms": held_out,
-            "explainable_rms": held_out if hidden else 0.0,
+            "gap_rms": gap,
+            "explainable_rms": gap if hidden else 0.0,
             "base_error_rms": 0.0,
         },
         "base_error_fit_rms": 0.0,
@@ -93,7 +93,7 @@ def _resized(machine: Machine, effect: HiddenEffect, reach: Reach) -> HiddenEffe
     """Change the size of an effect that a linear machine hides, or that is all."""
 
     def share(changed: HiddenEffect) -> float:
-        signals = _used(machine, machine.read((changed,), reach), "fit")
+        signals = machine.read((changed,), reach, "fit")
         output = rms([y - y.mean() for _, y in signals])
         return _size(machine, signals, (), reach) / output
 
@@ -114,18 +114,12 @@ def _size(
     """
     if not others and machine.family != "free-mass":
         return _left(machine, full)
-    without = _used(machine, machine.read(others, reach), "fit")
-    pairs = zip(full, without, strict=True)
+    pairs = zip(full, machine.read(others, reach, "fit"), strict=True)
     return rms([y - other for (_, y), (_, other) in pairs])
 
 
 def _left(machine: Machine, signals: InputsAndOutputs) -> float:
     return rms([y - fitted for y, fitted in linear_parts(machine, signals)])
-
-
-def _used(machine: Machine, signals: InputsAndOutputs, use: str) -> InputsAndOutputs:
-    pairs = zip(machine.records, signals, strict=True)
-    return [signal for item, signal in pairs if item.use == use]
 
 
 def _model(machine: Machine, spec: CaseSpec) -> Model | None:

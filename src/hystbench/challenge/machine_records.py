@@ -24,8 +24,6 @@ from hystbench.challenge.excitation import PERIOD as NOMINAL_PERIOD
 
 #: Samples of a record to fit, of one held out, and of a multisine's period.
 FIT, HELD_OUT, PERIOD = 1500, 1000, 500
-
-
 #: A multisine's nominal period is :data:`hystbench.challenge.excitation.PERIOD`.
 _FASTER = NOMINAL_PERIOD / PERIOD
 
@@ -51,14 +49,9 @@ def machine_records(
 ) -> tuple[RecordCommand, ...]:
     """Four records to fit and two held out, of levels up to about one.
 
-    Parameters
-    ----------
-    random : numpy.random.Generator
-    middle : float
-        Frequency in Hz, at 4 kHz, about which the machine is to be moved.
+    ``middle`` is the frequency in Hz, at 4 kHz, about which the machine is to be moved.
     """
     low, high = middle / 6.0, 2.5 * middle
-
     edge = 0.2 / middle
     two = add(sine(0.37 * middle, 0.5), sine(1.1 * middle, 0.35))
     return (

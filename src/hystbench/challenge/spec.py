@@ -8,11 +8,7 @@ import numpy as np
 from hystbench.challenge.excitation import CAMPAIGNS
 from hystbench.challenge.kept import KEPT, group_of
 from hystbench.challenge.plant import inside
-from hystbench.challenge.plant.effects import (
-    APART,
-    UNLISTED,
-    VOCABULARY,
-)
+from hystbench.challenge.plant.effects import APART, UNLISTED, VOCABULARY
 from hystbench.challenge.plant.hysteresis import DRAWS
 from hystbench.challenge.plant.kind import Kind
 from hystbench.errors import InputError, refuse_unknown
@@ -45,9 +41,7 @@ class CaseSpec:
     effects : tuple of str
         Names, in no order.
     family : str
-        Hysteresis of the plant: ``gpi``, ``preisach``, ``jiles-atherton`` or ``duhem``;
-        or a machine: ``mass-spring``, ``free-mass``, ``pendulum``, ``impedance``,
-        ``tank``, ``coupled-tanks``.
+        One of :data:`FAMILIES`: the hysteresis of an actuator, or a machine.
     ratio_db : float
         20 log10 of rms(output with the effect minus without) over the noise's rms on
         the fit records; of several effects, for the one that shows least. With
@@ -144,7 +138,12 @@ def effects_of(
         Whether it is those alone instead.
     """
     if family in inside.MACHINES:
-        names = list(inside.hidden_in(family, kind != "unlisted"))
+        listed = kind != "unlisted"
+        names = [
+            name
+            for name, about in inside.IN_MACHINE.items()
+            if family in about.families and about.listed == listed
+        ]
     elif kind == "unlisted":
         names = list(UNLISTED)
     else:
@@ -188,13 +187,8 @@ def draw_spec(
     Parameters
     ----------
     seed, kind, family, ratio_db, spread, campaign, kept, of_kept
-        As in :class:`CaseSpec`. The group's sorts outside the vocabulary are left out
-        too, or drawn alone.
-
-    Raises
-    ------
-    InputError
-        As :class:`CaseSpec`.
+        As in :class:`CaseSpec`, which says what is refused. The group's sorts outside
+        the vocabulary are left out too, or drawn alone.
     """
     refuse_unknown(kind, CASE_KINDS, f"kind: {kind!r}")
     names = effects_of(kind, family, kept, of_kept)

@@ -35,10 +35,8 @@ def where(
         The effect; it says which views are right.
     records : list of Record
         The fit records.
-    differences : list of ndarray
-        Output with the effect minus without, noise-free, of each record.
-    outputs : list of ndarray
-        Output without the effect.
+    differences, outputs : list of ndarray
+        Output with the effect minus without, noise-free, of each record; and without.
 
     Returns
     -------

@@ -9,7 +9,7 @@ from hystbench.challenge.base import OUTPUT
 from hystbench.challenge.case import Case
 from hystbench.errors import InputError
 from hystbench.files import whole_folder, write_json, write_text
-from hystbench.record import Channel, Record, column_name
+from hystbench.record import Record, column_name
 
 #: Of an actuator; a machine's numbers have digits enough for its converter's steps.
 ROW, ROW_OF_MACHINE = "%.6f,%.8f,%.3f\n", "%.6f,%.8g,%.7g\n"
@@ -31,7 +31,7 @@ def write_case(case: Case, folder: str | Path, truth_file: str | Path) -> None:
     Raises
     ------
     InputError
-        If the truth would lie in the folder, or the folder holds something.
+        As :func:`check_places`.
     """
     folder, truth_file = Path(folder), Path(truth_file)
     check_places(folder, truth_file)
@@ -42,26 +42,12 @@ def write_case(case: Case, folder: str | Path, truth_file: str | Path) -> None:
 
 
 def write_folder(case: Case, folder: Path) -> None:
-    """Write what a solver gets, and nothing else: ``dataset/`` and ``model.yaml``.
-
-    Parameters
-    ----------
-    case : Case
-    folder : Path
-        New or empty.
-    """
+    """Write what a solver gets, and nothing else, into a new or empty folder."""
     for record in case.records:
         write_text(folder / "dataset" / f"{record.name}.csv", _csv(record))
     if case.model is not None:
         write_text(folder / "model.yaml", case.model.to_yaml())
     write_text(folder / "dataset" / "dataset.yaml", _dataset(case))
-
-
-def _output(measured: Channel) -> dict[str, str]:
-    """Say what the output is; a level has the unit of a length and says so itself."""
-    column = column_name(measured.name, measured.unit)
-    about = {"column": column, "unit": measured.unit}
-    return about | ({"quantity": "level"} if measured.name == "level" else {})
 
 
 def check_places(folder: Path, truth_file: Path) -> None:
@@ -70,7 +56,7 @@ def check_places(folder: Path, truth_file: Path) -> None:
     Raises
     ------
     InputError
-        As :func:`write_case`.
+        If the truth would lie in the folder, or the folder holds something.
     """
     if truth_file.resolve().is_relative_to(folder.resolve()):
         raise InputError(
@@ -98,17 +84,18 @@ def _dataset(case: Case) -> str:
         if record.period_samples is not None:
             entry["period_samples"] = record.period_samples
         entries.append(entry)
-    given, measured = case.records[0].input, case.records[0].output
+    given, measured = (
+        {"column": column_name(channel.name, channel.unit), "unit": channel.unit}
+        for channel in (case.records[0].input, case.records[0].output)
+    )
+    if case.records[0].output.name == "level":  # it has the unit of a length
+        measured["quantity"] = "level"
     content = {
         "name": "blind-case",
         "description": "Made by hystbench hide: a simulation, no measurement.",
         "time": {"column": "time_s", "unit": "s"},
-        "input": {
-            "column": column_name(given.name, given.unit),
-            "unit": given.unit,
-            "hold": "band-limited",
-        },
-        "output": _output(measured),
+        "input": {**given, "hold": "band-limited"},
+        "output": measured,
         "records": entries,
     }
     text: str = yaml.safe_dump(content, sort_keys=False, default_flow_style=None)

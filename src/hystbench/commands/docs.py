@@ -72,26 +72,24 @@ def docs(pages: tuple[Page, ...] = ()) -> None:
 
 def _is_of_records_elsewhere(page: Path) -> bool:
     """Tell whether a page lacks only what is made of records that are not shipped."""
-    text = page.read_text(encoding="utf-8")
-    missing = [
-        found["source"]
-        for pattern in (BLOCK, PICTURE)
-        for found in pattern.finditer(text)
-        if not Path(found["source"]).is_file()
-    ]
+    missing = _missing(page.read_text(encoding="utf-8"))
     return bool(missing) and all(x.startswith(NOT_SHIPPED) for x in missing)
+
+
+def _missing(text: str) -> list[str]:
+    """List the files that a page is filled from and that are not there."""
+    found = (item for pattern in (BLOCK, PICTURE) for item in pattern.finditer(text))
+    sources = dict.fromkeys(item["source"] for item in found)
+    return [source for source in sources if not Path(source).is_file()]
 
 
 def _fill(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
-    blocks, pictures = list(BLOCK.finditer(text)), list(PICTURE.finditer(text))
-    sources = dict.fromkeys(found["source"] for found in (*blocks, *pictures))
-    missing = [source for source in sources if not Path(source).is_file()]
-    if missing:
+    if missing := _missing(text):
         told = [f"{source} (made by '{_maker(source)}')" for source in missing]
         raise InputError(f"{page}: left as it is: no file {', '.join(told)}")
     filled = BLOCK.sub(partial(_filled, page), text)
-    for found in pictures:
+    for found in PICTURE.finditer(text):
         _copy(Path(found["source"]), page.parent / found["copy"])
     if filled != text:
         write_text(page, filled, edit=True)

@@ -6,7 +6,6 @@ Each row of a file is one of the classes here, a column a field.
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from statistics import median
 
 from hystbench.compare.rows import names_of, read_items
 from hystbench.errors import refuse_unknown
@@ -166,15 +165,6 @@ class Drawn:
 
     errors: Mapping[tuple[str, Metric], tuple[float, ...]]
     rms: tuple[float, ...]
-
-    @property
-    def count(self) -> int:
-        """How many draws there are."""
-        return len(self.rms)
-
-    def median(self, model: str, metric: Metric) -> float:
-        """Median of an error over the draws."""
-        return median(self.errors[model, metric])
 
 
 def read_draws(path: str | Path) -> dict[str, Drawn]:

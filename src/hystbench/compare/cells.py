@@ -1,11 +1,12 @@
 """Ours beside every printed number: one row a signal, model and metric."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
+from statistics import median
 from typing import Literal
 
-from hystbench.compare.evidence import Cell, ClaimEvidence, Run
+from hystbench.compare.evidence import ClaimEvidence, Run
 from hystbench.published import METRICS, Metric
 from hystbench.published.consistency import Standing, standings
 
@@ -86,11 +87,6 @@ class ComparedCell:
         return math.inf if ratio is None else abs(ratio)
 
 
-def twin_runs(runs: Mapping[Cell, Run]) -> dict[Cell, Run]:
-    """Keep the runs on the twin: measured records have no published errors."""
-    return {cell: run for cell, run in runs.items() if run.origin == "twin"}
-
-
 def _status(run: Run | None, ours: float | None) -> str:
     if run is None:
         return NOT_RUN
@@ -104,26 +100,20 @@ def compare_cells(
 ) -> tuple[ComparedCell, ...]:
     """Set ours beside each of the 124 printed numbers, run or not.
 
-    Parameters
-    ----------
-    evidence : ClaimEvidence
-    held_out : iterable of str
-        Signals whose published errors the twin was not fitted to.
+    ``held_out`` are signals whose published errors the twin was not fitted to.
     """
     unseen = set(held_out)
     consistent = standings(evidence.published)
-    runs = twin_runs(evidence.runs)
+    runs = evidence.twin_runs
     cells = []
     for pair in evidence.published:
         run = runs.get((pair.signal, pair.model))
+        drawn = evidence.drawn.get(pair.signal)
         for metric in METRICS:
+            errors = drawn.errors.get((pair.model, metric), ()) if drawn else ()
             ours = None
             if run is not None and run.diverged is None:
-                ours = run.error(metric)
-            drawn = evidence.drawn.get(pair.signal)
-            errors = drawn.errors.get((pair.model, metric), ()) if drawn else ()
-            if ours is not None and drawn and errors:
-                middle = drawn.median(pair.model, metric)
+                middle = median(errors or [run.error(metric)])
                 ours = middle if math.isfinite(middle) else None
             low, high = evidence.spreads.get(
                 (pair.signal, pair.model, metric), (None, None)

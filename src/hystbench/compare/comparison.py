@@ -18,11 +18,7 @@ from hystbench.compare.off import OffCell, off_cells
 from hystbench.compare.rows import or_diverged, write_fields
 from hystbench.compare.summary import summarise
 from hystbench.compare.tables import PrintedTable, paper_tables
-from hystbench.compare.verdict import (
-    first_result,
-    print_tables,
-    verdict_page,
-)
+from hystbench.compare.verdict import first_result, print_tables, verdict_page
 from hystbench.files import write_json, write_text
 from hystbench.published import load_errors, signals
 from hystbench.published.audit import write_audit
@@ -32,7 +28,11 @@ WRITTEN = (
     *("first.md", "verdict.rst", "verdict.md", "tables.txt", "tables/table-*"),
     *("added.csv", "tables/added.*"),
 )
-"""Files of a comparison, as names or patterns."""
+"""Files of a comparison, as names or patterns.
+
+``first.md`` is for the README, ``tables.txt`` for the terminal; ``added`` is there
+where models or signals ran that the paper does not have.
+"""
 
 
 @dataclass(frozen=True)
@@ -52,14 +52,7 @@ class Comparison:
         return print_tables(self.tables, self.claims, self.summary)
 
     def write(self, out_dir: str | Path) -> None:
-        """Write what was found into a folder.
-
-        These are ``cells.csv``, ``off.csv``, ``claims.csv``, ``audit.csv``,
-        ``margins.csv``, ``summary.json``, ``verdict.rst``, ``verdict.md``,
-        ``first.md`` for the README, ``tables.txt`` for the terminal and ``tables/``
-        (Tables 1-4 as CSV, Markdown and LaTeX); and where models or signals ran that
-        the paper does not have, ``added.csv`` and ``tables/added``.
-        """
+        """Write the files of :data:`WRITTEN` into a folder."""
         out = Path(out_dir)
         write_fields(out / "cells.csv", CELL_COLUMNS, self.cells, or_diverged)
         write_fields(out / "off.csv", OFF_COLUMNS, self.off)
@@ -101,7 +94,7 @@ def compare_evidence(
     unseen, own = frozenset(held_out), evidence.of_the_paper
     cells = compare_cells(own, unseen)
     claims = judge_all(own, unseen)
-    counts = {name: drawn.count for name, drawn in own.drawn.items()}
+    counts = {name: len(drawn.rms) for name, drawn in own.drawn.items()}
     return Comparison(
         evidence,
         unseen,

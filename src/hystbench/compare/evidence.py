@@ -135,6 +135,11 @@ class ClaimEvidence:
     constants: tuple[Ranking, ...] = ()
 
     @property
+    def twin_runs(self) -> dict[Cell, Run]:
+        """Runs on the twin: measured records have no published errors."""
+        return {cell: run for cell, run in self.runs.items() if run.origin == "twin"}
+
+    @property
     def added_models(self) -> tuple[str, ...]:
         """Models among the runs that the paper does not have."""
         return tuple(in_order({model for _, model in self.runs} - {*MODELS}))
@@ -185,7 +190,7 @@ class ClaimEvidence:
         )
 
 
-def _need(content: Mapping[str, Any], key: str, path: str | Path) -> Any:
+def _need(content: Mapping[str, Any], path: str | Path, key: str) -> Any:
     """Take a key of a file or say which is missing."""
     refuse_unknown(key, content, f"{path}: no key {key!r}")
     return content[key]
@@ -206,11 +211,7 @@ def read_run(path: str | Path) -> Run:
     InputError
         If a key is missing, or the status and the errors disagree.
     """
-    content = _content(path)
-
-    def need(key: str) -> Any:
-        return _need(content, key, path)
-
+    need = partial(_need, _content(path), path)
     status, diverged = need("status"), need("diverged")
     refuse_unknown(status, _STATUSES, f"{path}: status {status!r}")
     if (status == "diverged") != (diverged is not None):
@@ -226,8 +227,8 @@ def read_run(path: str | Path) -> Run:
         of_filter["spread"] = eigenvalues.get("spread_nonzero")
     return Run(
         **{key: need(key) for key in _KEPT},
-        diverged=_need(diverged, "sentence", path) if diverged else None,
-        unit=_need(need("units"), "mse", path),
+        diverged=_need(diverged, path, "sentence") if diverged else None,
+        unit=_need(need("units"), path, "mse"),
         transient_fraction=need("transient_s") / (need("samples") * need("dt_s")),
         **of_filter,
     )
@@ -258,9 +259,9 @@ def read_identification(path: str | Path) -> dict[str, Any]:
     """Read the result of Algorithm 1."""
     content = _content(path)
     for key in _IDENTIFIED:
-        _need(content, key, path)
+        _need(content, path, key)
     for key in _PARAMETERS:
-        _need(content["envelope"], key, path)
+        _need(content["envelope"], path, key)
     return content
 
 

@@ -7,7 +7,7 @@ import pandas as pd
 
 from hystbench.compare.evidence import Run, read_run
 from hystbench.compare.rows import write_fields
-from hystbench.compare.tables import PrintedTable, error_kind
+from hystbench.compare.tables import PrintedTable, error_kind, grid
 from hystbench.files import write_text
 from hystbench.published import in_order
 
@@ -29,9 +29,8 @@ def compare_measured(
     ----------
     out_dir : path
         Folder for ``errors.csv`` (a row a record and model), ``tables/errors``
-        (CSV, Markdown, LaTeX: a row a record), ``tables.txt`` and ``verdict.rst``.
+        (a row a record), ``tables.txt`` and ``verdict.rst``.
     dataset : str
-        Name of the dataset.
     runs : iterable of paths
         One JSON file for each record and model.
     """
@@ -45,8 +44,8 @@ def compare_measured(
     )
     write_fields(out / "errors.csv", COLUMNS, found)
     table.write(out / "tables")
-    parts = [table.caption, table.grid("rst"), table.legend, finite_sentence(found)]
-    text = "\n\n".join(part for part in parts if part) + "\n"
+    body, said = grid(table.frame, "rst"), finite_sentence(found)
+    text = "\n\n".join(filter(None, (table.caption, body, table.legend, said))) + "\n"
     write_text(out / "tables.txt", text)
     write_text(out / "verdict.rst", text)
 
@@ -54,13 +53,8 @@ def compare_measured(
 def errors_table(name: str, of: str, why: str, runs: Sequence[Run]) -> PrintedTable:
     """Set the errors of all models side by side, a row a record and metric.
 
-    Parameters
-    ----------
-    name : str
-        Stem of the table's files.
-    of, why : str
-        First and last sentence of its caption; between them stands the kind of error.
-    runs : sequence of Run
+    ``name`` is the stem of the table's files, ``of`` and ``why`` the first and the last
+    sentence of its caption; between them stands the kind of error.
     """
     by_cell = {(run.signal, run.model): run for run in runs}
     signals = dict.fromkeys(run.signal for run in runs)
@@ -74,12 +68,13 @@ def errors_table(name: str, of: str, why: str, runs: Sequence[Run]) -> PrintedTa
                 run = by_cell.get((signal, model))
                 line[model] = _cell(run, metric)
             content.append(line)
-    diverged = [run for run in runs if run.diverged is not None]
     return PrintedTable(
         name=name,
         caption=f"{of} {error_kind(models)}. {why}",
         legend="; ".join(
-            f"{run.signal}, {run.model}: {run.diverged}" for run in diverged
+            f"{run.signal}, {run.model}: {run.diverged}"
+            for run in runs
+            if run.diverged is not None
         ),
         frame=pd.DataFrame(content, dtype=str),
     )

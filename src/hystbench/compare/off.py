@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hystbench.compare.cells import ComparedCell
-from hystbench.compare.evidence import ClaimEvidence
+from hystbench.compare.evidence import ClaimEvidence, Run
 from hystbench.compare.summary import FACTOR, rms_error_percent
 from hystbench.published import FILTERS
 
@@ -44,23 +44,22 @@ def off_cells(
     """
     mse = [cell for cell in cells if cell.metric == "mse" and cell.ran]
     off = [cell for cell in mse if cell.distance > math.log10(FACTOR)]
-    return tuple(OffCell(cell, _sentence(cell, mse, evidence)) for cell in off)
+    percent = rms_error_percent(evidence)
 
+    def known(cell: ComparedCell) -> str:
+        if cell.ours is None:
+            return f"Ours {cell.status}."
+        parts = (
+            _size(cell),
+            _company(cell, mse),
+            _consistency(cell),
+            _record(percent.get(cell.signal)),
+            _start_up(evidence.runs[cell.signal, cell.model]),
+            _spread(cell),
+        )
+        return f"{'; '.join(filter(None, parts))}."
 
-def _sentence(
-    cell: ComparedCell, cells: Sequence[ComparedCell], evidence: ClaimEvidence
-) -> str:
-    if cell.ours is None:
-        return f"Ours {cell.status}."
-    parts = [
-        _size(cell),
-        _company(cell, cells),
-        _consistency(cell),
-        _record(cell, evidence),
-        _start_up(cell, evidence),
-        _spread(cell),
-    ]
-    return f"{'; '.join(part for part in parts if part)}."
+    return tuple(OffCell(cell, known(cell)) for cell in off)
 
 
 def _size(cell: ComparedCell) -> str:
@@ -98,16 +97,14 @@ def _consistency(cell: ComparedCell) -> str:
     }[cell.published_consistent]
 
 
-def _record(cell: ComparedCell, evidence: ClaimEvidence) -> str:
-    percent = rms_error_percent(evidence).get(cell.signal)
+def _record(percent: float | None) -> str:
     if percent is None:
         return ""
     off = f"{percent:+.1f}"
     return f"the RMS displacement is off by {off} %" if float(off) else ""
 
 
-def _start_up(cell: ComparedCell, evidence: ClaimEvidence) -> str:
-    run = evidence.runs[cell.signal, cell.model]
+def _start_up(run: Run) -> str:
     share = run.start_up_share
     if share is None or run.error_kind == "free-run simulation":
         return ""

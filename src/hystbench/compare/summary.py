@@ -48,13 +48,12 @@ def nearness(cells: Sequence[ComparedCell]) -> dict[str, Any]:
     }
 
 
-def orderings(cells: Iterable[ComparedCell]) -> dict[str, int]:
+def orderings(cells: Sequence[ComparedCell]) -> dict[str, int]:
     """Count the pairs of filters under one signal that ours order as the paper does."""
-    listed = list(cells)
-    theirs = {(c.signal, c.model): float(c.published) for c in listed}
+    theirs = {(c.signal, c.model): float(c.published) for c in cells}
     ours = {
         (c.signal, c.model): math.inf if c.ours is None else c.ours
-        for c in listed
+        for c in cells
         if c.ran
     }
     agree, compared = pairs_in_order(ours, theirs)
@@ -82,31 +81,30 @@ def pairs_in_order(
     return sum(agree), len(pairs)
 
 
-def claim_counts(judgements: Iterable[Judgement]) -> dict[str, Any]:
-    """Count verdicts, in all and by kind of claim."""
-    listed = list(judgements)
-    by_kind = {
-        kind: _verdicts(j for j in listed if j.claim.kind == kind)
-        for kind in dict.fromkeys(j.claim.kind for j in listed)
-    }
-    bases = [b for b in get_args(Basis) if b]
-    on_held_out = _on_held_out(listed)
+def claim_counts(judgements: Sequence[Judgement]) -> dict[str, Any]:
+    """Count verdicts, in all, by kind of claim and by what they rest on."""
+    by_basis = _by_basis(judgements)
+    on_held_out = _on_held_out(judgements)
     told = {each["id"] for each in on_held_out}
-    others = [j for j in listed if j.claim.id not in told]
+    others = [each for each in judgements if each.claim.id not in told]
     return {
-        "claims_total": len(listed),
-        "claims_reproduced_where": _where(listed),
-        "claims_by_kind": by_kind,
-        "claims_by_basis": {
-            basis: _verdicts(j for j in listed if j.claim.basis == basis)
-            for basis in bases
+        "claims_total": len(judgements),
+        "claims_reproduced_where": _where(judgements),
+        "claims_by_kind": {
+            kind: _verdicts(j for j in judgements if j.claim.kind == kind)
+            for kind in dict.fromkeys(j.claim.kind for j in judgements)
         },
-        "claims_without_basis": _verdicts(j for j in listed if not j.claim.basis),
+        "claims_by_basis": {basis: by_basis[basis] for basis in by_basis if basis},
+        "claims_without_basis": by_basis[""],
         "claims_on_held_out": on_held_out,
-        "claims_elsewhere": {
-            basis: _verdicts(j for j in others if j.claim.basis == basis)
-            for basis in get_args(Basis)
-        },
+        "claims_elsewhere": _by_basis(others),
+    }
+
+
+def _by_basis(judgements: Sequence[Judgement]) -> dict[str, dict[str, int]]:
+    return {
+        basis: _verdicts(j for j in judgements if j.claim.basis == basis)
+        for basis in get_args(Basis)
     }
 
 
@@ -215,7 +213,7 @@ def _where(judgements: Iterable[Judgement]) -> dict[str, int]:
 def summarise(
     evidence: ClaimEvidence,
     cells: Sequence[ComparedCell],
-    judgements: Iterable[Judgement] = (),
+    judgements: Sequence[Judgement],
     held_out: Collection[str] = (),
 ) -> dict[str, Any]:
     """Sum up a comparison.
@@ -225,7 +223,7 @@ def summarise(
     evidence : ClaimEvidence
     cells : sequence of ComparedCell
         All cells, of both metrics.
-    judgements : iterable of Judgement
+    judgements : sequence of Judgement
         The ledger of claims.
     held_out : collection of str
         Signals whose published errors were not used in choosing the twin and its
@@ -260,9 +258,8 @@ def summarise(
     }
 
 
-def _per_model(cells: Iterable[ComparedCell]) -> dict[str, dict[str, Any]]:
-    listed = list(cells)
-    return {m: nearness([c for c in listed if c.model == m]) for m in FILTERS}
+def _per_model(cells: Sequence[ComparedCell]) -> dict[str, dict[str, Any]]:
+    return {m: nearness([c for c in cells if c.model == m]) for m in FILTERS}
 
 
 def rms_error_percent(evidence: ClaimEvidence) -> dict[str, float]:
@@ -299,12 +296,13 @@ def _split(
     The RMS of a signal that is drawn many times was used, so it counts with the
     calibrated ones in that alone.
     """
-    halves = {}
-    parts = {"calibrated": False, "held_out": True} if held_out else {}
-    for key, inside in parts.items():
+    halves: dict[str, Any] = {}
+    if not held_out:
+        return halves
+    unseen = set(held_out) - set(drawn)
+    for key, inside in (("calibrated", False), ("held_out", True)):
         half = [c for c in cells if (c.signal in held_out) is inside]
         found = nearness(half)
-        unseen = set(held_out) - set(drawn)
         sizes = [abs(v) for s, v in rms_errors.items() if (s in unseen) is inside]
         per_model = _per_model(half)
         halves[key] = found | {

@@ -52,10 +52,6 @@ class PrintedTable:
     legend: str
     frame: pd.DataFrame
 
-    def grid(self, style: str) -> str:
-        """Give the cells alone in one of the styles of tabulate."""
-        return grid(self.frame, style)
-
     def csv(self) -> str:
         """Give the table as CSV, with the caption in a column of its own."""
         caption = f"{self.caption} {self.legend}".strip()
@@ -126,7 +122,7 @@ def _number(value: float) -> str:
 def _ours(cell: ComparedCell) -> str:
     if cell.ours is not None:
         return _number(cell.ours)
-    return NOT_RUN if cell.status == NOT_RUN else "diverged"
+    return "diverged" if cell.ran else NOT_RUN
 
 
 def error_kind(models: Iterable[str]) -> str:
@@ -179,21 +175,15 @@ def paper_table(
                     for signal, count in (draws or {}).items()
                     if signal in rows
                 ),
-                *_divergences(c for c in listed if c.table == number),
+                *dict.fromkeys(
+                    f"{c.signal}, {c.model}: {c.status}"
+                    for c in listed
+                    if c.table == number and c.ran and c.ours is None
+                ),
             ]
         ),
         frame=pd.DataFrame(content, dtype=str),
     )
-
-
-def _divergences(cells: Iterable[ComparedCell]) -> list[str]:
-    """Say of each diverged run where it diverged and how its steps stood to Eq. 19."""
-    told = {
-        (cell.signal, cell.model): cell.status
-        for cell in cells
-        if cell.ours is None and cell.status != NOT_RUN
-    }
-    return [f"{signal}, {model}: {status}" for (signal, model), status in told.items()]
 
 
 def paper_tables(

@@ -128,7 +128,7 @@ def print_tables(
     """Write ours beside theirs and the claims for a terminal."""
     parts = []
     for table in tables:
-        body = table.grid("simple")
+        body = grid(table.frame, "simple")
         parts.append("\n".join(filter(None, (table.caption, body, table.legend))))
     ledger = _grid(
         [(j.verdict, j.claim.id, j.published_bears_out) for j in judgements],

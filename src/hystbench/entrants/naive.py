@@ -7,7 +7,6 @@ reshaped and every sample counts: what a careful beginner would do.
 """
 
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -19,35 +18,29 @@ MOST = 4
 """Effects that are named, at most."""
 
 
-class Taken(NamedTuple):
-    """An effect that was named, and its fit to what was left then."""
-
-    named: NamedEffect
-    fitted: EffectFit
-
-
 def answer(given: Given) -> Answer:
     """Name effects of the least criterion, one after the other, while it falls."""
     task, noise = Task(given.model, given.fit), noise_rms(given)
-    taken: list[Taken] = []
+    taken: list[tuple[NamedEffect, EffectFit]] = []
     while len(taken) < MOST:
-        found = best(task, noise, {item.named.name for item in taken})
+        found = best(task, noise, {named.name for named, _ in taken})
         if found is None:
             break
         taken.append(found)
-        task = without(task, found.fitted)
+        task = without(task, found[1])
 
     def predict(record: Record) -> FloatArray:
         base = given.base(record)
-        return base + sum(item.fitted.predict(record) - base for item in taken)
+        return base + sum(fitted.predict(record) - base for _, fitted in taken)
 
     if not taken:
         return Answer(predict, "no-gap", "No effect pays.")
-    named = [item.named for item in taken]
-    return Answer(predict, "named", "Least criterion.", named)
+    return Answer(predict, "named", "Least criterion.", [named for named, _ in taken])
 
 
-def best(task: Task, noise: float, known: set[str]) -> Taken | None:
+def best(
+    task: Task, noise: float, known: set[str]
+) -> tuple[NamedEffect, EffectFit] | None:
     """Fit every effect that is not named yet; none where the base alone does better."""
     names = [name for name in effects() if name not in known]
     found = [item for name in names if (item := fit(task, name)) is not None]
@@ -61,7 +54,7 @@ def best(task: Task, noise: float, known: set[str]) -> Taken | None:
     # differences of the criterion as log-odds, as is usually done
     weights = np.exp(-0.5 * (np.array([score for score, _ in scored]) - least))
     ties = tuple(name for score, name in scored[1:] if score - least < np.log(samples))
-    return Taken(NamedEffect(name, float(weights[0] / weights.sum()), ties), chosen)
+    return NamedEffect(name, float(weights[0] / weights.sum()), ties), chosen
 
 
 def without(task: Task, found: EffectFit) -> Task:

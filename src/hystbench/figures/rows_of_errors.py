@@ -7,7 +7,6 @@ cross right of the scale.
 from collections.abc import Sequence
 from pathlib import Path
 
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hystbench.compare.evidence import read_run
@@ -28,8 +27,14 @@ def draw_by_record(*, runs: Sequence[Path]) -> Figure:
     axes = figure.subplots()
     for run in read:
         row = style.in_row(models.index(run.model), len(models), _SPREAD)
-        y = signals.index(run.signal) + row
-        _mark(axes, run.re, y, run.model)
+        y, look = signals.index(run.signal) + row, style.look(run.model)
+        if run.re is None:
+            across = axes.get_yaxis_transform()
+            mark = {**style.DIVERGED, "transform": across, "clip_on": False}
+            axes.plot([_BEYOND], [y], color=look.color, **mark)
+        else:
+            mark = {"marker": look.marker, "linestyle": "none"}
+            axes.plot([run.re], [y], color=look.color, **mark)
     style.logarithmic(axes, (1.0, 2.0, 5.0))
     style.name_rows(axes, [*map(style.signal_title, signals)])
     axes.set(xlabel="relative error RE (-)", ylabel=f"record ({read[0].origin})")
@@ -39,14 +44,3 @@ def draw_by_record(*, runs: Sequence[Path]) -> Figure:
         handle.set_linestyle("none")
     style.legend_above(figure, handles, columns=3)
     return figure
-
-
-def _mark(axes: Axes, error: float | None, y: float, model: str) -> None:
-    """Mark an error, or right of the scale that there is none."""
-    look = style.look(model)
-    if error is None:
-        across = axes.get_yaxis_transform()
-        mark = {**style.DIVERGED, "transform": across, "clip_on": False}
-        axes.plot([_BEYOND], [y], color=look.color, **mark)
-        return
-    axes.plot([error], [y], color=look.color, marker=look.marker, linestyle="none")

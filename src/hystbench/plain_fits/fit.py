@@ -10,7 +10,7 @@ from hystbench.model import Model
 from hystbench.operators import play
 from hystbench.plain_fits.search import search
 from hystbench.plain_fits.table import PLACES, next_to, place_of, searched_of
-from hystbench.plain_fits.task import EffectFit, Task
+from hystbench.plain_fits.task import EffectFit, Task, through
 from hystbench.record import FloatArray, Record
 
 #: Plays that stand for hysteresis of any shape.
@@ -20,14 +20,7 @@ MAINS = np.concatenate([np.linspace(49.8, 50.2, 17), np.linspace(59.8, 60.2, 17)
 
 
 def fit(task: Task, effect: str) -> EffectFit | None:
-    """Fit one effect; None where it makes no sense in the chain.
-
-    Parameters
-    ----------
-    task : Task
-    effect : str
-        Name of the vocabulary.
-    """
+    """Fit one effect of the vocabulary; None where it makes no sense in the chain."""
     if effect in ("hysteresis", "hysteresis-shape"):
         return _fit_plays(task, effect)
     if effect == "mains-pickup":
@@ -96,14 +89,8 @@ def _fit_plays(task: Task, effect: str) -> EffectFit | None:
 
     def columns(record: Record) -> FloatArray:
         plays = play(np.ascontiguousarray(record.u), thresholds)[0].T
-        plays = np.concatenate([plays, plays**2])
-        out = []
-        for signal in plays:
-            y = np.ascontiguousarray(signal)
-            for step in rest:
-                y = step.simulate(y, record.u, record.dt)
-            out.append(y)
-        return np.stack(out, axis=1)
+        signals = map(np.ascontiguousarray, np.concatenate([plays, plays**2]))
+        return np.stack([through(rest, y, record) for y in signals], axis=1)
 
     design = np.concatenate([columns(record) for record in task.records])
     missing = task.measured - task.base

@@ -11,7 +11,7 @@ from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.model import Model
 from hystbench.plain_fits.table import PROPORTIONAL_TO, Searched
-from hystbench.plain_fits.task import EffectFit, Task
+from hystbench.plain_fits.task import EffectFit, Task, through
 from hystbench.record import FloatArray
 
 #: Evaluations of a search from one start, Jacobians not counted.
@@ -53,13 +53,12 @@ def search(
     Parameters
     ----------
     task : Task
-    effect : str
+    effect, form : str
+        The block, and its form where it has several.
     place : int
         Of the block in the chain.
     searched : mapping of str to Searched
         Its parameters.
-    form : str
-        Of the block, where it has several.
     """
     from scipy.optimize import least_squares  # late: imported by jobs that fit only
 
@@ -149,10 +148,6 @@ def _behind(
     if before is None:
         model = Model("whole", task.model.input, task.model.output, chain)
         return task.output(model)
-    out = []
-    for record, signal in zip(task.records, before, strict=True):
-        y = signal
-        for step in attached(chain[place:]):
-            y = step.simulate(y, record.u, record.dt)
-        out.append(y)
-    return np.concatenate(out)
+    rest = attached(chain[place:])
+    entered = zip(before, task.records, strict=True)
+    return np.concatenate([through(rest, y, record) for y, record in entered])

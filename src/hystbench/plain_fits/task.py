@@ -1,8 +1,9 @@
 """What is fitted, and what a fit gives."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -106,3 +107,10 @@ class Task:
     def span(self) -> float:
         """Longest record in seconds."""
         return max(record.dt * len(record) for record in self.records)
+
+
+def through(steps: Iterable[Any], y: FloatArray, record: Record) -> FloatArray:
+    """Send a signal through steps of a chain, one after the other."""
+    for step in steps:
+        y = step.simulate(y, record.u, record.dt)
+    return y

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
@@ -103,33 +103,22 @@ def read_csv(name: str) -> list[dict[str, str]]:
 def load_errors() -> tuple[Pair, ...]:
     """Read the 62 pairs: Tables 1-3 (52 of filters) and Table 4 (10 of the RDGPI)."""
     return tuple(
-        Pair(
-            table=int(row["table"]),
-            signal=row["signal"],
-            model=row["model"],
-            mse=Printed(row["mse_um2"]),
-            re=Printed(row["relative_error"]),
-        )
+        _pair(row, int(row["table"]), row["signal"], row["model"])
         for row in read_csv("errors.csv")
     )
 
 
-@dataclass(frozen=True)
-class Table4Row:
-    """A row of Table 4 as labelled in the paper, with its column of the GPO filter."""
-
-    label: str
-    mse: Printed
-    re: Printed
-
-
 @cache
-def load_table4_gpo() -> tuple[Table4Row, ...]:
-    """Read the GPO column of Table 4, which repeats Tables 1-3."""
+def load_table4_gpo() -> tuple[Pair, ...]:
+    """Read the GPO column of Table 4, which repeats Tables 1-3 under other labels."""
     return tuple(
-        Table4Row(row["label"], Printed(row["mse_um2"]), Printed(row["relative_error"]))
-        for row in read_csv("table4_gpo.csv")
+        _pair(row, 4, row["label"], "gpo") for row in read_csv("table4_gpo.csv")
     )
+
+
+def _pair(row: Mapping[str, str], table: int, signal: str, model: str) -> Pair:
+    errors = Printed(row["mse_um2"]), Printed(row["relative_error"])
+    return Pair(table, signal, model, *errors)
 
 
 @dataclass(frozen=True)
@@ -160,6 +149,12 @@ class Text:
     sums: dict[str, dict[float, float]]
     random_band_of_nyquist: tuple[float, float]
     random_level: float
+
+    @property
+    def chirp_rates(self) -> list[float]:
+        """Sweep rate (Hz/s) that each of the two moments implies."""
+        moments = (self.chirp_minimum, self.chirp_resonance)
+        return [(m.frequency_hz - self.chirp_from_hz) / m.time_s for m in moments]
 
 
 @cache

@@ -5,18 +5,13 @@ from dataclasses import astuple, fields
 from pathlib import Path
 
 from hystbench.files import write_csv
-from hystbench.published import FILTERS, Pair, load_errors
+from hystbench.published import FILTERS, load_errors
 from hystbench.published.consistency import SignalCheck, check
 from hystbench.published.discrepancies import AuditRow, discrepancies
 
 
-def consistency_rows(pairs: tuple[Pair, ...]) -> Iterator[AuditRow]:
-    """Tell what MSE / RE^2 = mean(d^2) says about each signal."""
-    for signal, found in check(pairs).items():
-        yield from _signal_rows(signal, found)
-
-
-def _signal_rows(signal: str, found: SignalCheck) -> Iterator[AuditRow]:
+def _consistency(signal: str, found: SignalCheck) -> Iterator[AuditRow]:
+    """Tell what MSE / RE^2 = mean(d^2) says about a signal."""
     rms = found.intervals
     for one, other in found.conflicts:
         yield AuditRow(
@@ -53,7 +48,9 @@ def _signal_rows(signal: str, found: SignalCheck) -> Iterator[AuditRow]:
 
 def audit() -> tuple[AuditRow, ...]:
     """List every finding, the inconsistent pairs first."""
-    return (*consistency_rows(load_errors()), *discrepancies())
+    checks = check(load_errors()).items()
+    rows = (row for signal, found in checks for row in _consistency(signal, found))
+    return (*rows, *discrepancies())
 
 
 def write_audit(path: str | Path) -> None:

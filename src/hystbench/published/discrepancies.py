@@ -15,7 +15,6 @@ import numpy as np
 from hystbench.published import (
     FILTERS,
     Pair,
-    Table4Row,
     Text,
     load_errors,
     load_table4_gpo,
@@ -73,7 +72,7 @@ def _sines(pairs: tuple[Pair, ...], model: str) -> dict[float, Pair]:
     return dict(sorted(found.items()))
 
 
-def table4_gpo_repeats(pairs: tuple[Pair, ...], rows: tuple[Table4Row, ...]) -> bool:
+def table4_gpo_repeats(pairs: tuple[Pair, ...], rows: tuple[Pair, ...]) -> bool:
     """Tell whether Table 4 repeats the GPO errors of Tables 1-3 digit for digit."""
     gpo = {p.signal: (p.mse, p.re) for p in pairs if p.model == "gpo"}
     return all(
@@ -82,9 +81,7 @@ def table4_gpo_repeats(pairs: tuple[Pair, ...], rows: tuple[Table4Row, ...]) -> 
     )
 
 
-def table4_rows(
-    pairs: tuple[Pair, ...], rows: tuple[Table4Row, ...]
-) -> Iterator[AuditRow]:
+def table4_rows(pairs: tuple[Pair, ...], rows: tuple[Pair, ...]) -> Iterator[AuditRow]:
     """Check the column of the GPO filter and the labels of Table 4."""
     found = "repeats" if table4_gpo_repeats(pairs, rows) else "differs"
     yield _row(f"table-4-{found}", rows=len(rows))
@@ -138,10 +135,7 @@ def coarse_digits(pairs: tuple[Pair, ...]) -> Iterator[AuditRow]:
 
 def chirp_rate(text: Text) -> Iterator[AuditRow]:
     """Work out the length of the chirp, which the paper does not give."""
-    rates = [
-        (moment.frequency_hz - text.chirp_from_hz) / moment.time_s
-        for moment in (text.chirp_minimum, text.chirp_resonance)
-    ]
+    rates = text.chirp_rates
     rate = sum(rates) / len(rates)
     length = (text.chirp_to_hz - text.chirp_from_hz) / rate
     yield _row("chirp-rate", rates=rates, text=text, length=length)

@@ -31,14 +31,10 @@ def paragraphs(text: str) -> list[str]:
     return [" ".join(part.split()) for part in parts]
 
 
-def plain(text: str) -> str:
-    """Drop the marks of code, strong and stressed words."""
-    return _MARKS.sub(lambda found: str(found[str(found.lastgroup)]), text)
-
-
 def first_sentence(text: str) -> str:
     """Give the first sentence of a text, without marks."""
-    first, *_ = re.split(r"\.\s(?=[A-Z])", plain(text), maxsplit=1)
+    plain = _MARKS.sub(lambda found: str(found[str(found.lastgroup)]), text)
+    first, *_ = re.split(r"\.\s(?=[A-Z])", plain, maxsplit=1)
     return f"{first.rstrip('.')}."
 
 

@@ -55,23 +55,6 @@ class Body:
 
 
 @dataclass(frozen=True)
-class Group:
-    """A title over some columns."""
-
-    title: str
-    span: int
-
-
-@dataclass(frozen=True)
-class Choice:
-    """A filter: a column and the values that it takes."""
-
-    title: str
-    column: int
-    options: tuple[str, ...]
-
-
-@dataclass(frozen=True)
 class PageTable:
     """A table with its caption.
 
@@ -111,29 +94,24 @@ class PageTable:
         return sum(len(body.rows) for body in self.bodies)
 
     @property
-    def groups(self) -> list[Group]:
-        """Titles over the columns; none where no column stands under one."""
+    def groups(self) -> list[tuple[str, int]]:
+        """Titles and how many columns are below; none where no column has one."""
         if not any(column.group for column in self.columns):
             return []
         parts = groupby(self.columns, key=lambda column: column.group)
-        return [Group(title, len(list(columns))) for title, columns in parts]
+        return [(title, len(list(columns))) for title, columns in parts]
 
     @property
-    def choices(self) -> list[Choice]:
-        """Filters, each with the values that are there, in their order."""
+    def choices(self) -> list[tuple[str, int, tuple[str, ...]]]:
+        """Filters: title, column, and the values that are there, in their order."""
         found = []
         for place, column in enumerate(self.columns):
             if column.title in self.filtered:
                 cells = (row[place] for body in self.bodies for row in body.rows)
                 values = (str(c.shown if c.sort is None else c.sort) for c in cells)
                 options = tuple(dict.fromkeys(value for value in values if value))
-                found.append(Choice(column.title, place, options))
+                found.append((column.title, place, options))
         return found
-
-
-def words(text: str, mark: str = "") -> Cell:
-    """Make a cell of text."""
-    return Cell(text, None, mark)
 
 
 def number(value: float | None, shown: str = "", mark: str = "") -> Cell:
@@ -157,17 +135,11 @@ def table_of(
 ) -> PageTable:
     """Make a table with a row an item.
 
-    Parameters
-    ----------
-    name, caption : str
-    items : iterable
-    shown : mapping
-        Each column, and what it shows of an item: text or a cell.
-    **about
-        What else a :class:`PageTable` is told.
+    ``shown`` tells of each column what it shows of an item: text or a cell; ``about``
+    is what else a :class:`PageTable` is told.
     """
     rows = [
-        [cell if isinstance(cell, Cell) else words(cell) for cell in cells]
+        [cell if isinstance(cell, Cell) else Cell(cell) for cell in cells]
         for cells in ([show(item) for show in shown.values()] for item in items)
     ]
     return PageTable(name, caption, list(shown), [Body(rows)], **about)

@@ -7,7 +7,7 @@ a constant tap.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from statistics import geometric_mean
 from typing import Any
 
@@ -47,7 +47,7 @@ def vary_constants(
     published : mapping
         The paper's MSE (um^2) by signal and filter.
     """
-    signals = draw_signals(settings["signals"], 0)
+    signals = draw_signals(settings["signals"], 0).values()
     usual = settings["measure"]["input_zero_error"]
     jobs = filter_jobs(settings)
     if not jobs:
@@ -55,13 +55,9 @@ def vary_constants(
     tap = next(iter(jobs.values()))["constant_tap"]
     cases = [(zero, tap) for zero in sorted({*settings["zero_errors"], usual})]
     cases += [(usual, each) for each in settings["constant_taps"] if each != tap]
-    halves = [
-        {name for name in signals if (name in settings["calibrated"]) is inside}
-        for inside in (True, False)
-    ]
     for zero, size in cases:
         measured = {**settings["measure"], "input_zero_error": zero}
-        records = measure_twin(twin, signals.values(), measured, 0)
+        records = measure_twin(twin, signals, measured, 0)
         mse: dict[Cell, float] = {}
         for model, job in jobs.items():
             changed = {**job, "constant_tap": size}
@@ -69,12 +65,10 @@ def vary_constants(
             mse |= {cell: run.error("mse") for cell, run in runs.items()}
         first = {s: min(jobs, key=lambda model: mse[s, model]) for s in records}
         others = {s: model for s, model in first.items() if model != "gpo"}
-        pairs = [
-            pairs_in_order(
-                {cell: mse[cell] for cell in mse if cell[0] in half}, published
-            )
-            for half in halves
-        ]
+        fitted, held_out = (
+            {c: e for c, e in mse.items() if (c[0] in settings["calibrated"]) is inside}
+            for inside in (True, False)
+        )
         yield Ranking(
             twin=twin.name,
             family=twin.family,
@@ -84,19 +78,18 @@ def vary_constants(
             gpo_first=len(records) - len(others),
             signals=len(records),
             first_elsewhere="; ".join(f"{s}: {model}" for s, model in others.items()),
-            pairs_calibrated="{} of {}".format(*pairs[0]),
-            pairs_held_out="{} of {}".format(*pairs[1]),
+            pairs_calibrated="{} of {}".format(*pairs_in_order(fitted, published)),
+            pairs_held_out="{} of {}".format(*pairs_in_order(held_out, published)),
             diverged=sum(map(math.isinf, mse.values())),
             **{
-                f"mean_mse_{model}_um2": _mean([mse.get((s, model)) for s in records])
+                f"mean_mse_{model}_um2": _mean(
+                    mse.get((s, model), math.inf) for s in records
+                )
                 for model in FILTERS
             },
         )
 
 
-def _mean(values: list[float | None]) -> float:
-    """Give the geometric mean to three digits; infinite where one is or has not run."""
-    known = [value for value in values if value is not None and math.isfinite(value)]
-    if len(known) < len(values):
-        return math.inf
-    return float(f"{geometric_mean(known):.3g}")
+def _mean(values: Iterable[float]) -> float:
+    """Give the geometric mean to three digits; infinite where one is."""
+    return float(f"{geometric_mean(values):.3g}")

@@ -17,12 +17,9 @@ class Twin:
 
     Parameters
     ----------
-    name : str
-        Stem of its file.
-    place : str
-        The file.
+    name, place : str
+        Stem of its file, and the file.
     model : Model
-        The model.
     family : str
         Name of the block that makes its hysteresis.
     """
@@ -47,22 +44,11 @@ def read_twins(paths: Iterable[Path]) -> tuple[Twin, ...]:
         if path.stem in twins:
             raise InputError(f"{path}: a second twin of the name {path.stem!r}")
         model = load_model(path)
-        family = family_of(model, str(path))
-        twins[path.stem] = Twin(path.stem, str(path), model, family)
+        makers = [block.name for block in model.chain if block.name in HYSTERESIS]
+        if not makers:
+            raise InputError(
+                f"{path}: no block makes hysteresis; expected one of "
+                f"{', '.join(HYSTERESIS)}"
+            )
+        twins[path.stem] = Twin(path.stem, str(path), model, makers[0])
     return tuple(twins.values())
-
-
-def family_of(model: Model, place: str) -> str:
-    """Name the family of a model: its first block that makes hysteresis.
-
-    Raises
-    ------
-    InputError
-        If there is none.
-    """
-    for block in model.chain:
-        if block.name in HYSTERESIS:
-            return block.name
-    raise InputError(
-        f"{place}: no block makes hysteresis; expected one of {', '.join(HYSTERESIS)}"
-    )

@@ -18,7 +18,7 @@ from hystbench.challenge.contest.plan import (
 from hystbench.challenge.kept import GROUPS, KEPT
 from hystbench.challenge.make import make
 from hystbench.challenge.plant.effects import IN_ACTUATOR, VOCABULARY
-from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES, hidden_in
+from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES
 from hystbench.challenge.spec import ACTUATORS, CaseSpec, effects_of
 from hystbench.errors import InputError
 from tests.conftest import ROOT
@@ -288,5 +288,5 @@ def test_effects_of_machines_are_balanced(family):
         if (entry.spec.kind, entry.spec.family) == ("single", family)
     ]
     counts = Counter(chosen)
-    assert set(counts) == set(hidden_in(family))
+    assert set(counts) == set(effects_of("single", family))
     assert max(counts.values()) - min(counts.values()) <= 1

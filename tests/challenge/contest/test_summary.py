@@ -11,6 +11,7 @@ from hystbench.challenge.contest import tables
 from hystbench.challenge.contest.frames import frame
 from hystbench.challenge.contest.score import judge
 from hystbench.challenge.contest.summary import (
+    carried_over,
     further,
     reach,
     summary,
@@ -123,18 +124,16 @@ def test_certainty_has_a_bin():
 
 def test_what_was_asked_beside_what_was_reached():
     rows = a_contest()
-    told = {item.figure: item for item in reach(frame(rows), frame([]))}
+    told = {item.figure: item for item in reach(frame(rows))}
     assert told["top1 GPI 20 dB"].met is False
     assert told["top1 foreign 20 dB"].met is True
     assert told["top1 GPI 10 dB"].met is None
     assert told["false_alarm"].met is False
     assert told["seconds_per_case"].met is False
-    assert "transfer top1 20 dB" not in told
     # 3 of 4 at home: at least 70 % elsewhere
     away = [row(truth(effect()), RESONANCE)] * 7 + [row(truth(effect()), CREEP)] * 3
-    transfer = {item.figure: item for item in reach(frame(rows), frame(away))}[
-        "transfer top1 20 dB"
-    ]
+    transfer = carried_over(frame(rows), frame(away))
+    assert transfer.figure == "transfer top1 20 dB"
     assert (transfer.reached, transfer.asked, transfer.met) == (0.7, ">= 0.700", True)
 
 
@@ -151,7 +150,7 @@ def test_closed_gaps_and_intervals_by_hand():
     assert told["shrink_median"] == 0.9
     assert (told["coverage"]["share"], told["coverage"]["cases"]) == (0.8, 5)
     assert told["without_interval"] == 1
-    asked = {item.figure: item.met for item in reach(frame(rows), frame([]))}
+    asked = {item.figure: item.met for item in reach(frame(rows))}
     assert not asked["shrink_median"]
     assert not asked["coverage of 95 % intervals"]
 

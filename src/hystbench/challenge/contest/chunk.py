@@ -25,15 +25,7 @@ def judge_chunk(
     answers: Iterable[Mapping[str, Any]],
     schema: Mapping[str, Any],
 ) -> Iterator[Row]:
-    """Judge the answers of all solvers to some cases.
-
-    Parameters
-    ----------
-    entries : iterable of Entry
-    answers : iterable of mapping
-        What each solver answered, as the runner writes it.
-    schema : mapping
-        Of gap.json.
+    """Judge the answers of all solvers, as the runner writes them, to some cases.
 
     Raises
     ------
@@ -43,7 +35,9 @@ def judge_chunk(
     answers = list(answers)
     for entry in entries:
         case = make(entry.spec)
-        handed = _digest(case)
+        with scratch_folder("case-") as place:
+            write_folder(case, place)
+            handed = digest(place)
         for about in answers:
             answer = about["cases"].get(entry.name)
             if answer is None or answer["data"] != handed:
@@ -55,12 +49,6 @@ def judge_chunk(
             confirm = partial(_confirmed, case)
             name = about["solver"]
             yield judge(name, entry.name, case.truth, answer, schema, confirm)
-
-
-def _digest(case: Case) -> str:
-    with scratch_folder("case-") as place:
-        write_folder(case, place)
-        return digest(place)
 
 
 def _confirmed(case: Case, names: tuple[str, ...]) -> tuple[str, ...]:

@@ -1,4 +1,8 @@
-"""What a solver says of what it cannot name, or has never seen: blind by kind."""
+"""What a solver says of what it cannot name, or has never seen: blind by kind.
+
+Cases are frames as :func:`hystbench.challenge.contest.frames.frame` gives them. A free
+shape of the hysteresis beside a plant of another family than the base's is no name.
+"""
 
 from __future__ import annotations
 
@@ -24,16 +28,14 @@ def left_out(cases: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     cases : DataFrame
-        Judged cases of one solver with one hidden effect each, as ``frames.frame`` has
-        them.
+        Judged cases of one solver with one hidden effect each.
 
     Returns
     -------
     DataFrame
         A row an effect, in alphabetical order, then all: the share of cases in which
         no name is given, with its 95 % interval, the share in which one is given with
-        more than .8, and what was named how often. A free shape of the
-        hysteresis beside a plant of another family than the base's is no name.
+        more than .8, and what was named how often.
     """
     nameless = cases.assign(truth="")
     found = list(_rows(nameless, cases["truth"]))
@@ -46,7 +48,7 @@ def never_seen(cases: pd.DataFrame, kept: int = KEPT) -> Iterator[tuple[Any, ...
     Parameters
     ----------
     cases : DataFrame
-        Judged cases of one solver on the transfer set, as ``frames.frame`` has them.
+        Judged cases of one solver on the transfer set.
     kept : int
         The group that all other sets left out.
 
@@ -57,8 +59,7 @@ def never_seen(cases: pd.DataFrame, kept: int = KEPT) -> Iterator[tuple[Any, ...
         listed effect, a family of plants or an unlisted effect; in how many cases just
         what is hidden is named, or nothing where nothing listed is, with the 95 %
         interval; in what share a wrong name is stated with more than .8; and which
-        wrong names were given how often. A free shape of the hysteresis beside a plant
-        of another family than the base's is no name.
+        wrong names were given how often.
     """
     held = group_of(kept)
     single = cases[cases["kind"] == "single"]

@@ -13,14 +13,7 @@ WIDTH = NormalDist().inv_cdf(0.975)
 def recovered(
     hidden: Sequence[Mapping[str, Any]], named: Sequence[Mapping[str, Any]]
 ) -> dict[str, Any]:
-    """Compare the parameters of effects that are hidden and named.
-
-    Parameters
-    ----------
-    hidden : sequence of mapping
-        The truth's effects.
-    named : sequence of mapping
-        The effects of gap.json.
+    """Compare the parameters of effects of the truth with those of gap.json.
 
     Returns
     -------
@@ -36,9 +29,8 @@ def recovered(
         if answer is None:
             continue
         # diffusion into a slab and into a rod of one time constant differ
-        if _word("geometry", answer) not in (None, effect["form"]):
-            continue
-        if _word("form", answer) not in (None, effect["form"]):
+        choices = {_word(name, answer) for name in ("geometry", "form")}
+        if choices - {None, effect["form"]}:
             continue
         forms = table("comparable").get(effect["name"], {})
         for name in forms.get(effect["form"], ()):

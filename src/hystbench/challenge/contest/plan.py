@@ -78,11 +78,9 @@ def plan(
         other records too.
     scale : float
         Factor on the number of cases of each stratum; at least one is left.
-    without : sequence of str
-        Effects, families and kinds of cases that are left out. The others keep their
-        seeds, so that a contest of what was left out has no case of this one.
-    only : sequence of str
-        Effects, families and kinds of which a case holds at least one; all by default.
+    without, only : sequence of str
+        Effects, families and kinds of cases: those that are left out, and those of
+        which a case holds at least one. The cases that stay keep their seeds.
     kept : int
         The group that all other sets leave out.
 
@@ -97,8 +95,8 @@ def plan(
         If there is no such set or kind, nothing is left, or the scale asks for more
         seeds than there are.
     """
-    for key, words in (("without", without), ("only", only)):
-        for word in words:
+    for key, asked in (("without", without), ("only", only)):
+        for word in asked:
             refuse_unknown(word, WORDS, f"blind: {key}: {word!r}")
     counts = sizes(name, scale, kept)
     held = zip(strata(name, kept), counts, strict=True)
@@ -107,7 +105,8 @@ def plan(
         first = _SETS[name]["first_seed"] + number * _SETS[name]["seeds"]
         for k in range(cases):
             spec = _spec(name, stratum, first + k, number + k, kept)
-            if _wanted(spec, without, only):
+            words = {spec.kind, spec.family, *spec.effects}
+            if words.isdisjoint(without) and not (only and words.isdisjoint(only)):
                 told = hashlib.sha256(f"{name} {spec.seed}".encode()).hexdigest()
                 entries.append(Entry(f"case-{told[:10]}", spec))
     if not entries:
@@ -116,12 +115,6 @@ def plan(
             "kinds that leave some"
         )
     return tuple(sorted(entries, key=lambda entry: entry.name))
-
-
-def _wanted(spec: CaseSpec, without: Sequence[str], only: Sequence[str]) -> bool:
-    """Tell whether a case stays where kinds are left out."""
-    words = {spec.kind, spec.family, *spec.effects}
-    return words.isdisjoint(without) and (not only or not words.isdisjoint(only))
 
 
 def strata(name: str, kept: int = KEPT) -> tuple[Stratum, ...]:

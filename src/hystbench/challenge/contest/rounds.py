@@ -15,20 +15,19 @@ def further(
     summary: Mapping[str, Any],
     never_seen: Iterable[Mapping[str, Any]],
 ) -> list[tuple[str, ...]]:
-    """Give what a score of what was left out adds to those of earlier rounds.
+    """Give what a score of what was left out adds to the rows of earlier rounds.
+
+    A score of the same set, group and seeds adds nothing: a round is scored once.
 
     Parameters
     ----------
-    before : iterable of mapping
-        Earlier rows, by :data:`COLUMNS`. A score of the same set, group and seeds adds
-        nothing: a round is scored once.
-    summary, never_seen : mapping, iterable of mapping
-        summary.json and the rows of never-seen.csv.
+    before, summary, never_seen
+        Earlier rows, summary.json, and the rows of never-seen.csv.
 
     Returns
     -------
     list of tuple
-        A row a sort (forms, families, unlisted effects).
+        A row a sort (forms, families, unlisted effects), by :data:`COLUMNS`.
     """
     about = {
         "set": summary["set"],

@@ -30,13 +30,11 @@ class Row:
     """A case in the table; None where a figure means nothing for the case.
 
     ``hysteresis-shape`` beside a plant of another family than the base's is neither
-    required nor spurious: it is taken out before anything is judged. ``strict``
-    figures are those without this.
+    required nor spurious: it is taken out before anything is judged. Figures called
+    ``strict`` are without this.
 
     Parameters
     ----------
-    solver, case : str
-    kind, family : str
     ratio_db, ratio_retuned_db : float or None
         Of the effect that shows least; the second after the best re-tuning of gain
         and offset.
@@ -47,23 +45,19 @@ class Row:
         told beside unnamed as they are new in every record.
     lost : str
         Why there is no answer; empty where there is one.
-    confidence : float or None
-        Of the first effect named.
-    confidences : str
-        Of each effect named, ``name=confidence``.
-    top1, top1_strict : bool or None
+    confidence, confidences : float or None, str
+        Of the first effect named; of each, as ``name=confidence``.
+    top1 : bool or None
         Of single effects: named, and named first.
-    in_set, in_set_raw : bool or None
-        Of single effects: in the set of the first effect named; the first figure
-        counts only what the judge's own fits find within the noise.
-    set_size, set_size_raw : int or None
-        Names in that set, likewise.
-    exact, exact_strict : bool
+    in_set, set_size : bool or None, int or None
+        Of single effects: in the set of the first effect named, and the names in it.
+        They count what the judge's own fits find within the noise, ``raw`` all.
+    exact : bool
         What is hidden is named and nothing beside it; with nothing hidden: no-gap;
         outside the vocabulary: unnamed.
     all_named : bool or None
         All hidden effects of the vocabulary are named.
-    false_alarm, false_alarm_strict : bool or None
+    false_alarm : bool or None
         With nothing hidden: any answer but no-gap.
     unnamed : bool or None
         Outside the vocabulary: the verdict is unnamed, and no finding accounts for it.
@@ -75,12 +69,8 @@ class Row:
     shrink : float or None
         Share of the power above the noise and the base's own error that is gone from
         the hold-out records.
-    parameters, covered, intervals : int
-        Numbers that can be compared; of them those inside their 95 % interval; and
-        those with an interval.
-    parameter_error : float or None
-        Median relative error of those numbers.
-    seconds, cpu_seconds : float
+    parameters, intervals, covered, parameter_error
+        As :func:`hystbench.challenge.contest.parameters.recovered` gives them.
     """
 
     solver: str
@@ -167,7 +157,9 @@ def judge(
         members = tuple(name for name in members if name != SHAPE)
     confirmed = confirm(members) if single and len(members) > 1 else members
     # An effect outside the vocabulary has no name to be called by.
-    right, right_strict = _right(kind, hidden, gap["verdict"], named, strict)
+    shape_alone = kind == "none" and names and bool(strict) and not named
+    right = shape_alone or _right(kind, hidden, gap["verdict"], named)
+    right_strict = _right(kind, hidden, gap["verdict"], strict)
     views = gap["where"]
     retuned = [effect["ratio_retuned_db"] for effect in truth["effects"]]
     return Row(
@@ -269,22 +261,13 @@ def _numbers(value: Any) -> bool:
     )
 
 
-def _right(
-    kind: str, hidden: list[str], verdict: str, named: list[str], strict: list[str]
-) -> tuple[bool, bool]:
-    """Tell whether all is right, with the shape let pass and without."""
+def _right(kind: str, hidden: list[str], verdict: str, named: list[str]) -> bool:
+    """Tell whether an answer is right, and nothing beside it is named."""
     if kind == "none":
-        shape_alone = verdict == "named" and bool(strict) and not named
-        return verdict == "no-gap" or shape_alone, verdict == "no-gap"
+        return verdict == "no-gap"
     if kind == "unlisted":
-        return (
-            verdict == "unnamed" and not named,
-            verdict == "unnamed" and not strict,
-        )
-    exactly = verdict == "named"
-    return exactly and sorted(named) == sorted(hidden), exactly and sorted(
-        strict
-    ) == sorted(hidden)
+        return verdict == "unnamed" and not named
+    return verdict == "named" and sorted(named) == sorted(hidden)
 
 
 #: Words of gap.json for each place; a force beside an impedance is one inside it.

@@ -90,7 +90,7 @@ class Figure(NamedTuple):
         return Share(MADE[made](cases, column), None, None, len(cases))
 
 
-MADE: dict[str, Callable[[pd.DataFrame, str], float | None]] = {
+MADE: dict[str, Callable[[pd.DataFrame, str], Any]] = {
     "mean": mean,
     "median": middle,
     "distance": lambda cases, _: calibration_error(cases),
@@ -159,40 +159,24 @@ def summary(cases: pd.DataFrame) -> dict[str, Any]:
     }
 
 
-def reach(cases: pd.DataFrame, transfer: pd.DataFrame) -> list[AskedFigure]:
-    """Hold a solver's score against what the project asks of its own.
+def reach(cases: pd.DataFrame) -> list[AskedFigure]:
+    """Hold a solver's score on a set against what the project asks of its own."""
+    return [_asked(figure, figure.of(cases)) for figure in figures("asked")]
 
-    Parameters
-    ----------
-    cases, transfer : DataFrame
-        Of the published set and of the transfer set; the second may be empty.
-    """
-    found = [_asked(figure, figure.of(cases)) for figure in figures("asked")]
-    if len(transfer):
-        here, there = TOP1_20.of(cases).share, TOP1_20.of(transfer)
-        if here is None or there.share is None:
-            found.append(
-                AskedFigure(TOP1_20.name, "", None, None, None, there.cases, None)
-            )
-        else:
-            asked = TOP1_20._replace(bound=here - 0.05)
-            words = f">= {asked.bound:.3f}"
-            found.append(_asked(asked, there)._replace(asked=words))
-    return found
+
+def carried_over(cases: pd.DataFrame, transfer: pd.DataFrame) -> AskedFigure:
+    """Hold the score on the transfer set against that on the published set."""
+    here, there = TOP1_20.of(cases).share, TOP1_20.of(transfer)
+    if here is None or there.share is None:
+        return AskedFigure(TOP1_20.name, "", None, None, None, there.cases, None)
+    asked = TOP1_20._replace(bound=here - 0.05)
+    return _asked(asked, there)._replace(asked=f">= {asked.bound:.3f}")
 
 
 def further(cases: pd.DataFrame) -> list[tuple[str, Any, Any, Any, int]]:
     """Give what else there is to say of a score: strict figures, sizes, errors.
 
-    Parameters
-    ----------
-    cases : DataFrame
-        Of one solver on one set.
-
-    Returns
-    -------
-    list of (str, float or None, float or None, float or None, int)
-        A figure, what was reached, its interval where it is a share, and the cases.
+    A row is a figure, what was reached, the interval of a share, and the cases.
     """
     return [(figure.name, *figure.of(cases)) for figure in figures("further")]
 
@@ -224,8 +208,7 @@ _SUMS: dict[str, Callable[[pd.DataFrame, str], Any]] = {
     "ratio": _by_ratio,
     "family": _by_family,
     "share": _share,
-    "mean": mean,
-    "median": middle,
+    **MADE,
 }
 
 

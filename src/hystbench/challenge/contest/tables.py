@@ -40,10 +40,6 @@ class Share(NamedTuple):
 def wilson(hits: int, cases: int) -> Share:
     """Compute a share and its 95 % score interval.
 
-    Parameters
-    ----------
-    hits, cases : int
-
     References
     ----------
     .. [1] E. B. Wilson, "Probable inference, the law of succession, and statistical
@@ -118,13 +114,7 @@ def confused(cases: pd.DataFrame) -> list[tuple[str, str, int, int, str]]:
 
 
 def experiment(one: str, other: str) -> str:
-    """Tell an experiment that separates two effects, for docs/confusions.md.
-
-    Parameters
-    ----------
-    one, other : str
-        Names of the vocabulary; of others nothing is known.
-    """
+    """Tell an experiment that separates two effects of the vocabulary."""
     for here, there, told in table("experiments"):
         if (one in here and other in there) or (other in here and one in there):
             return str(told)
@@ -250,14 +240,14 @@ def shares(cases: pd.DataFrame, figure: str) -> Share:
 
 def middle(cases: pd.DataFrame, figure: str) -> float | None:
     """Median of a figure; None where no case has it."""
-    values = cases[figure].dropna()
-    return float(values.median()) if len(values) else None
+    value = cases[figure].median()
+    return None if pd.isna(value) else float(value)
 
 
 def mean(cases: pd.DataFrame, figure: str) -> float | None:
     """Mean of a figure; None where no case has it."""
-    values = cases[figure].dropna()
-    return float(values.mean()) if len(values) else None
+    value = cases[figure].mean()
+    return None if pd.isna(value) else float(value)
 
 
 def coverage(cases: pd.DataFrame) -> Share:

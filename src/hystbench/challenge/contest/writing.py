@@ -7,14 +7,18 @@ from typing import Any
 import pandas as pd
 
 from hystbench.challenge.contest import table, tables
-from hystbench.challenge.contest.frames import frame, write_frame
+from hystbench.challenge.contest.frames import write_frame
 from hystbench.challenge.contest.never_seen import never_seen
-from hystbench.challenge.contest.summary import AskedFigure, further, reach, summary
+from hystbench.challenge.contest.summary import (
+    AskedFigure,
+    carried_over,
+    further,
+    reach,
+    summary,
+)
 from hystbench.challenge.kept import GROUPS
 from hystbench.files import write_csv, write_json
 
-#: No transfer set.
-NOTHING = frame([])
 #: With room for the rounding of a difference of two shares.
 FIVE_POINTS = 0.05 + 1e-9
 #: Columns of each table but those of cases.
@@ -50,10 +54,12 @@ def write_score(
         Folder for :data:`WRITTEN`.
     """
     own = cases[cases["solver"] == solver]
-    carried = list(_carried(own, transfer))
-    asked = [*reach(own, transfer), *_off(carried)]
+    here, there = reach(own), reach(transfer)
+    carried = list(_carried(here, there))
+    over = [carried_over(own, transfer)] if len(transfer) else []
+    asked = [*here, *over, *_off(carried)]
     found: dict[str, Iterable[Sequence[Any]]] = {
-        "in-words.csv": _in_words(own, transfer),
+        "in-words.csv": _in_words(here, there),
         "contest.csv": _held(own, transfer, about),
         "kept.csv": list(_groups(about["kept"])),
         "reach.csv": asked,
@@ -109,15 +115,13 @@ def _groups(kept: int) -> Iterator[tuple[Any, ...]]:
 
 
 def _carried(
-    cases: pd.DataFrame, transfer: pd.DataFrame
+    reached: Sequence[AskedFigure], transfer: Sequence[AskedFigure]
 ) -> Iterator[tuple[str, float, float, float, bool | None]]:
     """Hold each figure on the transfer set beside the published set's.
 
     Within 5 points is said of shares; seconds are none.
     """
-    for here, there in zip(
-        reach(cases, NOTHING), reach(transfer, NOTHING), strict=True
-    ):
+    for here, there in zip(reached, transfer, strict=True):
         if here.reached is not None and there.reached is not None:
             apart = there.reached - here.reached
             share = here.figure != "seconds_per_case"
@@ -126,21 +130,16 @@ def _carried(
 
 
 def _in_words(
-    cases: pd.DataFrame, transfer: pd.DataFrame
+    reached: Sequence[AskedFigure], transfer: Sequence[AskedFigure]
 ) -> Iterator[tuple[str, str, str]]:
     """Tell in plain words how often the answer was right, failures among it."""
-    here, there = (
-        {item.figure: item for item in reach(judged, NOTHING)}
-        for judged in (cases, transfer)
-    )
+    both = zip(reached, transfer, strict=True)
+    known = {here.figure: (here, there) for here, there in both}
     for row in table("in_words"):
-        figure, wrong = row["figure"], row.get("wrong", False)
-        if here[figure].reached is not None:
-            yield (
-                row["words"],
-                _rightly(here[figure], wrong),
-                _rightly(there[figure], wrong),
-            )
+        here, there = known[row["figure"]]
+        if here.reached is not None:
+            wrong = row.get("wrong", False)
+            yield row["words"], _rightly(here, wrong), _rightly(there, wrong)
 
 
 def _rightly(asked: AskedFigure, wrong: bool) -> str:
@@ -174,7 +173,7 @@ def _rivals(
 
 
 def _rival(name: str, mine: pd.DataFrame) -> tuple[Any, ...]:
-    found = {item.figure: item.reached for item in reach(mine, NOTHING)}
+    found = {item.figure: item.reached for item in reach(mine)}
     lost = mine["lost"][mine["lost"] != ""]
     figures = [found[figure] for figure in _RIVALS[3:-1]]
     note = f"first loss: {lost.iloc[0]}" if len(lost) else ""

@@ -4,12 +4,11 @@ import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 
 from hystbench.challenge.plant import mechanics
-from hystbench.challenge.plant.hysteresis import PlantLoop, middle
+from hystbench.challenge.plant.hysteresis import GeneralizedPlays, PlantLoop, middle
 from hystbench.challenge.plant.interpolation import cubic
 from hystbench.challenge.plant.kind import HiddenEffect, PlantRun, Stage
 from hystbench.record import FloatArray
@@ -19,15 +18,6 @@ OVERSAMPLING, LEAST_RATE = 8, 8000.0
 
 Command = Callable[[FloatArray], FloatArray]
 Act = Callable[[Stage, FloatArray], FloatArray]
-
-
-class Place(NamedTuple):
-    """A grid of time, the command on it, and the record's number."""
-
-    time: FloatArray
-    u: FloatArray
-    dt: float
-    record: int
 
 
 @lru_cache(maxsize=16)
@@ -42,12 +32,7 @@ def _grid(excitation: Command, count: int, dt: float) -> tuple[FloatArray, Float
 
 @dataclass(frozen=True)
 class KnownMode:
-    """A linear mode that the base model knows.
-
-    Parameters
-    ----------
-    frequency_hz, damping_ratio, participation : float
-    """
+    """A linear mode that the base model knows."""
 
     frequency_hz: float
     damping_ratio: float
@@ -102,7 +87,7 @@ class Actuator:
         time, u = _grid(excitation, count, fine)
 
         def act(stage: Stage, signal: FloatArray) -> FloatArray:
-            return self._act(stage, signal, Place(time, u, fine, record))
+            return self._act(stage, signal, time, u, fine, record)
 
         commanded = act("command", time)
         v = u if commanded is time else excitation(commanded)
@@ -121,14 +106,22 @@ class Actuator:
     def convert(self, reading: FloatArray, dt: float, record: int) -> FloatArray:
         """Compute what is written down of a reading, with whatever noise it has."""
         time: FloatArray = np.arange(len(reading), dtype=np.float64) * dt
-        return self._act("samples", reading, Place(time, reading, dt, record))
+        return self._act("samples", reading, time, reading, dt, record)
 
-    def _act(self, stage: Stage, signal: FloatArray, place: Place) -> FloatArray:
+    def _act(
+        self,
+        stage: Stage,
+        signal: FloatArray,
+        time: FloatArray,
+        u: FloatArray,
+        dt: float,
+        record: int,
+    ) -> FloatArray:
         for effect in self.effects:
             if effect.stage == stage:
                 key = zlib.crc32(effect.kind.name.encode())
-                random = np.random.default_rng([self.seed, place.record, key])
-                run = PlantRun(place.time, place.u, place.dt, random)
+                random = np.random.default_rng([self.seed, record, key])
+                run = PlantRun(time, u, dt, random)
                 signal = effect.act(signal, run)
         return signal
 
@@ -140,9 +133,11 @@ class Actuator:
         """
         if isinstance(self.loop, float):
             return self.loop * (field - field[0]), 0.0
-        stages = {effect.stage for effect in self.effects}
-        growth = act("threshold", field) if "threshold" in stages else None
-        z = self.loop.respond(field, growth)
+        grows = any(effect.stage == "threshold" for effect in self.effects)
+        if grows and isinstance(self.loop, GeneralizedPlays):
+            z = self.loop.respond(field, act("threshold", field))
+        else:
+            z = self.loop.respond(field)
         if field[0] == 0.0:
             return z, 0.0
         shift = middle(self.loop, float(field[0])) - middle(self.loop, 0.0)

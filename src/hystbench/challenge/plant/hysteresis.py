@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -29,7 +29,7 @@ class PlantLoop(Protocol):
     def family(self) -> str:
         """Name of the family."""
 
-    def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
+    def respond(self, v: FloatArray) -> FloatArray:
         """Compute the displacement in um for a current that starts at rest."""
 
     def scaled(self, factor: float) -> PlantLoop:
@@ -103,12 +103,27 @@ class Everett:
     points: int = 601
     family: str = "preisach"
 
+    @cached_property
     def table(self) -> FloatArray:
         """Everett's function E(a, b), a the rows and b the columns, in um.
 
-        Swing of the output when the input goes from b up to a.
+        Swing of the output when the input goes from b up to a: the sum of the
+        density's cells.
         """
-        return _everett_table(self)
+        step = 2.0 * self.limit / (self.points - 1)
+        middle = -self.limit + step * (np.arange(self.points - 1) + 0.5)
+        half = 0.5 * (middle[:, None] - middle[None, :])
+        centre = 0.5 * (middle[:, None] + middle[None, :]) - self.centre
+        inside = np.where(half > 0, half, 1.0)
+        logarithm = np.log(inside / self.coercive) / self.coercive_spread
+        square = (centre / self.interaction) ** 2 + logarithm**2
+        density = np.exp(-0.5 * square) / inside
+        density[half <= 0] = 0.0
+        mass = density * (self.irreversible / density.sum())
+        out = np.zeros((self.points, self.points))
+        out[1:, :-1] = np.cumsum(np.cumsum(mass, axis=0)[:, ::-1], axis=1)[:, ::-1]
+        out.setflags(write=False)
+        return out
 
     def history(self) -> FloatArray:
         """Turning points that demagnetize: alternating, shrinking."""
@@ -116,17 +131,13 @@ class Everett:
         sizes[1::2] *= -1.0
         return sizes
 
-    def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
+    def respond(self, v: FloatArray) -> FloatArray:
         """Follow the input by the turning points that are not wiped out."""
-        del growth  # plays alone have thresholds
-        v = np.ascontiguousarray(v)
-        past, start = self.history(), np.zeros(1)
-        table, y = self.table(), np.empty_like(v)
-        begin = np.empty(1)
-        common = (self.points, self.limit, table, past)
-        kernels.call("hc_everett", 1, len(past), *common, start, begin)
-        kernels.call("hc_everett", len(v), len(past), *common, v, y)
-        return np.asarray(y - begin[0] + self.reversible * np.tanh(v / self.knee))
+        past = self.history()
+        plane = (len(past), self.points, self.limit, self.table, past)
+        start = kernels.run("hc_everett", *plane, over=np.zeros(1))[0]
+        y = kernels.run("hc_everett", *plane, over=v) - start
+        return np.asarray(y + self.reversible * np.tanh(v / self.knee))
 
     def scaled(self, factor: float) -> Everett:
         """Multiply both parts."""
@@ -135,24 +146,6 @@ class Everett:
             irreversible=self.irreversible * factor,
             reversible=self.reversible * factor,
         )
-
-
-@lru_cache(maxsize=4)
-def _everett_table(plane: Everett) -> FloatArray:
-    """Sum the density's cells; one plane is asked for many times in a case."""
-    step = 2.0 * plane.limit / (plane.points - 1)
-    middle = -plane.limit + step * (np.arange(plane.points - 1) + 0.5)
-    half = 0.5 * (middle[:, None] - middle[None, :])
-    centre = 0.5 * (middle[:, None] + middle[None, :]) - plane.centre
-    inside = np.where(half > 0, half, 1.0)
-    logarithm = np.log(inside / plane.coercive) / plane.coercive_spread
-    density = np.exp(-0.5 * ((centre / plane.interaction) ** 2 + logarithm**2)) / inside
-    density[half <= 0] = 0.0
-    mass = density * (plane.irreversible / density.sum())
-    out = np.zeros((plane.points, plane.points))
-    out[1:, :-1] = np.cumsum(np.cumsum(mass, axis=0)[:, ::-1], axis=1)[:, ::-1]
-    out.setflags(write=False)
-    return out
 
 
 @dataclass(frozen=True)
@@ -175,9 +168,8 @@ class JilesAthertonLoop:
     strain: float  # um at saturation
     family: str = "jiles-atherton"
 
-    def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
+    def respond(self, v: FloatArray) -> FloatArray:
         """Integrate the magnetization over the field, by Runge-Kutta."""
-        del growth  # plays alone have thresholds
         piece = 0.01 * self.shape
         constants = (self.shape, self.coupling, self.pinning, self.reversible, piece)
         cycles = LARGEST_CURRENT * np.linspace(1.2, 0.0, 60)
@@ -219,9 +211,8 @@ class Duhem:
     height: float  # um
     family: str = "duhem"
 
-    def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
+    def respond(self, v: FloatArray) -> FloatArray:
         """Follow the equation in steps of the input, exactly for a straight f."""
-        del growth  # plays alone have thresholds
         constants = (self.rate, self.stiff, self.knee, self.bias)
         return self.height * kernels.run("hc_duhem", *constants, over=v)
 

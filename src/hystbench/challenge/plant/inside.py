@@ -78,19 +78,3 @@ MACHINES = (
     *("mass-spring", "free-mass", "pendulum", "impedance"),
     *("tank", "coupled-tanks"),
 )
-
-
-def hidden_in(family: str, listed: bool = True) -> tuple[str, ...]:
-    """Give the names of what can be hidden in a family of machines.
-
-    Parameters
-    ----------
-    family : str
-    listed : bool
-        Whether the vocabulary has a word for it.
-    """
-    return tuple(
-        name
-        for name, kind in IN_MACHINE.items()
-        if family in kind.families and kind.listed == listed
-    )

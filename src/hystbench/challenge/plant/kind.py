@@ -140,10 +140,6 @@ def nothing(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     return z
 
 
-def _same(parameters: Parameters) -> dict[str, Any]:
-    return dict(parameters)
-
-
 @dataclass(frozen=True)
 class Form:
     """One way in which an effect may be written.
@@ -175,7 +171,7 @@ class Form:
     size: str = ""
     power: float = 1.0
     stage: Stage | None = None
-    told: Callable[[Parameters], dict[str, Any]] = _same
+    told: Callable[[Parameters], dict[str, Any]] = dict
     numbers: Inside | None = None
     curve: Curve | None = None
 

@@ -163,7 +163,10 @@ class Tank:
 
 
 def fill(
-    tanks: tuple[Tank, ...], inflow: FloatArray, dt: float, begun: tuple[float, ...]
+    tanks: tuple[Tank, ...],
+    inflow: FloatArray,
+    dt: float,
+    begun: tuple[float, ...] = (0.0, 0.0),
 ) -> FloatArray:
     """Compute the level of the last of one or two tanks.
 
@@ -178,13 +181,8 @@ def fill(
         Level of each at the first sample.
     """
     numbers = np.array([astuple(tank) for tank in tanks], dtype=np.float64).ravel()
-    inflow = np.ascontiguousarray(inflow, dtype=np.float64)
-    level = np.empty_like(inflow)
     levels = np.array(begun, dtype=np.float64)
-    kernels.call(
-        "hc_tanks", len(inflow), len(tanks), dt, numbers, levels, inflow, level
-    )
-    return level
+    return kernels.run("hc_tanks", len(tanks), dt, numbers, levels, over=inflow)
 
 
 def decimated(fine: FloatArray, steps: int = FINE) -> FloatArray:

@@ -58,7 +58,8 @@ def kelvin_voigt(
     return total
 
 
-def _elements(p: Parameters) -> dict[str, list[float]]:
+def creep_told(p: Parameters) -> dict[str, Any]:
+    """Give the elements of creep: one, or three of equal magnitude."""
     count = 1 if "ratio" not in p else 3
     return {
         "magnitudes": [p["magnitude"] / count] * count,
@@ -70,7 +71,7 @@ def _elements(p: Parameters) -> dict[str, list[float]]:
 
 def creep(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Creep by one Kelvin-Voigt element or by three."""
-    told = _elements(p)
+    told = creep_told(p)
     return kelvin_voigt(z, run.dt, told["magnitudes"], told["time_constants_s"])
 
 
@@ -93,8 +94,3 @@ def fractional(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     shares = times ** (p["order"] - 0.5)
     magnitudes = p["magnitude"] * shares / shares.sum()
     return kelvin_voigt(z, run.dt, list(magnitudes), list(times))
-
-
-def creep_told(p: Parameters) -> dict[str, Any]:
-    """Give the elements of creep."""
-    return dict(_elements(p))

@@ -1,7 +1,6 @@
 """``hystbench job blind-rounds``: the scores of what was left out, round by round."""
 
 import csv
-import io
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -25,21 +24,21 @@ def blind_rounds(scores: tuple[Folder, ...], *, to: Table) -> None:
     from hystbench.challenge.contest.rounds import COLUMNS, further  # late: pandas
 
     before = to.read_text(encoding="utf-8") if to.exists() else ""
-    table = csv.DictReader(io.StringIO(before))
+    table = csv.DictReader(before.splitlines())
     rows: list[Any] = list(table)
+    added: list[tuple[str, ...]] = []
     if before and tuple(table.fieldnames or ()) != COLUMNS:
         raise InputError(f"{to}: expected the columns {', '.join(COLUMNS)}")
-    text = io.StringIO()
-    write = csv.writer(text, lineterminator="\n")
-    if not before:
-        write.writerow(COLUMNS)
-    elif not before.endswith("\n"):
-        text.write("\n")
     for folder in scores:
         summary = read_json(folder / "summary.json")
         with (folder / "never-seen.csv").open(newline="", encoding="utf-8") as stream:
-            added = further(rows, summary, list(csv.DictReader(stream)))
-        rows += [dict(zip(COLUMNS, row, strict=True)) for row in added]
-        write.writerows(added)
+            found = further(rows, summary, csv.DictReader(stream))
+        rows += [dict(zip(COLUMNS, row, strict=True)) for row in found]
+        added += found
     with to.open("a", newline="", encoding="utf-8") as stream:
-        stream.write(text.getvalue())
+        write = csv.writer(stream, lineterminator="\n")
+        if not before:
+            write.writerow(COLUMNS)
+        elif not before.endswith("\n"):
+            stream.write("\n")
+        write.writerows(added)

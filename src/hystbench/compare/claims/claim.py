@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from hystbench.compare.beside import Holding, holding_text
-from hystbench.compare.cells import twin_runs
 from hystbench.compare.evidence import Cell, ClaimEvidence, Run
 from hystbench.published import FILTERS
 
@@ -264,7 +263,7 @@ def lms_runs(evidence: ClaimEvidence, models: Iterable[str] = FILTERS) -> list[R
         If there is none.
     """
     wanted = tuple(models)
-    runs = [run for run in twin_runs(evidence.runs).values() if run.model in wanted]
+    runs = [run for run in evidence.twin_runs.values() if run.model in wanted]
     if not runs:
         raise NotTestable(f"not run: {' and '.join(wanted)}")
     return runs

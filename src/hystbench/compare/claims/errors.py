@@ -2,12 +2,12 @@
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
+from statistics import median
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from hystbench.compare.cells import twin_runs
 from hystbench.compare.claims.claim import NotTestable, Numbers, need_runs, number
 from hystbench.compare.claims.statistics import rank_correlation
 from hystbench.compare.evidence import Cell, ClaimEvidence
@@ -45,12 +45,12 @@ def errors_on(
             for pair in evidence.published
         }
     else:
-        runs = twin_runs(evidence.runs)
-        found = {cell: run.error(metric) for cell, run in runs.items()}
+        runs = evidence.twin_runs.items()
+        found = {cell: run.error(metric) for cell, run in runs}
         for signal, drawn in evidence.drawn.items():
-            for model, each in drawn.errors:
+            for (model, each), errors in drawn.errors.items():
                 if each == metric and (signal, model) in found:
-                    found[signal, model] = drawn.median(model, metric)
+                    found[signal, model] = median(errors)
     need_runs([(signal, model) for signal in signals for model in models], found)
     values = [[found[signal, model] for model in models] for signal in signals]
     return pd.DataFrame(values, index=list(signals), columns=models)

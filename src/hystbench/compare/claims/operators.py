@@ -28,25 +28,11 @@ def sine(amplitude: float, cycles: int, samples: int = 400) -> FloatArray:
     return amplitude * np.sin(phase)
 
 
-def plays(evidence: ClaimEvidence) -> tuple[FloatArray, FloatArray]:
-    """Give a sine of the paper's amplitude, and thresholds of 31 plays across it."""
-    count, limit = evidence.text.filter_length + 1, evidence.text.amplitude_a
-    return sine(limit, 3), np.arange(count) / count * limit
-
-
-def generalized_plays(
-    evidence: ClaimEvidence,
-) -> tuple[FloatArray, FloatArray, Envelope]:
-    """Give the sine, the thresholds and the published envelopes."""
-    text = evidence.text
-    limit, envelope = text.amplitude_a, text.envelope
-    return sine(limit, 3), thresholds(text.filter_length, limit, envelope), envelope
-
-
 def of_play(evidence: ClaimEvidence) -> Numbers:
-    """Run plays along a sine at two speeds, and mirror the loop of equal weights."""
-    v, r = plays(evidence)
-    return {**at_two_speeds(play, v, r), "asymmetry": loop_asymmetry(play, v, r)}
+    """Run 31 plays along a sine at two speeds, and mirror the loop of equal weights."""
+    count, limit = evidence.text.filter_length + 1, evidence.text.amplitude_a
+    v, r = sine(limit, 3), np.arange(count) / count * limit
+    return {**at_two_speeds(play, v, r), "asymmetry": loop_asymmetry(play(v, r))}
 
 
 def at_two_speeds(operator: Operator, v: FloatArray, r: FloatArray) -> Numbers:
@@ -58,10 +44,13 @@ def at_two_speeds(operator: Operator, v: FloatArray, r: FloatArray) -> Numbers:
     return {"apart": apart, "excess": max(float(steps.max()), 0.0)}
 
 
-def loop_asymmetry(operator: Operator, v: FloatArray, r: FloatArray) -> float:
-    """Largest |F(t) - c + F(t + half a period) - c| of a steady loop, per height."""
-    period = (len(v) - 1) // 3
-    loop = operator(v, r)[-period:].mean(axis=1)
+def loop_asymmetry(run: FloatArray) -> float:
+    """Largest |F(t) - c + F(t + half a period) - c| of a steady loop, per height.
+
+    The loop is the last of three, of all operators with equal weights.
+    """
+    period = (len(run) - 1) // 3
+    loop = run[-period:].mean(axis=1)
     centred = loop - (loop.max() + loop.min()) / 2
     return float(np.abs(centred + np.roll(centred, period // 2)).max() / np.ptp(loop))
 
@@ -72,13 +61,12 @@ def of_generalized_play(evidence: ClaimEvidence) -> Numbers:
     The loop of equal weights is mirrored, and the envelopes' slopes at the ends of the
     range are taken.
     """
-    v, r, envelope = generalized_plays(evidence)
+    limit, envelope = evidence.text.amplitude_a, evidence.text.envelope
+    v, r = sine(limit, 3), thresholds(evidence.text.filter_length, limit, envelope)
     run = generalized_play(v, r, envelope)
     apart = np.abs(run - generalized_play_eq12(v, r, envelope)).max(axis=1)
     found = {
-        "asymmetry": loop_asymmetry(
-            lambda v, r: generalized_play(v, r, envelope), v, r
-        ),
+        "asymmetry": loop_asymmetry(run),
         "apart": apart.max(),
         "later": apart[len(v) // 3 :].max(),
     }
@@ -90,7 +78,7 @@ def of_generalized_play(evidence: ClaimEvidence) -> Numbers:
         formula = np.maximum(gamma_right(at, envelope) - r, inner)
         return float(np.abs(formula - reached).max() / height)
 
-    u = np.linspace(-evidence.text.amplitude_a, evidence.text.amplitude_a, 2001)
+    u = np.linspace(-limit, limit, 2001)
     for side, gamma, pick in (
         ("left", gamma_left, np.min),
         ("right", gamma_right, np.max),

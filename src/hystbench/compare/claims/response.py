@@ -55,13 +55,9 @@ def settled(x: FloatArray) -> FloatArray:
 
 def chirp_rates(evidence: ClaimEvidence) -> Numbers:
     """Take the sweep rate that each of the two printed moments implies."""
-    text = evidence.text
-    first, second = (
-        (moment.frequency_hz - text.chirp_from_hz) / moment.time_s
-        for moment in (text.chirp_minimum, text.chirp_resonance)
-    )
+    first, second = evidence.text.chirp_rates
     return {
-        "from_hz": text.chirp_from_hz,
+        "from_hz": evidence.text.chirp_from_hz,
         "first": first,
         "second": second,
         "apart": abs(second / first - 1),

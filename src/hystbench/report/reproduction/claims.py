@@ -16,7 +16,6 @@ from hystbench.report.table import (
     PageTable,
     number,
     table_of,
-    words,
 )
 
 #: How a verdict looks; one that is not listed looks as text.
@@ -43,7 +42,7 @@ def counts_table(claims: Sequence[Row]) -> PageTable:
         counted["fitted in part, on the held-out signals alone"] = alone
         verdicts += [verdict for verdict in alone if verdict not in verdicts]
     rows = [
-        [words(shown), *(number(found[each]) for each in verdicts)]
+        [Cell(shown), *(number(found[each]) for each in verdicts)]
         for shown, found in counted.items()
     ]
     return PageTable(
@@ -126,4 +125,4 @@ def audit_table(audit: Sequence[Row], caption: str, file: Link) -> PageTable:
 
 
 def _kind(row: Row) -> Cell:
-    return words(row["kind"], "bad" if row["kind"] == "conflict" else "")
+    return Cell(row["kind"], mark="bad" if row["kind"] == "conflict" else "")

@@ -18,7 +18,6 @@ from hystbench.report.table import (
     PageTable,
     number,
     table_of,
-    words,
 )
 
 #: What a half is called in a table.
@@ -51,7 +50,7 @@ def headline_table(cells: Sequence[ComparedCell], half: str) -> PageTable:
         columns += [Heading("paper", True, group), Heading("ours", True, group)]
     rows = []
     for signal in signals:
-        row = [words(signal_title(signal))]
+        row = [Cell(signal_title(signal))]
         for model in models:
             cell = by_key[signal, model]
             printed = cell.published + MARKS[cell.published_consistent]
@@ -76,7 +75,7 @@ def headline_table(cells: Sequence[ComparedCell], half: str) -> PageTable:
 
 def _ours(cell: ComparedCell) -> Cell:
     if not cell.ran:
-        return words("not run", "quiet")
+        return Cell("not run", mark="quiet")
     if cell.ours is None:
         return number(math.inf)
     shown = f"{cell.ours:.4f}" if cell.ours >= 1e-3 else f"{cell.ours:.2g}"
@@ -110,7 +109,7 @@ def _near(name: str, part: Sequence[ComparedCell]) -> list[Cell]:
     found = nearness(part)
     ran, near, worst = found["cells"], within(part), found["worst_finite"]
     return [
-        words(name),
+        Cell(name),
         number(ran, f"{ran} of {len(part)}"),
         number(near, f"{near} of {ran}") if ran else number(None),
         _factor(found["median_abs_log10_ratio"]),
@@ -145,8 +144,8 @@ def paper_table(shown: Shown, halves: Mapping[str, str]) -> PageTable:
             Body(
                 [
                     [
-                        words(signal_title(row["signal"])),
-                        words(HALF_WORDS[halves[row["signal"]]]),
+                        Cell(signal_title(row["signal"])),
+                        Cell(HALF_WORDS[halves[row["signal"]]]),
                         *(_printed(row[key]) for key in given),
                     ]
                     for row in rows
@@ -177,7 +176,7 @@ def _printed(text: str) -> Cell:
     try:
         return number(float(text.rstrip("†‡")), text)
     except ValueError:
-        return words(text, "bad" if text == "diverged" else "quiet")
+        return Cell(text, mark="bad" if text == "diverged" else "quiet")
 
 
 def all_cells(cells: Sequence[ComparedCell], caption: str, file: Link) -> PageTable:
@@ -258,7 +257,7 @@ def measured_headline(errors: Sequence[Row]) -> PageTable:
         return lambda signal: (
             _error(by_key[signal, model])
             if (signal, model) in by_key
-            else words("not run", "quiet")
+            else Cell("not run", mark="quiet")
         )
 
     models = in_order(row["model"] for row in errors)

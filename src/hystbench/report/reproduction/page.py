@@ -28,21 +28,17 @@ _HEADINGS = {"mse": "MSE", "re": "RE", "error_kind": "error"}
 def page(content: ReproductionContent) -> str:
     """Make the page, of the reproduction or of a measured dataset."""
     found = content.found
-    figures = {figure.name: figure for figure in content.figures}
-    headline = figures.pop(HEADLINE, None)
-    parts = (
+    own = (
         _measured(found, content)
         if isinstance(found, Measured)
         else _twin(found, content)
     )
+    figures = {figure.name: figure for figure in content.figures}
+    headline = figures.pop(HEADLINE, None)
     return one_micro(
         page_environment("hystbench.report.reproduction")
         .get_template(TEMPLATE)
         .render(
-            title=_title(found),
-            sentences=words.verdict(found),
-            source=words.source(found),
-            missing=words.missing(found, [f.name for f in content.figures]),
             headline=headline,
             # the paper's figures first, by their number
             figures=sorted(
@@ -51,27 +47,30 @@ def page(content: ReproductionContent) -> str:
             ),
             more=[_as_it_is(each) for each in content.tables],
             measured=isinstance(found, Measured),
-            files=_files(content),
-            **parts,
+            **own,
         )
     )
 
 
-def _title(found: Reproduction | Measured) -> str:
-    if isinstance(found, Measured):
-        return f"hystbench: five models on the measured records of {found.name}"
-    return "hystbench: a filter of generalized play operators, reproduced on a twin"
-
-
 def _twin(found: Reproduction, content: ReproductionContent) -> dict[str, object]:
+    """Fill what the page says of the reproduction alone."""
     halves = {cell.signal: cell.half for cell in found.cells}
     held = [cell for cell in errors.filter_cells(found.cells, "held-out") if cell.ran]
+    folder, told = content.compare, content.captions
 
     def file(name: str) -> Link:
-        return Link("CSV", f"{content.compare}/{name}.csv")
+        return Link("CSV", f"{folder}/{name}.csv")
 
-    told = content.captions
     return {
+        "title": "hystbench: a filter of generalized play operators, reproduced on a "
+        "twin",
+        "sentences": [words.of_errors(held), words.of_claims(found.on_held_out)],
+        "source": "The paper's numbers are of a measured actuator whose data are not "
+        "public. Ours are of its twin, a simulation.",
+        "missing": [
+            *words.not_run(found.cells),
+            *words.not_drawn(words.OF_TWIN, content.figures),
+        ],
         "first": errors.headline_table(
             found.cells, "held-out" if held else "calibrated"
         ),
@@ -83,21 +82,46 @@ def _twin(found: Reproduction, content: ReproductionContent) -> dict[str, object
         "counted": claims.counts_table(found.claims),
         "claims": claims.claims_table(found.claims, told["claims"], file("claims")),
         "audit": claims.audit_table(found.audit, told["audit"], file("audit")),
+        "files": [
+            _file(f"{folder}/verdict.md", "the verdict in full"),
+            _file(f"{folder}/cells.csv", "every printed error with ours"),
+            _file(f"{folder}/off.csv", "errors off by more than a factor of 2"),
+            _file(f"{folder}/claims.csv", "every claim, verdict and evidence"),
+            _file(f"{folder}/audit.csv", "the audit of the paper's numbers"),
+            _file(f"{folder}/summary.json", "how near ours come, in numbers"),
+            *(
+                _file(each.file.href, "a table of the paper, ours beside it")
+                for each in found.tables
+            ),
+            *_further_files(content),
+        ],
     }
 
 
 def _measured(found: Measured, content: ReproductionContent) -> dict[str, object]:
-    stem = f"{content.compare}/tables/errors"
+    """Fill what the page says of a measured dataset alone."""
+    folder = content.compare
+    stem = f"{folder}/tables/errors"
     files = (
-        Link("CSV", f"{content.compare}/errors.csv"),
+        Link("CSV", f"{folder}/errors.csv"),
         Link("Markdown", f"{stem}.md"),
         Link("LaTeX", f"{stem}.tex"),
     )
     return {
+        "title": f"hystbench: five models on the measured records of {found.name}",
+        "sentences": words.of_measured(found),
+        "source": "The paper has no numbers for these records, so the errors stand "
+        "alone.",
+        "missing": words.not_drawn(words.OF_MEASURED, content.figures),
         "first": errors.measured_headline(found.errors),
         "errors": errors.measured_table(
             found.errors, content.captions["errors"], files
         ),
+        "files": [
+            _file(f"{folder}/errors.csv", "every error, a row a record and model"),
+            _file(f"{stem}.csv", "the same, a row a record"),
+            *_further_files(content),
+        ],
     }
 
 
@@ -143,33 +167,20 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def _files(content: ReproductionContent) -> list[tuple[Link, str]]:
-    """List the files beside the page, and what each holds."""
-    folder = content.compare
-    if isinstance(content.found, Measured):
-        told = [
-            (f"{folder}/errors.csv", "every error, a row a record and model"),
-            (f"{folder}/tables/errors.csv", "the same, a row a record"),
-        ]
-    else:
-        told = [
-            (f"{folder}/verdict.md", "the verdict in full"),
-            (f"{folder}/cells.csv", "every printed error with ours"),
-            (f"{folder}/off.csv", "errors off by more than a factor of 2"),
-            (f"{folder}/claims.csv", "every claim, verdict and evidence"),
-            (f"{folder}/audit.csv", "the audit of the paper's numbers"),
-            (f"{folder}/summary.json", "how near ours come, in numbers"),
-            *(
-                (each.file.href, "a table of the paper, ours beside it")
-                for each in content.found.tables
-            ),
-        ]
-    told += [
-        (each.file.href, each.caption.partition(".")[0]) for each in content.tables
+def _further_files(content: ReproductionContent) -> list[tuple[Link, str]]:
+    """List the files of further tables and of figures, and what each holds."""
+    return [
+        *(
+            _file(each.file.href, each.caption.partition(".")[0])
+            for each in content.tables
+        ),
+        *(
+            _file(link.href, f"figure, {link.label}")
+            for figure in content.figures
+            for link in figure.files
+        ),
     ]
-    told += [
-        (link.href, f"figure, {link.label}")
-        for f in content.figures
-        for link in f.files
-    ]
-    return [(Link(href, href), what) for href, what in told]
+
+
+def _file(href: str, what: str) -> tuple[Link, str]:
+    return Link(href, href), what

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Sequence
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.summary import nearness
 from hystbench.figures.style import look
-from hystbench.report.reproduction.errors import filter_cells, within
-from hystbench.report.reproduction.read import Measured, Reproduction, Row
+from hystbench.report.picture import PagePicture
+from hystbench.report.reproduction.errors import within
+from hystbench.report.reproduction.read import Measured, Row
 from hystbench.sentences import listed
 
 FREE_RUN = "free-run simulation"
@@ -37,15 +38,8 @@ OF_MEASURED = (
 )
 
 
-def verdict(found: Reproduction | Measured) -> list[str]:
-    """Give the verdict: a sentence on errors, one on claims or on divergence."""
-    if isinstance(found, Measured):
-        return _of_measured(found)
-    return [_of_errors(found.cells), _of_claims(found.on_held_out)]
-
-
-def _of_errors(cells: Sequence[ComparedCell]) -> str:
-    held = [cell for cell in filter_cells(cells, "held-out") if cell.ran]
+def of_errors(held: Sequence[ComparedCell]) -> str:
+    """Say how near the held-out errors that were run come to the paper's."""
     if not held:
         return (
             "No filter was run on a signal that the twin was not fitted to, so nothing "
@@ -65,7 +59,7 @@ def _of_errors(cells: Sequence[ComparedCell]) -> str:
     )
 
 
-def _of_claims(on_held_out: Sequence[Row]) -> str:
+def of_claims(on_held_out: Sequence[Row]) -> str:
     """Count what stands of the results that held-out signals alone can judge."""
     about = "of the paper that can be judged on held-out signals alone"
     if not on_held_out:
@@ -76,7 +70,7 @@ def _of_claims(on_held_out: Sequence[Row]) -> str:
     return f"Of {len(on_held_out)} {results} {about}, {standing} {stand}."
 
 
-def _of_measured(found: Measured) -> list[str]:
+def of_measured(found: Measured) -> list[str]:
     """Say which filter does best, and which models diverge.
 
     The RDGPI model runs free, which is another task, so it is not ranked beside them.
@@ -103,41 +97,24 @@ def _of_measured(found: Measured) -> list[str]:
         said = f"No filter came to an end on the {count} of {found.name}."
     lost = dict.fromkeys(row["model"] for row in found.errors if not row["re"])
     if not lost:
-        return [said, f"{_all(len(models))} finite on every record."]
+        one, many = "The one model that was run stays", f"All {len(models)} models stay"
+        stay = one if len(models) == 1 else many
+        return [said, f"{stay} finite on every record."]
     names = listed([look(model).label for model in lost])
     return [said, f"{len(lost)} of {len(models)} models diverged on a record: {names}."]
 
 
-def _all(count: int) -> str:
-    return (
-        "The one model that was run stays" if count == 1 else f"All {count} models stay"
-    )
-
-
-def source(found: Reproduction | Measured) -> str:
-    """Say what is compared with what."""
-    if isinstance(found, Measured):
-        return "The paper has no numbers for these records, so the errors stand alone."
-    return (
-        "The paper's numbers are of a measured actuator whose data are not public. "
-        "Ours are of its twin, a simulation."
-    )
-
-
-def missing(found: Reproduction | Measured, figures: Iterable[str]) -> list[str]:
-    """Say what a full run would have shown beside this."""
-    there = set(figures)
-    said = []
-    if isinstance(found, Reproduction):
-        said += _not_run(found.cells)
-    expected = OF_MEASURED if isinstance(found, Measured) else OF_TWIN
+def not_drawn(expected: Iterable[str], figures: Iterable[PagePicture]) -> list[str]:
+    """Say which figures a full run would have drawn beside these."""
+    there = {figure.name for figure in figures}
     absent = [name for name in expected if name not in there]
-    if absent:
-        said.append(f"Not drawn, as the run has not what they show: {listed(absent)}.")
-    return said
+    if not absent:
+        return []
+    return [f"Not drawn, as the run has not what they show: {listed(absent)}."]
 
 
-def _not_run(cells: Sequence[ComparedCell]) -> list[str]:
+def not_run(cells: Sequence[ComparedCell]) -> list[str]:
+    """Say what of the benchmark was not run."""
     absent = [cell for cell in cells if not cell.ran]
     if not absent:
         return []
