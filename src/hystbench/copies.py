@@ -23,22 +23,15 @@ Rows = NDArray[np.float64]  # shape (2, n): input and output
 
 
 class CommonPiece(NamedTuple):
-    """Samples that stand in a row in two records.
-
-    Parameters
-    ----------
-    samples : int
-        Of the record with fewer of them there.
-    first, other_first : int
-        Where they begin in each.
-    exact : bool
-        Whether they are equal, and not only up to rounding.
-    """
+    """Samples that stand in a row in two records."""
 
     samples: int
+    """Of the record with fewer of them there."""
     first: int
     other_first: int
+    """Where they begin in each."""
     exact: bool
+    """Whether they are equal, and not only up to rounding."""
 
 
 class Written:

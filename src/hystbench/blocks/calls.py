@@ -49,44 +49,28 @@ def _silent(line: str) -> None:
 
 @dataclass
 class Calls:
-    """Outputs of simulators, each made by a call or known from an earlier one.
-
-    Parameters
-    ----------
-    bound : int, optional
-        Calls that may be made at most.
-    reserve : int
-        Of these, calls that are kept back until :meth:`release`.
-    kept : KeptOutputs, optional
-        Outputs on disk, of this run and of earlier ones.
-    say : callable
-        Told a line of progress at a time.
-    clock : callable
-        Gives seconds.
-    worth : float
-        Seconds that a call must take for its output to go to disk.
-
-    Attributes
-    ----------
-    made, found : int
-        Calls that were made, and those that outputs on disk have spared.
-    seconds : float
-        What the calls took together.
-    expected : int
-        Calls that are likely to be needed at most, those made and spared among them;
-        0 where that is not known.
-    """
+    """Outputs of simulators, each made by a call or known from an earlier one."""
 
     bound: int | None = None
+    """Calls that may be made at most."""
     reserve: int = 0
+    """Of these, calls that are kept back until :meth:`release`."""
     kept: KeptOutputs | None = None
+    """Outputs on disk, of this run and of earlier ones."""
     say: Callable[[str], None] = _silent
+    """Told a line of progress at a time."""
     clock: Callable[[], float] = time.monotonic
+    """Gives seconds."""
     worth: float = WORTH
+    """Seconds that a call must take for its output to go to disk."""
     made: int = field(default=0, init=False)
+    """Calls that were made."""
     found: int = field(default=0, init=False)
+    """Calls that outputs on disk have spared."""
     seconds: float = field(default=0.0, init=False)
+    """What the calls took together."""
     expected: int = field(default=0, init=False)
+    """Calls likely to be needed at most, with those made and spared; 0: not known."""
     _memory: dict[tuple[str, bytes, int, float], FloatArray] = field(
         default_factory=dict, init=False, repr=False
     )

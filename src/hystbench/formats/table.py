@@ -28,29 +28,20 @@ INTERVALS = frozenset(
 
 @dataclass(frozen=True, repr=False)
 class Column:
-    """One column of a file.
-
-    Parameters
-    ----------
-    name : str
-        As dataset.yaml names it. What lies in a group of the file has the group before
-        a slash.
-    values : ndarray, shape (n,)
-        NaN where the file has no number.
-    unit : str, optional
-        As the file tells it.
-    sampling_frequency_hz : float, optional
-        Of this column alone, as the file tells it.
-    in_groups : bool
-        Whether a slash in the name stands between a group and a name in it. In a text
-        it does not: a header may be ``speed [m/s]``.
-    """
+    """One column of a file."""
 
     name: str
+    """As dataset.yaml names it. What lies in a group of the file has the group before a
+    slash."""
     values: FloatArray
+    """Shape (n,); NaN where the file has no number."""
     unit: str | None = None
+    """As the file tells it."""
     sampling_frequency_hz: float | None = None
+    """Of this column alone, as the file tells it."""
     in_groups: bool = True
+    """Whether a slash in the name stands between a group and a name in it. In a text it
+    does not: a header may be ``speed [m/s]``."""
 
     @property
     def group(self) -> str:
@@ -65,28 +56,18 @@ class Column:
 
 @dataclass(frozen=True, repr=False)
 class Table:
-    """Columns of one file; they may differ in length.
-
-    Parameters
-    ----------
-    path : Path
-    columns : tuple of Column
-    numbers : mapping of str to float
-        Lone numbers of the file, such as a sampling frequency, by name.
-    notes : tuple of str
-        What a reader should know: what was left out, what was taken for what.
-    rows : sequence of int, optional
-        The row of each sample, where the file is a text: as editors count.
-    others : tuple of str
-        Names of columns that were not read.
-    """
+    """Columns of one file; they may differ in length."""
 
     path: Path
     columns: tuple[Column, ...]
     numbers: Mapping[str, float] = field(default_factory=dict)
+    """Lone numbers of the file, such as a sampling frequency, by name."""
     notes: tuple[str, ...] = ()
+    """What a reader should know: what was left out, what was taken for what."""
     rows: Sequence[int] | None = None
+    """The row of each sample, where the file is a text: as editors count."""
     others: tuple[str, ...] = ()
+    """Names of columns that were not read."""
 
     @property
     def names(self) -> list[str]:

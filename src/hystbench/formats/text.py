@@ -40,24 +40,16 @@ _UNIT_CELL = re.compile(r"\s*(?:\[(?P<square>[^\]]*)\]|\((?P<round>[^)]*)\))\s*"
 
 @dataclass(frozen=True)
 class Layout:
-    """How a text is laid out.
-
-    Parameters
-    ----------
-    separator, decimal : str
-    names : tuple of str
-        Names of the columns.
-    units : tuple of str, optional
-        Of the columns, where a row of units stands below their names.
-    first : int
-        Index of the first line of numbers.
-    """
+    """How a text is laid out."""
 
     separator: str
     decimal: str
     names: tuple[str, ...]
+    """Names of the columns."""
     units: tuple[str, ...] | None
+    """Of the columns, where a row of units stands below their names."""
     first: int
+    """Index of the first line of numbers."""
 
 
 def read(path: Path, wanted: Collection[str] | None = None) -> Table:

@@ -31,57 +31,37 @@ JITTERS = 0.01
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that a reader should know.
-
-    Parameters
-    ----------
-    kind : {"wrong", "missing", "note"}
-        Refused by ``hystbench gap``; to be added to dataset.yaml; good to know.
-    text : str
-    paste : tuple of str
-        Lines for dataset.yaml that mend it.
-    topic : str
-        Findings of one topic say the same of several records.
-    record : str
-        Whom it concerns; empty where that is no single record.
-    """
+    """One thing that a reader should know."""
 
     kind: str
+    """``wrong``: ``hystbench gap`` refuses it; ``missing``: dataset.yaml lacks it; or
+    ``note``."""
     text: str
     paste: tuple[str, ...] = ()
+    """Lines for dataset.yaml that mend it."""
     topic: str = ""
+    """Findings of one topic say the same of several records."""
     record: str = ""
+    """Whom it concerns; empty where that is no single record."""
 
 
 @dataclass(frozen=True, eq=False)
 class Check:
-    """A dataset that was looked at.
-
-    Parameters
-    ----------
-    dataset : Dataset
-    records : tuple of Record
-        With the periods that were found.
-    facts : tuple of Facts
-        In their order.
-    floor : Floor
-    base : Model
-        Beside which effects were simulated.
-    left : float
-        Rms of what it leaves on the fit records, in the output's unit.
-    findings : tuple of Finding
-    effects : tuple of SmallestSeen
-        None where they were not simulated.
-    """
+    """A dataset that was looked at."""
 
     dataset: Dataset
     records: tuple[Record, ...]
+    """With the periods that were found."""
     facts: tuple[Facts, ...]
+    """In their order."""
     floor: Floor
     base: Model
+    """Beside which effects were simulated."""
     left: float
+    """Rms of what it leaves on the fit records, in the output's unit."""
     findings: tuple[Finding, ...]
     effects: tuple[SmallestSeen, ...]
+    """None where they were not simulated."""
 
     @property
     def revealed(self) -> tuple[SmallestSeen, ...]:

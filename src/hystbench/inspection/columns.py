@@ -61,20 +61,13 @@ class Flags:
 
 @dataclass(frozen=True)
 class RecordColumns:
-    """One record to be: a group of columns of one length in a file.
-
-    Parameters
-    ----------
-    table : Table
-    group : str
-        Where the columns lie in the file; empty at the top.
-    columns : mapping of str to Column
-        By the name that they have in every record.
-    """
+    """One record to be: a group of columns of one length in a file."""
 
     table: Table
     group: str
+    """Where the columns lie in the file; empty at the top."""
     columns: Mapping[str, Column]
+    """By the name that they have in every record."""
 
     @property
     def where(self) -> str:

@@ -33,39 +33,27 @@ TAKEN = 0.99
 
 @dataclass(frozen=True)
 class SmallestSeen:
-    """How strong an effect must be on these records.
-
-    Parameters
-    ----------
-    effect, place : str
-    seen_from : float
-        The rms that it must add for the search to pay for it, as a share of the
-        output's rms about its mean; infinite where nothing it does stands out.
-    value : float
-        The number that says how strong it then is; NaN where none does.
-    number, unit : str
-        That number's name and unit in the block, U and Y for those of the signals.
-    form : str
-        In which it is seen first, with the other numbers of that.
-    absorbed : float
-        Share of the power of what it adds that the base could do as well.
-    rivals : tuple of (str, float)
-        What it can be mistaken for, with the share from which on it can be told;
-        infinite where never. The nearest first.
-    why : str
-        Why it is not revealed; empty where it is.
-    """
+    """How strong an effect must be on these records."""
 
     effect: str
     place: str
     seen_from: float
+    """The rms that it must add for the search to pay for it, as a share of the output's
+    rms about its mean; infinite where nothing it does stands out."""
     value: float
+    """The number that says how strong it then is; NaN where none does."""
     number: str
     unit: str
+    """That number's name and unit in the block, U and Y for those of the signals."""
     form: str
+    """In which it is seen first, with the other numbers of that."""
     absorbed: float
+    """Share of the power of what it adds that the base could do as well."""
     rivals: tuple[tuple[str, float], ...]
+    """What it can be mistaken for, with the share from which on it can be told;
+    infinite where never. The nearest first."""
     why: str
+    """Why it is not revealed; empty where it is."""
 
     @property
     def revealed(self) -> bool:
