@@ -1,7 +1,7 @@
 """Whether a record is a copy of another: all of it or a piece, as it is or rounded."""
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,10 @@ class CommonPiece(NamedTuple):
     """Where they begin in each."""
     exact: bool
     """Whether they are equal, and not only up to rounding."""
+
+    def turned(self) -> Self:
+        """Give the same piece, seen from the other record."""
+        return self._replace(first=self.other_first, other_first=self.first)
 
 
 class Written:
@@ -82,20 +86,15 @@ def common_piece(one: Written, two: Written) -> CommonPiece | None:
                 if found is not None:
                     inside = start + every * found.other_first
                     piece = found._replace(other_first=inside)
-                    return piece if coarse is one else _turned(piece)
+                    return piece if coarse is one else piece.turned()
     return None
-
-
-def _turned(piece: CommonPiece) -> CommonPiece:
-    """Give the same piece, seen from the other record."""
-    return piece._replace(first=piece.other_first, other_first=piece.first)
 
 
 def _shared(one: Rows, two: Rows, one_step: Rows, two_step: Rows) -> CommonPiece | None:
     """Find half or more of the shorter of two runs of samples in the other."""
     if one.shape[1] > two.shape[1]:
         found = _shared(two, one, two_step, one_step)
-        return None if found is None else _turned(found)
+        return None if found is None else found.turned()
     count = one.shape[1]
     least = count // 2 + count % 2
     if count < 4:

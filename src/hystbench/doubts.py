@@ -77,8 +77,7 @@ def _refuse_copy(
     dataset: Dataset, one: Record, two: Record, piece: CommonPiece
 ) -> None:
     if one.use == "fit":
-        one, two = two, one
-        piece = piece._replace(first=piece.other_first, other_first=piece.first)
+        one, two, piece = two, one, piece.turned()
     raise InputError(
         f"{_said(dataset, one, two, piece)}, which is to be fitted; expected records "
         "held out that no fit has seen: measure another, or give both 'use: fit'"

@@ -1,17 +1,22 @@
 """Calls of simulators of somebody's own: kept, counted, bounded, and told of."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from hashlib import blake2b
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hystbench.blocks.kept_outputs import KeptOutputs
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
+
+if TYPE_CHECKING:
+    from hystbench.blocks.simulator import Simulator
 
 MEMORY = 2**24
 """Samples that are kept in memory: the same input asked again costs no call."""
@@ -23,20 +28,6 @@ EVERY = 5.0
 """Seconds between two lines of progress, at least."""
 
 USED_UP = "the calls that --calls allows are used up"
-
-
-class Called(Protocol):
-    """A simulator of somebody's own."""
-
-    @property
-    def label(self) -> str:
-        """By which its outputs are known."""
-
-    def call(self, z: FloatArray, dt: float) -> FloatArray:
-        """Run it once, and check what it gives."""
-
-    def source(self) -> str:
-        """Digest of what it is made of, once it was called."""
 
 
 class CallsUsedUp(InputError):  # noqa: N818  (a bound that was asked for)
@@ -96,7 +87,7 @@ class Calls:
             return self.seconds
         return (self.seconds - self._first) / (self.made - 1)
 
-    def output(self, simulator: Called, z: FloatArray, dt: float) -> FloatArray:
+    def output(self, simulator: Simulator, z: FloatArray, dt: float) -> FloatArray:
         """Give what a simulator gives for samples, or what it gave for them before.
 
         The first input of each one is called in any case, and what the disk has of it
@@ -104,7 +95,7 @@ class Calls:
 
         Parameters
         ----------
-        simulator : Called
+        simulator : Simulator
         z : ndarray, shape (n,)
         dt : float
             Sampling interval in seconds.
@@ -118,7 +109,7 @@ class Calls:
         CallsUsedUp
             If a call is needed, and no more are allowed.
         InputError
-            As :meth:`Called.call` does.
+            As :meth:`Simulator.call` does.
         """
         digest = blake2b(z.tobytes(), digest_size=16).digest()
         key = (simulator.label, digest, len(z), dt)
@@ -126,7 +117,7 @@ class Calls:
             self._remember(key, self._found_or_made(simulator, z, dt))
         return self._memory[key].copy()
 
-    def fresh(self, simulator: Called, z: FloatArray, dt: float) -> FloatArray:
+    def fresh(self, simulator: Simulator, z: FloatArray, dt: float) -> FloatArray:
         """Call a simulator, whatever it gave before; the output is not kept.
 
         Raises
@@ -134,7 +125,7 @@ class Calls:
         CallsUsedUp
             If no more calls are allowed.
         InputError
-            As :meth:`Called.call` does.
+            As :meth:`Simulator.call` does.
         """
         return self._made(simulator, z, dt)[0]
 
@@ -146,7 +137,9 @@ class Calls:
         """Allow the calls that were kept back."""
         self.reserve = 0
 
-    def _found_or_made(self, simulator: Called, z: FloatArray, dt: float) -> FloatArray:
+    def _found_or_made(
+        self, simulator: Simulator, z: FloatArray, dt: float
+    ) -> FloatArray:
         kept, name = self.kept, simulator.label
         first = name not in self._begun
         if kept is not None and not first:
@@ -174,7 +167,7 @@ class Calls:
         return y
 
     def _made(
-        self, simulator: Called, z: FloatArray, dt: float
+        self, simulator: Simulator, z: FloatArray, dt: float
     ) -> tuple[FloatArray, float]:
         """Call a simulator, count the call and take its time."""
         if self.bound is not None and self.made >= self.bound - self.reserve:

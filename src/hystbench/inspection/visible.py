@@ -36,23 +36,23 @@ class SmallestSeen:
     """How strong an effect must be on these records."""
 
     effect: str
-    place: str
-    seen_from: float
+    place: str = ""
+    seen_from: float = np.inf
     """The rms that it must add for the search to pay for it, as a share of the output's
     rms about its mean; infinite where nothing it does stands out."""
-    value: float
+    value: float = np.nan
     """The number that says how strong it then is; NaN where none does."""
-    number: str
-    unit: str
+    number: str = ""
+    unit: str = ""
     """That number's name and unit in the block, U and Y for those of the signals."""
-    form: str
+    form: str = ""
     """In which it is seen first, with the other numbers of that."""
-    absorbed: float
+    absorbed: float = 0.0
     """Share of the power of what it adds that the base could do as well."""
-    rivals: tuple[tuple[str, float], ...]
+    rivals: tuple[tuple[str, float], ...] = ()
     """What it can be mistaken for, with the share from which on it can be told;
     infinite where never. The nearest first."""
-    why: str
+    why: str = ""
     """Why it is not revealed; empty where it is."""
 
     @property
@@ -109,11 +109,7 @@ def seen_effects(
         rest = [item for item in measured if item.shape.effect != name]
         found.append(judge.seen(mine, rest))
     for name, why in declined.items():
-        found.append(
-            SmallestSeen(
-                name, "", np.inf, np.nan, "", "", "", 0.0, (), f"not tried: {why}"
-            )
-        )
+        found.append(SmallestSeen(name, why=f"not tried: {why}"))
     return tuple(sorted(found, key=lambda item: (item.seen_from, item.effect)))
 
 
@@ -220,22 +216,18 @@ class _Judge:
         self, mine: Sequence[_Measured], rest: Sequence[_Measured]
     ) -> SmallestSeen:
         """Give what it takes to see an effect, in the form in which it shows first."""
-        found = [*_scaled(mine), *_graded(mine)]
-        first = min(found, key=lambda each: each.share, default=None)
-        item = min(mine, key=lambda each: each.needed) if first is None else first.item
-        share = float("inf") if first is None else first.share
-        shape = item.shape
-        number, unit = _number(shape)
+        nowhere = _Found(np.inf, np.nan, min(mine, key=lambda each: each.needed))
+        found = [nowhere, *_scaled(mine), *_graded(mine)]
+        share, value, item = min(found, key=lambda each: each.share)
         return SmallestSeen(
-            shape.effect,
-            shape.place,
+            item.shape.effect,
+            item.shape.place,
             share,
-            float("nan") if first is None else first.value,
-            number,
-            unit,
-            _words(shape),
+            value,
+            *_number(item.shape),
+            _words(item.shape),
             item.absorbed,
-            () if first is None else self._rivals(item, share, rest),
+            self._rivals(item, share, rest) if np.isfinite(share) else (),
             self._why(item, share),
         )
 

@@ -96,11 +96,10 @@ class ShownDataset(files.Dataset):
         -------
         matplotlib.figure.Figure
         """
-        from hystbench.interface import pictures  # late: it draws
-        from hystbench.interface.picture import drawn
+        from hystbench.interface.picture import drawn, records  # late: it draws
 
         shown = self.records[:DRAWN]
-        return drawn(lambda axes: pictures.records(axes, shown), len(shown), 3, 1.9)
+        return drawn(lambda axes: records(axes, shown), len(shown), 3, 1.9)
 
 
 def load_dataset(path: str | Path) -> ShownDataset:
