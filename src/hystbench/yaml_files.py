@@ -176,6 +176,3 @@ def _check_keys(loader: Any, root: Node, place: str) -> None:
                 )
             lines[name] = line
             waiting.append(value)
-
-
-__all__ = ["load_yaml", "parse_yaml"]

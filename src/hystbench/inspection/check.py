@@ -175,12 +175,10 @@ def _findings(
         lines = [_entry(dataset, item.name, period_samples=item.period) for item in new]
         found.append(_finding("periods", told=told, paste=lines))
     found += [each for item in facts for each in _holes(item)]
-    for item in late(facts):
-        delay: dict[str, Any] = {
-            "ms": 1e3 * item.delay_s,
-            "samples": item.delay_s / item.dt,
-        }
-        found.append(_finding("late", name=item.name, **delay))
+    found += [
+        _finding("late", name=x.name, ms=1e3 * x.delay_s, samples=x.delay_s / x.dt)
+        for x in late(facts)
+    ]
     fit = [item.excitation for item in facts if item.use == "fit"]
     rates, spans = ([x.rate for x in fit], [round(x.span, 12) for x in fit])
     on_the_whole = {

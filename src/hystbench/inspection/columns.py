@@ -12,15 +12,9 @@ from hystbench.device_kinds import DeviceKind
 from hystbench.errors import InputError, refuse_unknown
 from hystbench.formats import Column, Table
 from hystbench.inspection.clocks import clock_of
-from hystbench.inspection.names import (
-    choose,
-    is_known,
-    is_simulated,
-    is_time,
-    split_unit,
-)
+from hystbench.inspection.names import choose, is_simulated, is_time, split_unit
 from hystbench.record import FloatArray
-from hystbench.units import NONE, check_known, plain
+from hystbench.units import NONE, check_known, is_known, plain
 
 LEAST = 20
 """Samples of a signal; fewer are a table of something else."""

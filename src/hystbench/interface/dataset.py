@@ -87,7 +87,19 @@ class ShownDataset(files.Dataset):
         """
         import pandas as pd  # late: it takes half a second
 
-        return pd.concat([_frame(record) for record in self.records], ignore_index=True)
+        frames = []
+        for record in self.records:
+            columns = {
+                "record": record.name,
+                "use": record.use,
+                "time_s": record.time,
+                column_name(record.input.name, record.input.unit): record.u,
+                column_name(record.output.name, record.output.unit): record.y,
+            }
+            if record.simulated is not None:
+                columns["simulated"] = record.simulated
+            frames.append(pd.DataFrame(columns))
+        return pd.concat(frames, ignore_index=True)
 
     def plot(self) -> Picture:
         """Draw each record: input and output over time, and output over input.
@@ -121,18 +133,3 @@ def load_dataset(path: str | Path) -> ShownDataset:
     """
     found = files.load_dataset(path)
     return ShownDataset(**vars(found))
-
-
-def _frame(record: Record) -> pd.DataFrame:
-    import pandas as pd
-
-    columns = {
-        "record": record.name,
-        "use": record.use,
-        "time_s": record.time,
-        column_name(record.input.name, record.input.unit): record.u,
-        column_name(record.output.name, record.output.unit): record.y,
-    }
-    if record.simulated is not None:
-        columns["simulated"] = record.simulated
-    return pd.DataFrame(columns)
