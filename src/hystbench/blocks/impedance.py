@@ -18,7 +18,7 @@ from hystbench.blocks.curve import (
 )
 from hystbench.blocks.force import Dynamics, Force, Motion, against, exported
 from hystbench.blocks.held import Hold
-from hystbench.blocks.parameter import HUGE, choice, number
+from hystbench.blocks.parameter import choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
 from hystbench.record import FloatArray
 
@@ -77,10 +77,10 @@ class Impedance(Dynamics, name="impedance", place="base"):
 
     smooths = False
 
-    mass: float = number("Y s^2/U", "m", -HUGE, HUGE)
-    damping: float = number("Y s/U", "c, of a viscous force", -HUGE, HUGE)
-    stiffness: float = number("Y/U", "k", -HUGE, HUGE)
-    bias: float = number("Y", "constant force", -HUGE, HUGE, 0.0)
+    mass: float = number("Y s^2/U", "m")
+    damping: float = number("Y s/U", "c, of a viscous force")
+    stiffness: float = number("Y/U", "k")
+    bias: float = number("Y", "constant force", default=0.0)
     input: str = choice("what the input is", INPUTS, "position")
 
     @classmethod

@@ -31,8 +31,8 @@ class Parameter:
     output, ``-`` for none."""
     meaning: str
     """One sentence."""
-    low: float = -math.inf
-    high: float = math.inf
+    low: float = -HUGE
+    high: float = HUGE
     """Closed bounds of each number; they bound identification as well."""
     names: tuple[str, ...] = ()
     """Names of the numbers of a sequence; a model file then holds them by name."""
@@ -105,19 +105,19 @@ class Parameter:
 def number(
     unit: str,
     meaning: str,
-    low: float = -math.inf,
-    high: float = math.inf,
+    low: float = -HUGE,
+    high: float = HUGE,
     default: object = MISSING,
 ) -> Any:
-    """Declare a parameter that is one number."""
+    """Declare a parameter that is one number; without bounds it may be any."""
     return _declare(Parameter("number", unit, meaning, low, high), default)
 
 
 def numbers(
     unit: str,
     meaning: str,
-    low: float = -math.inf,
-    high: float = math.inf,
+    low: float = -HUGE,
+    high: float = HUGE,
     names: tuple[str, ...] = (),
     optional: bool = False,
     as_many_as: str = "",
@@ -143,7 +143,7 @@ def text(meaning: str, default: object = MISSING) -> Any:
 def a_threshold(unit: str, name: str, optional: bool = True) -> Any:
     """Declare weights of play operators, one a threshold; optional ones may be ()."""
     meaning = f"{name}, one a threshold{' or none' if optional else ''}"
-    return numbers(unit, meaning, -HUGE, HUGE, (), optional, "thresholds")
+    return numbers(unit, meaning, optional=optional, as_many_as="thresholds")
 
 
 def _declare(parameter: Parameter, default: object) -> Any:
