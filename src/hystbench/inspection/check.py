@@ -64,7 +64,7 @@ class Check:
     """Rms of what it leaves on the fit records, in the output's unit."""
     findings: tuple[Finding, ...]
     effects: tuple[SmallestSeen, ...]
-    """None where they were not simulated."""
+    """Empty where they were not simulated."""
 
     @property
     def revealed(self) -> tuple[SmallestSeen, ...]:
