@@ -1,6 +1,7 @@
 """What a file of measurements holds: named columns of numbers."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, in_line, nearest
 
 FloatArray = NDArray[np.float64]
 
@@ -232,6 +233,20 @@ def fields_of(name: str, array: Any) -> dict[str, Any]:
     """Give the fields of a record array as arrays of their own, by name."""
     names = array.dtype.names
     return {f"{name}/{key}": array[key] for key in names} if names else {name: array}
+
+
+@contextmanager
+def told(path: Path, kind: str) -> Iterator[None]:
+    """Turn what a library raises of a damaged file into one line."""
+    try:
+        yield
+    except InputError:
+        raise
+    except MemoryError as error:
+        raise InputError(f"{path}: more than fits into memory") from error
+    except Exception as error:
+        # Libraries raise anything of what is damaged.
+        raise InputError(f"{path}: no readable {kind} ({in_line(error)})") from error
 
 
 #: Of a matrix: wider ones are pictures or tables of something else.
