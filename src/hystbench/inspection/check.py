@@ -16,9 +16,9 @@ from hystbench.flat import flats
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.floor import Floor, noise_floor
 from hystbench.gap.records.scored_samples import Compared, rms
+from hystbench.inspection.entries import entry_text
 from hystbench.inspection.facts import Facts, facts_of, late
 from hystbench.inspection.visible import SmallestSeen, seen_effects
-from hystbench.inspection.writing import entry_text
 from hystbench.model import Model
 from hystbench.operators import play
 from hystbench.record import Record
