@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 from hystbench.adaptive import make_filter, run_filter
+from hystbench.identification.algorithm import identify_slow_loop
 from hystbench.measurement import measure
 from hystbench.metrics import mean_square_error
 from hystbench.model import load_model
@@ -19,7 +20,6 @@ from hystbench.order_errors import filters_by_order, order_errors
 from hystbench.rdgpi import identify_rdgpi
 from hystbench.settings import read_settings
 from hystbench.signals import make_signal
-from hystbench.slow_loop import identify_slow_loop
 from hystbench.twins.fits import fit
 from hystbench.twins.parts import run
 from hystbench.twins.read import read_twins

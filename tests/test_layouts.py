@@ -309,9 +309,9 @@ def test_a_place_to_write_that_is_somebody_elses_is_refused_first(name, tmp_path
     for item in command.params:
         if not isinstance(item.type, click.Path):
             continue
-        writes = isinstance(item.type, (options.OutputFile, options.OutputFolder))
-        reads = isinstance(item.type, options.InputPlace)
-        assert writes or reads or (name, item.name) in READ
+        writes = item.type in (options.NEW_FILE, options.NEW_FOLDER)
+        counts = isinstance(item.type, options.GuardedPath)
+        assert counts or (name, item.name) in READ
         if writes:
             words = [item.opts[0], str(tmp_path / "mine.csv")]
             result = CliRunner().invoke(command, words)

@@ -2,10 +2,10 @@ import copy
 
 import pytest
 
-from hystbench.config_schema import config_schema
 from hystbench.errors import InputError
 from hystbench.plants import packaged_models
 from hystbench.settings import read_settings
+from hystbench.settings_checks import config_schema
 from tests.conftest import SCHEMA, own_config
 from tests.messages import message
 

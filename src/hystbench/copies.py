@@ -1,7 +1,7 @@
 """Whether a record is a copy of another: all of it or a piece, as it is or rounded."""
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,22 +23,19 @@ Rows = NDArray[np.float64]  # shape (2, n): input and output
 
 
 class CommonPiece(NamedTuple):
-    """Samples that stand in a row in two records.
-
-    Parameters
-    ----------
-    samples : int
-        Of the record with fewer of them there.
-    first, other_first : int
-        Where they begin in each.
-    exact : bool
-        Whether they are equal, and not only up to rounding.
-    """
+    """Samples that stand in a row in two records."""
 
     samples: int
+    """Of the record with fewer of them there."""
     first: int
     other_first: int
+    """Where they begin in each."""
     exact: bool
+    """Whether they are equal, and not only up to rounding."""
+
+    def turned(self) -> Self:
+        """Give the same piece, seen from the other record."""
+        return self._replace(first=self.other_first, other_first=self.first)
 
 
 class Written:
@@ -89,20 +86,15 @@ def common_piece(one: Written, two: Written) -> CommonPiece | None:
                 if found is not None:
                     inside = start + every * found.other_first
                     piece = found._replace(other_first=inside)
-                    return piece if coarse is one else _turned(piece)
+                    return piece if coarse is one else piece.turned()
     return None
-
-
-def _turned(piece: CommonPiece) -> CommonPiece:
-    """Give the same piece, seen from the other record."""
-    return piece._replace(first=piece.other_first, other_first=piece.first)
 
 
 def _shared(one: Rows, two: Rows, one_step: Rows, two_step: Rows) -> CommonPiece | None:
     """Find half or more of the shorter of two runs of samples in the other."""
     if one.shape[1] > two.shape[1]:
         found = _shared(two, one, two_step, one_step)
-        return None if found is None else _turned(found)
+        return None if found is None else found.turned()
     count = one.shape[1]
     least = count // 2 + count % 2
     if count < 4:
@@ -136,16 +128,18 @@ def _last_digit(values: FloatArray) -> FloatArray:
     largest = float(np.abs(values).max()) or 1.0
     some = values[:: max(1, len(values) // PROBED)]
     top = int(np.floor(np.log10(largest)))
-    sizes = [10.0 ** np.floor(np.log10(np.where(x == 0, 1, np.abs(x)))) for x in
-             (some, values)]  # fmt: skip
     for digits in range(1, DIGITS + 1):
         step = 10.0 ** (top + 1 - digits)
         if _whole(some / step) and _whole(values / step):
             return np.full(len(values), step)
-        own = sizes[0] * 10.0 ** (1 - digits)
-        if _whole(some / own):
-            return np.asarray(sizes[1] * 10.0 ** (1 - digits))
+        if _whole(some / (_size(some) * 10.0 ** (1 - digits))):
+            return _size(values) * 10.0 ** (1 - digits)
     return np.full(len(values), largest * 10.0**-DIGITS)
+
+
+def _size(values: FloatArray) -> FloatArray:
+    """Give the power of ten of the first digit of each value."""
+    return np.asarray(10.0 ** np.floor(np.log10(np.where(values == 0, 1, abs(values)))))
 
 
 def _whole(values: FloatArray) -> bool:
@@ -176,18 +170,14 @@ def _places(block: Rows, rows: Rows, block_step: Rows, step: Rows) -> list[int]:
 
     Few samples leave next to none where nothing is copied.
     """
-    first, *others = np.linspace(0, block.shape[1] - 1, 32).astype(int).tolist()
-    there, own = slice(first, first + rows.shape[1] - block.shape[1] + 1), [first]
-    found = np.flatnonzero(
-        _equal(block[:, own], rows[:, there], block_step[:, own], step[:, there])
-    )
-    for k in others:
+    found = np.arange(rows.shape[1] - block.shape[1] + 1)
+    for k in np.linspace(0, block.shape[1] - 1, 32).astype(int):
+        own, there = [k], found + k
+        found = found[
+            _equal(block[:, own], rows[:, there], block_step[:, own], step[:, there])
+        ]
         if not len(found):
             return []
-        at, own = found + k, [k]
-        found = found[
-            _equal(block[:, own], rows[:, at], block_step[:, own], step[:, at])
-        ]
     found = found[np.isin(found, _near(block[0], rows[0]), assume_unique=True)]
     return [int(place) for place in found[:MOST_PLACES]]
 

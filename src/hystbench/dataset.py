@@ -36,21 +36,14 @@ RECORD_NAME = re.compile(r"[^.\-\s{}*?\\\x00-\x1f][^{}*?\\\x00-\x1f]*")
 
 @dataclass(frozen=True)
 class Dataset:
-    """What dataset.yaml says; the samples stay in their files until they are read.
-
-    Parameters
-    ----------
-    path : Path
-        The dataset.yaml itself.
-    name : str
-        Name of the dataset, and of its folder under results/datasets.
-    about : mapping
-        The checked content of dataset.yaml.
-    """
+    """What dataset.yaml says; the samples stay in their files until they are read."""
 
     path: Path
+    """The dataset.yaml itself."""
     name: str
+    """Name of the dataset, and of its folder under results/datasets."""
     about: Mapping[str, Any]
+    """The checked content of dataset.yaml."""
 
     @property
     def record_files(self) -> dict[str, Path]:

@@ -4,7 +4,7 @@ A copy that is held out is refused. The rest are warnings, one line each, with w
 write in dataset.yaml where it is meant after all.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -77,8 +77,7 @@ def _refuse_copy(
     dataset: Dataset, one: Record, two: Record, piece: CommonPiece
 ) -> None:
     if one.use == "fit":
-        one, two = two, one
-        piece = piece._replace(first=piece.other_first, other_first=piece.first)
+        one, two, piece = two, one, piece.turned()
     raise InputError(
         f"{_said(dataset, one, two, piece)}, which is to be fitted; expected records "
         "held out that no fit has seen: measure another, or give both 'use: fit'"
@@ -128,12 +127,11 @@ def _strange_time(dataset: Dataset, records: Sequence[Record]) -> Iterator[str]:
         return
     if named_otherwise(about["column"], about["unit"]) is not None:
         return  # the column's name has told it
-    told: Callable[[Record, float], str | None] = _absurd
     # Slow records beside fast ones are what creep is measured with.
     fastest = max(records, key=_fastest_hz)
     factor = seconds(f"{dataset.path}: time: unit", about["unit"])
     for record in (fastest, *(item for item in records if item is not fastest)):
-        why = told(record, 1.0)
+        why = _absurd(record, 1.0)
         if record is fastest and why is None and _fastest_hz(record) < SLOWEST_HZ:
             hz = _fastest_hz(record)
             why = f"nothing in any record is faster than {hz:.2g} Hz"
@@ -142,7 +140,7 @@ def _strange_time(dataset: Dataset, records: Sequence[Record]) -> Iterator[str]:
         likely = [
             unit
             for unit in TIMES
-            if told(record, seconds("", unit) / factor) is None
+            if _absurd(record, seconds("", unit) / factor) is None
             and (_fastest_hz(fastest) / (seconds("", unit) / factor) >= SLOWEST_HZ)
         ]
         likely.sort(key=lambda unit: abs(np.log(seconds("", unit) / factor)))

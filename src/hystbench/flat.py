@@ -24,40 +24,26 @@ COARSE = 3.0
 
 @dataclass(frozen=True)
 class Flat:
-    """Stretches in which a channel repeats one value while it should move.
-
-    Parameters
-    ----------
-    kind : {"clipped", "stuck"}
-    value : float
-        Of the first stretch.
-    first : int
-        Its first sample, counted from 0.
-    samples, stretches : int
-        Of all stretches of this kind and, where clipped, of this end.
-    """
+    """Stretches in which a channel repeats one value while it should move."""
 
     kind: Literal["clipped", "stuck"]
     value: float
+    """Of the first stretch."""
     first: int
+    """Its first sample, counted from 0."""
     samples: int
     stretches: int
+    """Of all stretches of this kind and, where clipped, of this end."""
 
 
 @dataclass(frozen=True)
 class FlatPart:
-    """Samples in which a channel repeats one value while it should move.
-
-    Parameters
-    ----------
-    kind : {"clipped", "stuck"}
-    first, behind : int
-        Its first sample and the one behind its last, counted from 0.
-    """
+    """Samples in which a channel repeats one value while it should move."""
 
     kind: Literal["clipped", "stuck"]
     first: int
     behind: int
+    """Its first sample and the one behind its last, counted from 0."""
 
 
 def flats(values: FloatArray) -> list[Flat]:

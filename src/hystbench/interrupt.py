@@ -29,24 +29,16 @@ LONGEST_S = 2.0
 
 @dataclass
 class _State:
-    """Where the one handler of this process is.
-
-    Parameters
-    ----------
-    held : int
-        How many blocks are running that must not be cut in two.
-    waiting : int
-        Number of the signal that waits, or was raised last; 0 before any came.
-    since : float
-        When it came, on the clock that never goes back.
-    raised : bool
-        Whether it was raised and not dropped, so that things are being tidied up.
-    """
+    """Where the one handler of this process is."""
 
     held: int = 0
+    """How many blocks are running that must not be cut in two."""
     waiting: int = 0
+    """Number of the signal that waits, or was raised last; 0 before any came."""
     since: float = 0.0
+    """When it came, on the clock that never goes back."""
     raised: bool = False
+    """Whether it was raised and not dropped, so that things are being tidied up."""
 
 
 _state = _State()

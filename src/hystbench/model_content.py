@@ -15,18 +15,12 @@ SOURCES: tuple[str, ...] = get_args(Source)
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where the value of a parameter comes from.
-
-    Parameters
-    ----------
-    source : {"published", "derived", "calibrated"}
-        Printed in a publication, worked out from what is printed, or fitted.
-    note : str
-        One sentence.
-    """
+    """Where the value of a parameter comes from."""
 
     source: str
+    """``published``; ``derived`` from what is published; or ``calibrated``: fitted."""
     note: str
+    """One sentence."""
 
     def __post_init__(self) -> None:
         """Refuse a source that is none of the three."""

@@ -17,8 +17,20 @@ from hystbench.errors import InputError
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
-class _Place(click.Path):
-    """A path that counts as an input or an output of its command."""
+class GuardedPath(click.Path):
+    """A path that counts as an input or an output of its command.
+
+    Parameters
+    ----------
+    take : callable
+        Told of the path: it refuses one that the command must not read or write.
+    **about
+        As for :class:`click.Path`.
+    """
+
+    def __init__(self, take: Callable[[Path], None], **about: Any) -> None:
+        super().__init__(path_type=Path, **about)
+        self.take = take
 
     def convert(
         self,
@@ -39,34 +51,11 @@ class _Place(click.Path):
             raise
         return path
 
-    def take(self, path: Path) -> None:
-        """Tell what the path is for."""
-        raise NotImplementedError
 
-
-class InputPlace(_Place):
-    """A file, or a dataset's folder, that a command reads and must not write over."""
-
-    def take(self, path: Path) -> None:
-        """Hold a file safe; what a folder holds is held safe as it is read."""
-        if not path.is_dir():
-            written.reads(path)
-
-
-class OutputFile(_Place):
-    """A file that a command writes: refused before any work where it may not."""
-
-    def take(self, path: Path) -> None:
-        """Refuse a place that is not free, or that is an input of the command."""
-        written.writes(path)
-
-
-class OutputFolder(_Place):
-    """A folder that a command writes into."""
-
-    def take(self, path: Path) -> None:
-        """Refuse a folder that cannot be written into."""
-        written.check_writable(path)
+def held_safe(path: Path) -> None:
+    """Hold a file safe that is read; what a folder holds is held safe as it is read."""
+    if not path.is_dir():
+        written.reads(path)
 
 
 @contextmanager
@@ -151,11 +140,11 @@ def warn(lines: Iterable[str]) -> None:
         click.echo(f"hystbench: warning: {line}", err=True)
 
 
-FILE = InputPlace(exists=True, dir_okay=False, path_type=Path)
+FILE = GuardedPath(held_safe, exists=True, dir_okay=False)
 #: A dataset.yaml or its folder; what it refers to is held safe as it is read.
-DATASET = InputPlace(path_type=Path)
-NEW_FILE = OutputFile(path_type=Path)
-NEW_FOLDER = OutputFolder(path_type=Path)
+DATASET = GuardedPath(held_safe)
+NEW_FILE = GuardedPath(written.writes)
+NEW_FOLDER = GuardedPath(written.check_writable)
 
 
 @dataclass(frozen=True)

@@ -47,13 +47,7 @@ _SIGNALS = ("voltage", "current", "none-known")
 
 @dataclass(frozen=True)
 class Quantities:
-    """What a device takes and gives.
-
-    Parameters
-    ----------
-    input, output : str
-        One of ``QUANTITIES``.
-    """
+    """What a device takes and gives."""
 
     input: Quantity = "none-known"
     output: Quantity = "none-known"

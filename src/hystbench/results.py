@@ -15,8 +15,10 @@ from hystbench.record import FloatArray, Record
 
 ErrorKind = Literal["one-step a priori", "free-run simulation"]
 
-#: Points of a stored learning curve: more than a figure can show.
+ERRORS = ("mse", "re", "mse_after_transient", "re_after_transient", "convergence_s")
+"""What a run that did not diverge has."""
 CURVE_POINTS = 200
+"""Points of a stored learning curve: more than a figure can show."""
 
 
 def run_result(
@@ -58,13 +60,7 @@ def run_result(
     """
     start = round(transient_fraction * len(record))
     window = max(1, round(smoothing_fraction * len(record)))
-    errors: dict[str, float | None] = {
-        "mse": None,
-        "re": None,
-        "mse_after_transient": None,
-        "re_after_transient": None,
-        "convergence_s": None,
-    }
+    errors: dict[str, float | None] = dict.fromkeys(ERRORS)
     # A filter may diverge before one window is full, or at once.
     window = min(window, len(error))
     smoothed = smoothed_squared_error(error, window) if window else error

@@ -21,21 +21,14 @@ from hystbench.settings_checks import checked
 
 @dataclass(frozen=True)
 class Settings:
-    """A checked config.yaml.
-
-    Parameters
-    ----------
-    config : mapping
-        The content, as the schema has it.
-    dataset : Dataset or None
-        The measured dataset, or None where the twin is the source.
-    warnings : tuple of str
-        What of its records is hardly meant, one line each.
-    """
+    """A checked config.yaml."""
 
     config: Mapping[str, Any]
+    """The content, as the schema has it."""
     dataset: Dataset | None
+    """The measured dataset, or None where the twin is the source."""
     warnings: tuple[str, ...] = ()
+    """What of its records is hardly meant, one line each."""
 
     @property
     def results(self) -> str:

@@ -22,24 +22,16 @@ from hystbench.waveforms.base import Waveform
 
 @dataclass(frozen=True)
 class Signal:
-    """An input sampled uniformly.
-
-    Parameters
-    ----------
-    name : str
-        Name in config.yaml and in every result.
-    dt : float
-        Sampling interval in seconds.
-    u : ndarray, shape (n,)
-        Input in the unit of ``unit``.
-    unit : str
-        Unit of the input.
-    """
+    """An input sampled uniformly."""
 
     name: str
+    """Name in config.yaml and in every result."""
     dt: float
+    """Sampling interval in seconds."""
     u: FloatArray
+    """Input in the unit of ``unit``, shape (n,)."""
     unit: str
+    """Unit of the input."""
 
     def __post_init__(self) -> None:
         """Keep a unit in its one spelling."""

@@ -17,7 +17,14 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 import click
 
 from hystbench.files import read_json
-from hystbench.options import DATASET, FILE, NEW_FILE, NEW_FOLDER, InputPlace
+from hystbench.options import (
+    DATASET,
+    FILE,
+    NEW_FILE,
+    NEW_FOLDER,
+    GuardedPath,
+    held_safe,
+)
 
 
 class SettingsType(click.ParamType[dict[str, Any]]):
@@ -38,7 +45,7 @@ class SettingsType(click.ParamType[dict[str, Any]]):
         return settings
 
 
-class JsonFile(InputPlace):
+class JsonFile(GuardedPath):
     """A JSON file, read."""
 
     def convert(self, *given: Any) -> Any:
@@ -46,7 +53,7 @@ class JsonFile(InputPlace):
         return read_json(super().convert(*given))
 
 
-JSON_FILE = JsonFile(exists=True, dir_okay=False, path_type=Path)
+JSON_FILE = JsonFile(held_safe, exists=True, dir_okay=False)
 FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
 Settings = Annotated[dict[str, Any], SettingsType(), "Settings of the job."]
 In = Annotated[Path, FILE, "File to read."]

@@ -60,6 +60,15 @@ def check_known(place: str, unit: str) -> None:
     _parsed(place, unit)
 
 
+def is_known(unit: str) -> bool:
+    """Tell whether a text is a unit."""
+    try:
+        check_known("", unit)
+    except InputError:
+        return False
+    return True
+
+
 def seconds(place: str, unit: str) -> float:
     """Give how many seconds a unit of time is.
 

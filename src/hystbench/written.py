@@ -215,18 +215,12 @@ def claim_logs(folder: str | Path, logs: Iterable[str]) -> None:
 
 @dataclass
 class CommandFiles:
-    """What one command reads and writes.
-
-    Parameters
-    ----------
-    inputs : dict of (int, int) to Path
-        Files that it reads, by device and number of the file.
-    outputs : dict of Path to Path
-        Files that it will write, as they were given, by where they are.
-    """
+    """What one command reads and writes."""
 
     inputs: dict[tuple[int, int], Path] = field(default_factory=dict)
+    """Files that it reads, by device and number of the file."""
     outputs: dict[Path, Path] = field(default_factory=dict)
+    """Files that it will write, as they were given, by where they are."""
 
 
 _run: ContextVar[CommandFiles | None] = ContextVar("run", default=None)

@@ -111,6 +111,14 @@ def _check_bounds(events: Any, place: str) -> None:
     opened: list[tuple[str | None, int]] = []
     for event in events:
         line = event.start_mark.line + 1
+        if isinstance(event, yaml.CollectionEndEvent):
+            anchor, before = opened.pop()
+            if anchor:
+                sizes[anchor] = whole - before
+            continue
+        if not isinstance(event, yaml.NodeEvent):
+            continue
+        added, begins = 1, isinstance(event, yaml.CollectionStartEvent)
         if isinstance(event, yaml.AliasEvent):
             size = sizes.get(str(event.anchor), 1)
             if size is None:
@@ -118,28 +126,18 @@ def _check_bounds(events: Any, place: str) -> None:
                     f"{place}: line {line}: '*{event.anchor}' inside of what it names; "
                     "expected no circle"
                 )
-            written += 1
-            whole += size
-        elif isinstance(event, yaml.ScalarEvent):
-            written += 1
-            whole += 1
-            if event.anchor:
-                sizes[event.anchor] = 1
-        elif isinstance(event, yaml.CollectionStartEvent):
+            added = size
+        elif event.anchor:
+            sizes[event.anchor] = None if begins else 1
+        if begins:
             opened.append((event.anchor, whole))
-            written += 1
-            whole += 1
-            if event.anchor:
-                sizes[event.anchor] = None
             if len(opened) > DEEPEST:
                 raise InputError(
                     f"{place}: line {line}: more than {DEEPEST} levels of lists and "
                     f"mappings; expected at most {DEEPEST}"
                 )
-        elif isinstance(event, yaml.CollectionEndEvent):
-            anchor, before = opened.pop()
-            if anchor:
-                sizes[anchor] = whole - before
+        written += 1
+        whole += added
         if whole > written + MOST_REPEATED:
             raise InputError(
                 f"{place}: line {line}: aliases (*name) repeat more than "
@@ -176,6 +174,3 @@ def _check_keys(loader: Any, root: Node, place: str) -> None:
                 )
             lines[name] = line
             waiting.append(value)
-
-
-__all__ = ["load_yaml", "parse_yaml"]

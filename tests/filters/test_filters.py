@@ -8,7 +8,7 @@ import pytest
 from hystbench import published
 from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.errors import InputError
-from hystbench.filters import FILTERS, AdaptiveFilter, many, run_many
+from hystbench.filters import FILTERS, AdaptiveFilter, run_many, together
 from hystbench.filters.delayed import DelayedFilter
 from hystbench.filters.gpo import GPOFilter
 from hystbench.filters.together import CHUNK, run_together
@@ -542,7 +542,7 @@ def test_filters_built_apart_are_run_together(signals, workers, monkeypatch):
         asked.append([item.step_size for item in filters])
         return run_together(filters, *rest)
 
-    monkeypatch.setattr(many, "run_together", noted)
+    monkeypatch.setattr(together, "run_together", noted)
     steps = [1e-3 * (7 * k % 16 + 1) for k in range(16)]
     built = [
         GPOFilter(

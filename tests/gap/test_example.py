@@ -10,12 +10,12 @@ from hystbench.dataset import load_dataset
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.example import whole_period, write_example
 from hystbench.gap.records.evidence import load_evidence
+from hystbench.identification.algorithm import identify_slow_loop
 from hystbench.measurement import measure
 from hystbench.model import load_model
 from hystbench.record import Channel, Record
 from hystbench.settings import read_settings
 from hystbench.signals import make_signal
-from hystbench.slow_loop import identify_slow_loop
 from tests.conftest import shorten
 from tests.gap.searched import search
 

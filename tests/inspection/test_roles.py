@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from hystbench.inspection.entries import propose
 from hystbench.inspection.excitation import excitation_of
-from hystbench.inspection.roles import propose
 
 DT = 1e-3
 T = np.arange(4000) * DT

@@ -1,7 +1,7 @@
 """Block ``asymmetry``: positive and negative halves differ."""
 
 from hystbench.blocks.base import PolynomialBlock
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 
 
 class Asymmetry(PolynomialBlock, name="asymmetry", place="material"):
@@ -15,4 +15,4 @@ class Asymmetry(PolynomialBlock, name="asymmetry", place="material"):
 
     terms = (0.0, 1.0, "coefficient")
 
-    coefficient: float = number("1/Y", "weight of the square", -HUGE, HUGE)
+    coefficient: float = number("1/Y", "weight of the square")

@@ -5,7 +5,7 @@ from math import sqrt
 import numpy as np
 
 from hystbench.blocks.force import Force
-from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.parameter import TINY, number
 from hystbench.record import FloatArray
 
 
@@ -25,9 +25,9 @@ class AttachedMass(Force, name="attached-mass", law="attached"):
        6002, 1963.
     """
 
-    mass: float = number("U s^2/Q", "that is attached", TINY, HUGE)
-    damping: float = number("U s/Q", "between the two", 0.0, HUGE)
-    stiffness: float = number("U/Q", "between the two", 0.0, HUGE)
+    mass: float = number("U s^2/Q", "that is attached", TINY)
+    damping: float = number("U s/Q", "between the two", 0.0)
+    stiffness: float = number("U/Q", "between the two", 0.0)
 
     def rows(self) -> FloatArray:
         """Give its row, and one of zeros: it remembers a place and a velocity."""

@@ -1,7 +1,7 @@
 """Block ``backlash``: play at the output joint."""
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 from hystbench.blocks.step import Sampling, Step
 from hystbench.operators import play
 from hystbench.record import FloatArray
@@ -18,7 +18,7 @@ class Backlash(Block, name="backlash", place="mechanics"):
        1989.
     """
 
-    half_width: float = number("Y", "half of the gap", 0.0, HUGE)
+    half_width: float = number("Y", "half of the gap", 0.0)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Follow the input at the edges of the gap."""

@@ -4,7 +4,7 @@ import numpy as np
 
 from hystbench.blocks.force import against
 from hystbench.blocks.hysteretic_force import HystereticForce
-from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.parameter import TINY, number
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.record import FloatArray
@@ -28,8 +28,8 @@ class BoucWen(HystereticBlock, name="bouc-wen", place="material"):
        and Control Using the Bouc-Wen Model, Wiley, 2007.
     """
 
-    weight: float = number("-", "slope of h in the output, near rest", -HUGE, HUGE)
-    yield_distance: float = number("U", "way in which h yields", TINY, HUGE)
+    weight: float = number("-", "slope of h in the output, near rest")
+    yield_distance: float = number("U", "way in which h yields", TINY)
     sharing: float = number(
         "-",
         "0: Dahl's; 0.5: unloads as steep as at rest; 1: unloads as it loads",

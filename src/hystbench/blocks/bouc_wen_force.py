@@ -1,7 +1,7 @@
 """Block ``bouc-wen-force``: Bouc and Wen's hysteresis, which may grow stiffer."""
 
 from hystbench.blocks.force import Force
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 
 
 class BoucWenForce(Force, name="bouc-wen-force", law="hysteretic"):
@@ -31,15 +31,12 @@ class BoucWenForce(Force, name="bouc-wen-force", law="hysteretic"):
        hysteresis models", Comptes Rendus Mecanique 332 (2004) 51-57.
     """
 
-    stiffness: float = number("U/Q", "where the force is zero", 0.0, HUGE)
+    stiffness: float = number("U/Q", "where the force is zero", 0.0)
     beta: float = number(
-        "1/Q", "half of (unloading - loading stiffness), per force", 0.0, HUGE
+        "1/Q", "half of (unloading - loading stiffness), per force", 0.0
     )
     gamma: float = number(
-        "1/Q",
-        "lowers both stiffnesses, per force; raises them where negative",
-        -HUGE,
-        HUGE,
+        "1/Q", "lowers both stiffnesses, per force; raises them where negative"
     )
 
     @property

@@ -1,6 +1,6 @@
 """Block ``butterfly``: strain that follows the square of a hysteretic field."""
 
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import Growth, Hysteresis, WrappingBlock
 from hystbench.operators import growing_play
@@ -23,8 +23,8 @@ class Butterfly(WrappingBlock, name="butterfly", place="material"):
        Press, 2000.
     """
 
-    coefficient: float = number("Y/U^2", "weight of the square", -HUGE, HUGE)
-    threshold: float = number("U", "half the width of the play", 0.0, HUGE)
+    coefficient: float = number("Y/U^2", "weight of the square")
+    threshold: float = number("U", "half the width of the play", 0.0)
 
     def wrap(
         self, inner: Hysteresis, v: FloatArray, u: FloatArray, dt: float, growth: Growth

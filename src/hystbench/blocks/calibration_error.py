@@ -1,7 +1,7 @@
 """Block ``calibration-error``: a sensor read with the wrong gain and zero."""
 
 from hystbench.blocks.base import PolynomialBlock
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 
 
 class CalibrationError(PolynomialBlock, name="calibration-error", place="sensor"):
@@ -15,4 +15,4 @@ class CalibrationError(PolynomialBlock, name="calibration-error", place="sensor"
     terms = ("offset", "gain")
 
     gain: float = number("-", "ratio of read to true output", 0.1, 10.0)
-    offset: float = number("Y", "reading at zero", -HUGE, HUGE, default=0.0)
+    offset: float = number("Y", "reading at zero", default=0.0)

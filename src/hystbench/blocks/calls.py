@@ -1,17 +1,22 @@
 """Calls of simulators of somebody's own: kept, counted, bounded, and told of."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from hashlib import blake2b
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hystbench.blocks.kept_outputs import KeptOutputs
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
+
+if TYPE_CHECKING:
+    from hystbench.blocks.simulator import Simulator
 
 MEMORY = 2**24
 """Samples that are kept in memory: the same input asked again costs no call."""
@@ -25,20 +30,6 @@ EVERY = 5.0
 USED_UP = "the calls that --calls allows are used up"
 
 
-class Called(Protocol):
-    """A simulator of somebody's own."""
-
-    @property
-    def label(self) -> str:
-        """By which its outputs are known."""
-
-    def call(self, z: FloatArray, dt: float) -> FloatArray:
-        """Run it once, and check what it gives."""
-
-    def source(self) -> str:
-        """Digest of what it is made of, once it was called."""
-
-
 class CallsUsedUp(InputError):  # noqa: N818  (a bound that was asked for)
     """The calls that a user allows are used up."""
 
@@ -49,44 +40,28 @@ def _silent(line: str) -> None:
 
 @dataclass
 class Calls:
-    """Outputs of simulators, each made by a call or known from an earlier one.
-
-    Parameters
-    ----------
-    bound : int, optional
-        Calls that may be made at most.
-    reserve : int
-        Of these, calls that are kept back until :meth:`release`.
-    kept : KeptOutputs, optional
-        Outputs on disk, of this run and of earlier ones.
-    say : callable
-        Told a line of progress at a time.
-    clock : callable
-        Gives seconds.
-    worth : float
-        Seconds that a call must take for its output to go to disk.
-
-    Attributes
-    ----------
-    made, found : int
-        Calls that were made, and those that outputs on disk have spared.
-    seconds : float
-        What the calls took together.
-    expected : int
-        Calls that are likely to be needed at most, those made and spared among them;
-        0 where that is not known.
-    """
+    """Outputs of simulators, each made by a call or known from an earlier one."""
 
     bound: int | None = None
+    """Calls that may be made at most."""
     reserve: int = 0
+    """Of these, calls that are kept back until :meth:`release`."""
     kept: KeptOutputs | None = None
+    """Outputs on disk, of this run and of earlier ones."""
     say: Callable[[str], None] = _silent
+    """Told a line of progress at a time."""
     clock: Callable[[], float] = time.monotonic
+    """Gives seconds."""
     worth: float = WORTH
+    """Seconds that a call must take for its output to go to disk."""
     made: int = field(default=0, init=False)
+    """Calls that were made."""
     found: int = field(default=0, init=False)
+    """Calls that outputs on disk have spared."""
     seconds: float = field(default=0.0, init=False)
+    """What the calls took together."""
     expected: int = field(default=0, init=False)
+    """Calls likely to be needed at most, with those made and spared; 0: not known."""
     _memory: dict[tuple[str, bytes, int, float], FloatArray] = field(
         default_factory=dict, init=False, repr=False
     )
@@ -112,7 +87,7 @@ class Calls:
             return self.seconds
         return (self.seconds - self._first) / (self.made - 1)
 
-    def output(self, simulator: Called, z: FloatArray, dt: float) -> FloatArray:
+    def output(self, simulator: Simulator, z: FloatArray, dt: float) -> FloatArray:
         """Give what a simulator gives for samples, or what it gave for them before.
 
         The first input of each one is called in any case, and what the disk has of it
@@ -120,7 +95,7 @@ class Calls:
 
         Parameters
         ----------
-        simulator : Called
+        simulator : Simulator
         z : ndarray, shape (n,)
         dt : float
             Sampling interval in seconds.
@@ -134,7 +109,7 @@ class Calls:
         CallsUsedUp
             If a call is needed, and no more are allowed.
         InputError
-            As :meth:`Called.call` does.
+            As :meth:`Simulator.call` does.
         """
         digest = blake2b(z.tobytes(), digest_size=16).digest()
         key = (simulator.label, digest, len(z), dt)
@@ -142,7 +117,7 @@ class Calls:
             self._remember(key, self._found_or_made(simulator, z, dt))
         return self._memory[key].copy()
 
-    def fresh(self, simulator: Called, z: FloatArray, dt: float) -> FloatArray:
+    def fresh(self, simulator: Simulator, z: FloatArray, dt: float) -> FloatArray:
         """Call a simulator, whatever it gave before; the output is not kept.
 
         Raises
@@ -150,7 +125,7 @@ class Calls:
         CallsUsedUp
             If no more calls are allowed.
         InputError
-            As :meth:`Called.call` does.
+            As :meth:`Simulator.call` does.
         """
         return self._made(simulator, z, dt)[0]
 
@@ -162,7 +137,9 @@ class Calls:
         """Allow the calls that were kept back."""
         self.reserve = 0
 
-    def _found_or_made(self, simulator: Called, z: FloatArray, dt: float) -> FloatArray:
+    def _found_or_made(
+        self, simulator: Simulator, z: FloatArray, dt: float
+    ) -> FloatArray:
         kept, name = self.kept, simulator.label
         first = name not in self._begun
         if kept is not None and not first:
@@ -190,7 +167,7 @@ class Calls:
         return y
 
     def _made(
-        self, simulator: Called, z: FloatArray, dt: float
+        self, simulator: Simulator, z: FloatArray, dt: float
     ) -> tuple[FloatArray, float]:
         """Call a simulator, count the call and take its time."""
         if self.bound is not None and self.made >= self.bound - self.reserve:

@@ -8,6 +8,7 @@ samples late, takes the same curve. A sine is met within 1e-12 of its amplitude 
 
 from collections.abc import Callable
 from functools import lru_cache
+from math import factorial
 
 import numpy as np
 
@@ -79,6 +80,12 @@ def value_at(points: int, place: float) -> FloatArray:
     np.fill_diagonal(away, 1.0)
     weights: FloatArray = away.prod(axis=1) / _distances(points)
     return weights
+
+
+def derivative_at(points: int, place: float, order: int) -> FloatArray:
+    """Weights of the samples for a derivative of the curve, per sample to its order."""
+    size = float(factorial(order))
+    return through_samples(points, lambda m: size * (m == order), place)
 
 
 def central_difference(points: int, place: float, half_width: float) -> FloatArray:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 from hystbench.record import FloatArray
 
 
@@ -18,7 +18,7 @@ class DeadZone(Block, name="dead-zone", place="drive", curve="dead_zone"):
        Press, 2021: saturation, rate limits and dead zones of actuators.
     """
 
-    half_width: float = number("U", "command at which motion starts", 0.0, HUGE)
+    half_width: float = number("U", "command at which motion starts", 0.0)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Take off the dead zone."""

@@ -1,7 +1,7 @@
 """Block ``drag``: a force inside a mechanism that grows with the velocity squared."""
 
 from hystbench.blocks.force import Force
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 
 
 class Drag(Force, name="drag", law="drag"):
@@ -12,4 +12,4 @@ class Drag(Force, name="drag", law="drag"):
     .. [1] G. K. Batchelor, An Introduction to Fluid Dynamics, Cambridge, 1967.
     """
 
-    coefficient: float = number("U s^2/Q^2", "of the velocity squared", 0.0, HUGE)
+    coefficient: float = number("U s^2/Q^2", "of the velocity squared", 0.0)

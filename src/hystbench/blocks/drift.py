@@ -3,7 +3,7 @@
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import HUGE, number, numbers
+from hystbench.blocks.parameter import number, numbers
 from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -22,13 +22,9 @@ class Drift(Block, name="drift", place="sensor"):
        Sensors and Actuators A 190 (2013) 106-126: drift of sensors.
     """
 
-    slope: float = number("Y/s", "steady rate", -HUGE, HUGE)
+    slope: float = number("Y/s", "steady rate")
     path: tuple[float, ...] = numbers(
-        "Y",
-        "values at evenly spaced times, the last at the end",
-        -HUGE,
-        HUGE,
-        optional=True,
+        "Y", "values at evenly spaced times, the last at the end", optional=True
     )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:

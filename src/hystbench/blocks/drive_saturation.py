@@ -3,7 +3,7 @@
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.parameter import TINY, number
 from hystbench.record import FloatArray
 
 
@@ -16,7 +16,7 @@ class DriveSaturation(Block, name="drive-saturation", place="drive", curve="clip
        Press, 2021: saturation, rate limits and dead zones of actuators.
     """
 
-    limit: float = number("U", "largest magnitude of its output", TINY, HUGE)
+    limit: float = number("U", "largest magnitude of its output", TINY)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Clip the current."""

@@ -3,7 +3,7 @@
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 from hystbench.record import FloatArray
 
 
@@ -23,7 +23,7 @@ class ExponentialCurve(
        characteristics and rangeability, 2009.
     """
 
-    curvature: float = number("1/U", "growth for each unit of the input", -HUGE, HUGE)
+    curvature: float = number("1/U", "growth for each unit of the input")
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Bend what enters; infinite where that is beyond numbers."""

@@ -1,7 +1,7 @@
 """Block ``exponential-stiffness``: a spring inside a mechanism that grows steeply."""
 
 from hystbench.blocks.force import Force
-from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.parameter import TINY, number
 
 
 class ExponentialStiffness(Force, name="exponential-stiffness", law="sinh"):
@@ -15,5 +15,5 @@ class ExponentialStiffness(Force, name="exponential-stiffness", law="sinh"):
     .. [1] W. Lacarbonara, Nonlinear Structural Mechanics, Springer, 2013.
     """
 
-    coefficient: float = number("U/Q", "its linear part, which is left out", 0.0, HUGE)
-    reach: float = number("Q", "distance beyond which it grows steeply", TINY, HUGE)
+    coefficient: float = number("U/Q", "its linear part, which is left out", 0.0)
+    reach: float = number("Q", "distance beyond which it grows steeply", TINY)

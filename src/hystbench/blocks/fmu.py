@@ -2,7 +2,6 @@
 
 import atexit
 import shutil
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -46,15 +45,15 @@ class Fmu(FileSimulator, name="fmu"):
         """Run the unit once, from its start."""
         path = self.path
         fmpy = library("fmpy", "fmpy", self.label, "simulators")
-        unit = _unpacked(fmpy, self.label, *same_file(path))
-        given = _variable(unit, self.label, "input", self.input)
-        gives = _variable(unit, self.label, "output", self.output)
+        folder, description = _unpacked(fmpy, self.label, *same_file(path))
+        given = _variable(description, self.label, "input", self.input)
+        gives = _variable(description, self.label, "output", self.output)
         table = np.zeros(len(z), dtype=[("time", float), (given, float)])
         table["time"], table[given] = np.arange(len(z)) * dt, z
         try:
             found = fmpy.simulate_fmu(
-                unit.folder,
-                model_description=unit.description,
+                folder,
+                model_description=description,
                 fmi_type="CoSimulation",
                 start_time=0.0,
                 stop_time=(len(z) - 1) * dt,
@@ -69,17 +68,14 @@ class Fmu(FileSimulator, name="fmu"):
         return np.asarray(found[gives])
 
 
-@dataclass(frozen=True)
-class _Unit:
-    """A unit in a folder, and what it says of itself."""
-
-    folder: str
-    description: Any
-
-
 @lru_cache(maxsize=8)
-def _unpacked(fmpy: Any, label: str, path: str, changed: int, size: int) -> _Unit:
-    """Unpack a unit once; the folder goes when the program ends."""
+def _unpacked(
+    fmpy: Any, label: str, path: str, changed: int, size: int
+) -> tuple[str, Any]:
+    """Unpack a unit once into a folder, which goes when the program ends.
+
+    With the folder comes what the unit says of itself.
+    """
     try:
         description = fmpy.read_model_description(path, validate=False)
         folder = fmpy.extract(path)
@@ -100,14 +96,12 @@ def _unpacked(fmpy: Any, label: str, path: str, changed: int, size: int) -> _Uni
         raise InputError(
             f"{label}: no binary for {platform}; it has {', '.join(there) or 'none'}"
         )
-    return _Unit(folder, description)
+    return folder, description
 
 
-def _variable(unit: _Unit, label: str, causality: str, asked: str) -> str:
+def _variable(description: Any, label: str, causality: str, asked: str) -> str:
     """Name the variable that was asked for, or the only one there is."""
-    names = [
-        v.name for v in unit.description.modelVariables if v.causality == causality
-    ]
+    names = [v.name for v in description.modelVariables if v.causality == causality]
     if asked:
         refuse_unknown(asked, names, f"{label}: {causality}: no {causality} {asked!r}")
         return asked

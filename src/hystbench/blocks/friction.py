@@ -4,7 +4,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.curve import CENTRAL, about_sample
-from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.parameter import TINY, number
 from hystbench.blocks.step import Sampling, Step, foretold
 from hystbench.record import FloatArray
 
@@ -22,9 +22,9 @@ class Friction(Block, name="friction", place="mechanics"):
        friction", Automatica 30 (1994) 1083-1138.
     """
 
-    coulomb: float = number("Y", "force at high velocity", -HUGE, HUGE)
+    coulomb: float = number("Y", "force at high velocity")
     velocity_scale: float = number(
-        "U/s", "velocity at which 76 % of it are there", TINY, HUGE
+        "U/s", "velocity at which 76 % of it are there", TINY
     )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:

@@ -1,7 +1,7 @@
 """Block ``friction-force``: dry friction inside a mechanism."""
 
 from hystbench.blocks.force import Force
-from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.parameter import TINY, number
 
 
 class FrictionForce(Force, name="friction-force", law="friction"):
@@ -21,13 +21,13 @@ class FrictionForce(Force, name="friction-force", law="friction"):
        IEEE Transactions on Automatic Control 50 (2005) 1883-1887.
     """
 
-    coulomb: float = number("U", "force of sliding", 0.0, HUGE)
-    presliding_distance: float = number("Q", "way from rest to sliding", TINY, HUGE)
+    coulomb: float = number("U", "force of sliding", 0.0)
+    presliding_distance: float = number("Q", "way from rest to sliding", TINY)
     static_excess: float = number(
-        "U", "by how much the force near rest exceeds it", 0.0, HUGE, 0.0
+        "U", "by how much the force near rest exceeds it", 0.0, default=0.0
     )
     stribeck_velocity: float = number(
-        "Q/s", "velocity at which the static force has faded", 0.0, HUGE, 0.0
+        "Q/s", "velocity at which the static force has faded", 0.0, default=0.0
     )
 
     def numbers(self) -> tuple[float, ...]:

@@ -1,7 +1,7 @@
 """Block ``gain``: a static straight line."""
 
 from hystbench.blocks.base import PolynomialBlock
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 
 
 class Gain(PolynomialBlock, name="gain", place="base"):
@@ -14,5 +14,5 @@ class Gain(PolynomialBlock, name="gain", place="base"):
 
     terms = ("offset", "value")
 
-    value: float = number("Y/U", "static gain", -HUGE, HUGE)
-    offset: float = number("Y", "output at zero", -HUGE, HUGE, default=0.0)
+    value: float = number("Y/U", "static gain")
+    offset: float = number("Y", "output at zero", default=0.0)

@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from hystbench.blocks.attached import Others
-from hystbench.blocks.parameter import HUGE, a_threshold, choice, numbers
+from hystbench.blocks.parameter import a_threshold, choice, numbers
 from hystbench.blocks.step import PASSED, Sampling, Step
 from hystbench.blocks.wrapping import Growth, PlayBlock
 from hystbench.envelope import Envelope
@@ -38,12 +38,10 @@ class GeneralizedPrandtlIshlinskii(PlayBlock, name="gpi", place="base"):
     envelope: tuple[float, ...] = numbers(
         "-, 1/U, -, -",
         "a0 to a7 of Eqs. 5 and 6",
-        -HUGE,
-        HUGE,
         names=("a0", "a1", "a2", "a3", "a4", "a5", "a6", "a7"),
     )
     thresholds: tuple[float, ...] = numbers(
-        "-", "r_i, in the unit of the envelope functions", 0.0, HUGE
+        "-", "r_i, in the unit of the envelope functions", 0.0
     )
     weights: tuple[float, ...] = a_threshold("Y", "w_i", optional=False)
     start: str = choice("operators before the first sample", STARTS, "rest")

@@ -1,7 +1,7 @@
 """Block ``gravity``: the moment of a weight inside a mechanism that turns."""
 
 from hystbench.blocks.force import Force
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 
 
 class Gravity(Force, name="gravity", law="gravity"):
@@ -16,6 +16,6 @@ class Gravity(Force, name="gravity", law="gravity"):
     .. [1] L. D. Landau, E. M. Lifshitz, Mechanics, Pergamon, 1976.
     """
 
-    amplitude: float = number("U", "weight times its arm", -HUGE, HUGE)
+    amplitude: float = number("U", "weight times its arm")
     angle: float = number("rad", "of the arm to the vertical at q = 0", -3.2, 3.2, 0.0)
     carried: float = number("-", "share that the spring carries there", 0.0, 1.0, 1.0)

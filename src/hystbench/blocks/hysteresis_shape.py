@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hystbench.blocks.parameter import HUGE, a_threshold, numbers
+from hystbench.blocks.parameter import a_threshold, numbers
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import Growth, Hysteresis, WrappingBlock
 from hystbench.operators import growing_play
@@ -25,12 +25,10 @@ class HysteresisShape(WrappingBlock, name="hysteresis-shape", place="material"):
        Control 9 (2003) 407-418.
     """
 
-    thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
+    thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0)
     weights: tuple[float, ...] = a_threshold("Y/U", "w_i", optional=False)
     square_weights: tuple[float, ...] = a_threshold("Y/U^2", "s_i")
-    powers: tuple[float, ...] = numbers(
-        "Y/U^k", "c_k, from k = 1 on", -HUGE, HUGE, optional=True
-    )
+    powers: tuple[float, ...] = numbers("Y/U^k", "c_k, from k = 1 on", optional=True)
 
     @property
     def count(self) -> int:

@@ -1,7 +1,7 @@
 """Block ``hysteretic-force``: a force inside a mechanism that remembers the way."""
 
 from hystbench.blocks.force import Force
-from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.parameter import TINY, number
 
 
 class HystereticForce(Force, name="hysteretic-force", law="hysteretic"):
@@ -21,8 +21,8 @@ class HystereticForce(Force, name="hysteretic-force", law="hysteretic"):
        and Control Using the Bouc-Wen Model, Wiley, 2007.
     """
 
-    largest: float = number("U", "force at which it yields wholly", 0.0, HUGE)
-    yield_distance: float = number("Q", "way in which it yields", TINY, HUGE)
+    largest: float = number("U", "force at which it yields wholly", 0.0)
+    yield_distance: float = number("Q", "way in which it yields", TINY)
     sharing: float = number(
         "-",
         "0: Dahl's; 0.5: unloads as stiff as at rest; 1: unloads as it loads",

@@ -1,7 +1,6 @@
 """Block ``impedance``: the force that a given motion takes."""
 
-from functools import lru_cache, partial
-from math import factorial
+from functools import lru_cache
 
 import numpy as np
 
@@ -12,13 +11,14 @@ from hystbench.blocks.curve import (
     SHORT_STEPS,
     about_sample,
     coarser,
+    derivative_at,
     low_pass_taps,
     through_samples,
     weighed,
 )
 from hystbench.blocks.force import Dynamics, Force, Motion, against, exported
 from hystbench.blocks.held import Hold
-from hystbench.blocks.parameter import HUGE, choice, number
+from hystbench.blocks.parameter import choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
 from hystbench.record import FloatArray
 
@@ -26,11 +26,6 @@ INPUTS = ("position", "velocity")
 NUMBERS = ("mass", "damping", "stiffness", "bias")
 REACH = 4
 """Samples on either side that a rate is taken from, where they are there."""
-
-
-def _derivative(order: int, power: int) -> float:
-    """Give a derivative of ``t^power`` at zero."""
-    return float(factorial(order)) if power == order else 0.0
 
 
 def _differences(order: int) -> FloatArray:
@@ -44,8 +39,7 @@ def _differences(order: int) -> FloatArray:
     weights = np.zeros((REACH + 1, 2 * REACH + 1))
     for place, row in enumerate(weights):
         later = max(place, REACH - place)
-        of = partial(_derivative, order)
-        newest_first = through_samples(place + later + 1, of, -later)
+        newest_first = derivative_at(place + later + 1, -later, order)
         row[REACH - place : REACH + later + 1] = newest_first[::-1]
     return weights
 
@@ -77,10 +71,10 @@ class Impedance(Dynamics, name="impedance", place="base"):
 
     smooths = False
 
-    mass: float = number("Y s^2/U", "m", -HUGE, HUGE)
-    damping: float = number("Y s/U", "c, of a viscous force", -HUGE, HUGE)
-    stiffness: float = number("Y/U", "k", -HUGE, HUGE)
-    bias: float = number("Y", "constant force", -HUGE, HUGE, 0.0)
+    mass: float = number("Y s^2/U", "m")
+    damping: float = number("Y s/U", "c, of a viscous force")
+    stiffness: float = number("Y/U", "k")
+    bias: float = number("Y", "constant force", default=0.0)
     input: str = choice("what the input is", INPUTS, "position")
 
     @classmethod
@@ -164,8 +158,7 @@ class Impedance(Dynamics, name="impedance", place="base"):
             for rows, order in ((rate, 1), (curvature, 2)):
                 if exact:
                     rows += [rows[-1]] * (AHEAD + 1 - REACH)
-                of = partial(_derivative, order)
-                rows[-1] = through_samples(points, of, -ahead)
+                rows[-1] = derivative_at(points, -ahead, order)
             if not exact:
                 told = f"{told}; {smooth_curve(points, ahead)}".removeprefix("; ")
                 if forces:
@@ -272,9 +265,7 @@ def _way(points: int, ahead: int) -> FloatArray:
 @lru_cache(maxsize=1)
 def _of_curve() -> FloatArray:
     """Weights for the curve's integral over an interval, and its first derivatives."""
-    derivatives = [
-        through_samples(POINTS, partial(_derivative, order), -AHEAD) for order in (1, 2)
-    ]
+    derivatives = (derivative_at(POINTS, -AHEAD, order) for order in (1, 2))
     return np.array([_way(POINTS, AHEAD), *derivatives])
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from hystbench.blocks.force import Force
-from hystbench.blocks.parameter import HUGE, TINY, number, numbers
+from hystbench.blocks.parameter import TINY, number, numbers
 from hystbench.record import FloatArray
 
 ELEMENTS = 12
@@ -34,8 +34,8 @@ class IwanForce(Force, name="iwan-force", law="slider"):
        Applied Mechanics 72 (2005) 752-760.
     """
 
-    stiffness: float = number("U/Q", "where nothing slips", 0.0, HUGE)
-    slip_distance: float = number("Q", "way from rest to where all slip", TINY, HUGE)
+    stiffness: float = number("U/Q", "where nothing slips", 0.0)
+    slip_distance: float = number("Q", "way from rest to where all slip", TINY)
     exponent: float = number(
         "-",
         "of the density of thresholds: 0 even, below it more short ones",
@@ -47,7 +47,6 @@ class IwanForce(Force, name="iwan-force", law="slider"):
         "-",
         "stiffness of each element, up to a factor, in place of an exponent",
         0.0,
-        HUGE,
         optional=True,
     )
 

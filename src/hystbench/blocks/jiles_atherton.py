@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.parameter import TINY, number
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
@@ -46,12 +46,12 @@ class JilesAtherton(HystereticBlock, name="jiles-atherton", place="material"):
        of hysteresis", IEEE Transactions on Magnetics 32 (1996) 4213-4215.
     """
 
-    saturation: float = number("Y", "output that m = 1 stands for, Ms", -HUGE, HUGE)
-    shape: float = number("U", "a, width of the anhysteretic curve", TINY, HUGE)
-    coupling: float = number("U", "alpha Ms, field of the domains' own", 0.0, HUGE)
-    pinning: float = number("U", "k, field that frees a domain wall", TINY, HUGE)
+    saturation: float = number("Y", "output that m = 1 stands for, Ms")
+    shape: float = number("U", "a, width of the anhysteretic curve", TINY)
+    coupling: float = number("U", "alpha Ms, field of the domains' own", 0.0)
+    pinning: float = number("U", "k, field that frees a domain wall", TINY)
     reversibility: float = number("-", "c, share of reversible motion", 0.0, 1.0)
-    bias: float = number("U", "constant field", -HUGE, HUGE, default=0.0)
+    bias: float = number("U", "constant field", default=0.0)
 
     def check(self) -> None:
         """Refuse a coupling at which the anhysteretic curve turns vertical."""

@@ -46,13 +46,13 @@ class KeptOutputs:
         self._places: dict[str, Path] = {}
 
     def open(self, name: str, source: str) -> None:
-        """Find the place of a function by the digest of what it is made of."""
+        """Find the place of a function by the digest of what it is made of, first."""
         self._places[name] = self.folder / source
 
     def get(self, name: str, z: FloatArray, dt: float) -> FloatArray | None:
         """Give the output for an input; None where there is none to be read."""
         file = self._file(name, z, dt)
-        content = None if file is None else self._files.read(file)
+        content = self._files.read(file)
         if content is None:
             return None
         try:
@@ -70,20 +70,16 @@ class KeptOutputs:
 
     def put(self, name: str, z: FloatArray, dt: float, y: FloatArray) -> None:
         """Keep an output, if there is room and the folder can be written."""
-        file = self._file(name, z, dt)
-        if file is not None:
-            content = BytesIO()
-            np.savez(content, y=y)
-            self._files.write(file, content.getvalue())
+        content = BytesIO()
+        np.savez(content, y=y)
+        self._files.write(self._file(name, z, dt), content.getvalue())
 
     def drop(self, name: str) -> None:
         """Remove what earlier runs kept of a function as its source is."""
         for file in self._places[name].glob(f"*{SUFFIX}"):
             self._files.remove(file)
 
-    def _file(self, name: str, z: FloatArray, dt: float) -> Path | None:
-        if name not in self._places:
-            return None
+    def _file(self, name: str, z: FloatArray, dt: float) -> Path:
         about = f"{len(z)} {dt!r} {z.dtype.str}\n".encode()
         key = blake2b(about + z.tobytes(), digest_size=16).hexdigest()
         return self._places[name] / f"{key}{SUFFIX}"

@@ -277,9 +277,6 @@ def linear_step(
     if not smooth:  # of no use alone, but in step with what stands beside it
         points = 2 + ahead
         drive = np.concatenate([np.zeros((ahead, len(system.b))), drive])
-    static = 0.0
-    if settled:
-        static = system.static_gain
     constants = {
         "size": len(system.b),
         "points": points,
@@ -289,7 +286,7 @@ def linear_step(
         "output": system.c,
         "direct": system.d,
         "settled": int(settled),
-        "static": static,
+        "static": system.static_gain if settled else 0.0,
     }
     own = ("x",) if diagonal else ("x", "next")
     states = {**dict.fromkeys(own, len(system.b)), "history": 1 + points, "offset": 1}
@@ -338,11 +335,8 @@ def _curve_steps(
 ) -> tuple[FloatArray, FloatArray]:
     """Do so for the curve: padded, the columns of A or its diagonal, and the drive.
 
-    Returns
-    -------
-    phi : ndarray, shape (m, m) or (m,)
-    drive : ndarray, shape (POINTS, m)
-        What each sample of the window adds to the state, the oldest first.
+    The drive, shape (POINTS, m), is what each sample of the window adds to the state,
+    the oldest first.
     """
     system = _from_bytes(a, b, c, d)
     phi, newest_first = curve_drive(system, dt, POINTS, AHEAD)

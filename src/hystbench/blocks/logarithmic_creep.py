@@ -3,7 +3,7 @@
 import numpy as np
 
 from hystbench.blocks.linear import LinearBlock
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 from hystbench.blocks.state_space import StateSpace
 from hystbench.errors import InputError
 
@@ -30,7 +30,7 @@ class LogarithmicCreep(LinearBlock, name="logarithmic-creep", place="mechanics")
        resistive capacitor approach", Smart Materials and Structures 22 (2013) 115020.
     """
 
-    magnitude: float = number("-", "displacement in all", -HUGE, HUGE)
+    magnitude: float = number("-", "displacement in all")
     first_time_s: float = number("s", "shortest time constant", 1e-6, 1e6)
     last_time_s: float = number("s", "longest time constant", 1e-6, 1e6)
     power: float = number("-", "0 for the logarithm", -2.0, 2.0, default=0.0)

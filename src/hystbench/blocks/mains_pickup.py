@@ -3,7 +3,7 @@
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import HUGE, number, numbers
+from hystbench.blocks.parameter import number, numbers
 from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
@@ -19,7 +19,7 @@ class MainsPickup(Block, name="mains-pickup", place="sensor"):
     """
 
     frequency_hz: float = number("Hz", "f, of the fundamental", 1e-3, 1e6)
-    amplitudes: tuple[float, ...] = numbers("Y", "one a harmonic", -HUGE, HUGE)
+    amplitudes: tuple[float, ...] = numbers("Y", "one a harmonic")
     phases: tuple[float, ...] = numbers(
         "rad", "one a harmonic", -1e3, 1e3, as_many_as="amplitudes"
     )

@@ -10,7 +10,7 @@ from hystbench import kernels
 from hystbench.blocks.attached import Others
 from hystbench.blocks.curve import held_lines
 from hystbench.blocks.force import Driven, Dynamics, Force, Motion, exported, rows
-from hystbench.blocks.parameter import HUGE, TINY, choice, number
+from hystbench.blocks.parameter import TINY, choice, number
 from hystbench.blocks.starts import PASTS, STARTS, path_from
 from hystbench.blocks.state_space import StateSpace, discretise
 from hystbench.blocks.step import Sampling, Step, lines_of
@@ -52,23 +52,21 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
 
     reference = "Gonzalez, J. Nonlinear Sci. 6 (1996)"
 
-    mass: float = number("U s^2/Q", "m; Q is the unit of the coordinate", TINY, HUGE)
-    damping: float = number("U s/Q", "c, of a viscous force", 0.0, HUGE)
-    stiffness: float = number("U/Q", "k; zero for a free mass", 0.0, HUGE)
-    gain: float = number("-", "of what drives it", -HUGE, HUGE, default=1.0)
-    bias: float = number("U", "constant force beside what drives it", -HUGE, HUGE, 0.0)
+    mass: float = number("U s^2/Q", "m; Q is the unit of the coordinate", TINY)
+    damping: float = number("U s/Q", "c, of a viscous force", 0.0)
+    stiffness: float = number("U/Q", "k; zero for a free mass", 0.0)
+    gain: float = number("-", "of what drives it", default=1.0)
+    bias: float = number("U", "constant force beside what drives it", default=0.0)
     output: str = choice("what the output is", OUTPUTS, "position")
     blend: float = number(
         "s or 1/s",
         "share of the velocity in the output; of the acceleration, where the output is "
         "the velocity",
-        -HUGE,
-        HUGE,
-        0.0,
+        default=0.0,
     )
     start: str = choice("state before the first sample", STARTS, "rest")
-    start_position: float = number("Q", "q at the first sample", -HUGE, HUGE, 0.0)
-    start_velocity: float = number("Q/s", "q' at the first sample", -HUGE, HUGE, 0.0)
+    start_position: float = number("Q", "q at the first sample", default=0.0)
+    start_velocity: float = number("Q/s", "q' at the first sample", default=0.0)
 
     def check(self) -> None:
         """Refuse a start from balance where there is none."""

@@ -22,38 +22,26 @@ effect, so no table of them has these."""
 
 @dataclass(frozen=True)
 class Parameter:
-    """What one parameter of a block means and which values it may take.
-
-    Parameters
-    ----------
-    kind : {"number", "numbers", "choice", "text"}
-        One number, a sequence of numbers, a word out of ``options``, or any text.
-    unit : str
-        Unit; ``U`` and ``Y`` stand for the units of the model's input and of the
-        block's output, ``-`` for none.
-    meaning : str
-        One sentence.
-    low, high : float
-        Closed bounds of each number; they bound identification as well.
-    names : tuple of str
-        Names of the numbers of a sequence; a model file then holds them by name.
-    options : tuple of str
-        Words that a choice may take.
-    may_be_empty : bool
-        Whether a sequence may have no numbers at all.
-    as_many_as : str
-        Another sequence of the block, of as many numbers; none for any count.
-    """
+    """What one parameter of a block means and which values it may take."""
 
     kind: Kind
+    """One number, a sequence of numbers, a word out of ``options``, or any text."""
     unit: str
+    """Unit; ``U`` and ``Y`` stand for the units of the model's input and of the block's
+    output, ``-`` for none."""
     meaning: str
-    low: float = -math.inf
-    high: float = math.inf
+    """One sentence."""
+    low: float = -HUGE
+    high: float = HUGE
+    """Closed bounds of each number; they bound identification as well."""
     names: tuple[str, ...] = ()
+    """Names of the numbers of a sequence; a model file then holds them by name."""
     options: tuple[str, ...] = ()
+    """Words that a choice may take."""
     may_be_empty: bool = False
+    """Whether a sequence may have no numbers at all."""
     as_many_as: str = ""
+    """Another sequence of the block, of as many numbers; none for any count."""
 
     def check(self, name: str, value: object) -> Value:
         """Return the value as float, tuple of float or text.
@@ -117,19 +105,19 @@ class Parameter:
 def number(
     unit: str,
     meaning: str,
-    low: float = -math.inf,
-    high: float = math.inf,
+    low: float = -HUGE,
+    high: float = HUGE,
     default: object = MISSING,
 ) -> Any:
-    """Declare a parameter that is one number."""
+    """Declare a parameter that is one number; without bounds it may be any."""
     return _declare(Parameter("number", unit, meaning, low, high), default)
 
 
 def numbers(
     unit: str,
     meaning: str,
-    low: float = -math.inf,
-    high: float = math.inf,
+    low: float = -HUGE,
+    high: float = HUGE,
     names: tuple[str, ...] = (),
     optional: bool = False,
     as_many_as: str = "",
@@ -155,7 +143,7 @@ def text(meaning: str, default: object = MISSING) -> Any:
 def a_threshold(unit: str, name: str, optional: bool = True) -> Any:
     """Declare weights of play operators, one a threshold; optional ones may be ()."""
     meaning = f"{name}, one a threshold{' or none' if optional else ''}"
-    return numbers(unit, meaning, -HUGE, HUGE, (), optional, "thresholds")
+    return numbers(unit, meaning, optional=optional, as_many_as="thresholds")
 
 
 def _declare(parameter: Parameter, default: object) -> Any:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hystbench.blocks.parameter import HUGE, a_threshold, numbers
+from hystbench.blocks.parameter import a_threshold, numbers
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import Growth, PlayBlock
 from hystbench.operators import growing_play
@@ -27,7 +27,7 @@ class PrandtlIshlinskii(PlayBlock, name="prandtl-ishlinskii", place="material"):
        Control 9 (2003) 407-418.
     """
 
-    thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
+    thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0)
     weights: tuple[float, ...] = a_threshold("-", "w_i", optional=False)
     square_weights: tuple[float, ...] = a_threshold("1/U", "s_i")
     cube_weights: tuple[float, ...] = a_threshold("1/U^2", "c_i")

@@ -5,7 +5,7 @@ from functools import cached_property
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.parameter import HUGE, TINY, number, numbers
+from hystbench.blocks.parameter import TINY, number, numbers
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
@@ -33,22 +33,22 @@ class Preisach(HystereticBlock, name="preisach", place="material"):
        actuators", Automatica 40 (2004) 1469-1480.
     """
 
-    limit: float = number("U", "largest input at which a relay switches", TINY, HUGE)
-    reversible: float = number("Y/U", "slope of the reversible part", -HUGE, HUGE)
+    limit: float = number("U", "largest input at which a relay switches", TINY)
+    reversible: float = number("Y/U", "slope of the reversible part")
     weights: tuple[float, ...] = numbers(
-        "Y", "swing of the output by each cluster of relays", 0.0, HUGE
+        "Y", "swing of the output by each cluster of relays", 0.0
     )
     centres: tuple[float, ...] = numbers(
-        "U", "mean of (a + b) / 2", -HUGE, HUGE, as_many_as="weights"
+        "U", "mean of (a + b) / 2", as_many_as="weights"
     )
     centre_spreads: tuple[float, ...] = numbers(
-        "U", "standard deviation of (a + b) / 2", TINY, HUGE, as_many_as="weights"
+        "U", "standard deviation of (a + b) / 2", TINY, as_many_as="weights"
     )
     half_widths: tuple[float, ...] = numbers(
-        "U", "mean of (a - b) / 2", 0.0, HUGE, as_many_as="weights"
+        "U", "mean of (a - b) / 2", 0.0, as_many_as="weights"
     )
     half_width_spreads: tuple[float, ...] = numbers(
-        "U", "standard deviation of (a - b) / 2", TINY, HUGE, as_many_as="weights"
+        "U", "standard deviation of (a - b) / 2", TINY, as_many_as="weights"
     )
     cells: float = number("-", "cells of the grid along each axis", 2, 1000, 128.0)
 

@@ -14,7 +14,7 @@ from hystbench.blocks.curve import (
     weighed,
 )
 from hystbench.blocks.held import HeldBlock
-from hystbench.blocks.parameter import HUGE, choice, number
+from hystbench.blocks.parameter import choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
 from hystbench.blocks.wrapping import Growth, Hysteresis, WrappingBlock
 from hystbench.record import FloatArray
@@ -55,7 +55,6 @@ class RateDependentHysteresis(
         "(s/U)^exponent",
         "growth at a rate of one; in U (s/U)^exponent for both fields",
         0.0,
-        HUGE,
     )
     exponent: float = number("-", "power of the rate", 0.01, 10.0)
     form: str = choice("what the rate changes", FORMS, FORMS[0])

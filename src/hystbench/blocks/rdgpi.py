@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.blocks.curve import CENTRAL, about_sample
-from hystbench.blocks.parameter import HUGE, choice, number
+from hystbench.blocks.parameter import choice, number
 from hystbench.blocks.step import PASSED, Sampling, Step, foretold
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
@@ -29,15 +29,15 @@ class RateDependentPrandtlIshlinskii(HystereticBlock, name="rdgpi", place="base"
 
     alpha1: float = number("-", "scale of the thresholds' spacing", -1e3, 1e3)
     beta1: float = number("-", "spacing at rest, inside the logarithm", 1.0, 1e3)
-    lambda1: float = number("s/U", "growth of the spacing with the rate", 0.0, HUGE)
+    lambda1: float = number("s/U", "growth of the spacing with the rate", 0.0)
     alpha2: float = number("-", "loss of weight with the rate", -1e3, 1e3)
     beta2: float = number("-", "weight at rest, inside the logarithm", 1e-9, 1e3)
-    lambda2: float = number("s/U", "growth of the loss with the rate", 0.0, HUGE)
-    c: float = number("U", "second scale of the thresholds' spacing", -HUGE, HUGE)
-    rho: float = number("Y/U", "weight of the first operator times N + 1", -HUGE, HUGE)
-    tau: float = number("1/U", "decay of the weights over the thresholds", -HUGE, HUGE)
+    lambda2: float = number("s/U", "growth of the loss with the rate", 0.0)
+    c: float = number("U", "second scale of the thresholds' spacing")
+    rho: float = number("Y/U", "weight of the first operator times N + 1")
+    tau: float = number("1/U", "decay of the weights over the thresholds")
     envelope_gain: float = number("-", "the paper's xi", -1e6, 1e6)
-    envelope_offset: float = number("U", "the paper's mu", -HUGE, HUGE)
+    envelope_offset: float = number("U", "the paper's mu")
     order: float = number("-", "N, one less than the operators", 0, 1000, default=30.0)
     start: str = choice("operators before the first sample", STARTS, "rest")
 

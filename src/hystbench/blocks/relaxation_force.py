@@ -1,7 +1,7 @@
 """Block ``relaxation-force``: a spring in series with a damper, inside a mechanism."""
 
 from hystbench.blocks.force import Force
-from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.parameter import TINY, number
 
 
 class RelaxationForce(Force, name="relaxation-force", law="relaxation"):
@@ -17,9 +17,9 @@ class RelaxationForce(Force, name="relaxation-force", law="relaxation"):
     .. [1] J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., Wiley, 1980.
     """
 
-    stiffness: float = number("U/Q", "of the spring, met by a fast motion", 0.0, HUGE)
+    stiffness: float = number("U/Q", "of the spring, met by a fast motion", 0.0)
     relaxation_time_s: float = number(
-        "s", "in which the force of a place fades to 37 %", TINY, HUGE
+        "s", "in which the force of a place fades to 37 %", TINY
     )
 
     @property

@@ -3,7 +3,7 @@
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.parameter import TINY, number
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
@@ -20,7 +20,7 @@ class Saturation(Block, name="saturation", place="material", curve="saturation")
        Press, 2000: magnetisation and strain saturate.
     """
 
-    level: float = number("Y", "output that is never reached", TINY, HUGE)
+    level: float = number("Y", "output that is never reached", TINY)
 
     sharpness: float = number(
         "-",

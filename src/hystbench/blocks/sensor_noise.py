@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.blocks.base import RandomBlock
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 from hystbench.blocks.step import Sampling, Step, polynomial
 from hystbench.record import FloatArray
 
@@ -21,7 +21,7 @@ class SensorNoise(RandomBlock, name="sensor-noise", place="sensor"):
        Sensors and Actuators A 190 (2013) 106-126.
     """
 
-    rms: float = number("Y", "standard deviation of a sample", 0.0, HUGE)
+    rms: float = number("Y", "standard deviation of a sample", 0.0)
 
     def draw(self, n: int, dt: float, rng: np.random.Generator) -> FloatArray:
         """Draw independent normal samples."""

@@ -1,7 +1,7 @@
 """Block ``sensor-nonlinearity``: a sensor whose reading is a curve."""
 
 from hystbench.blocks.base import PolynomialBlock
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 
 
 class SensorNonlinearity(PolynomialBlock, name="sensor-nonlinearity", place="sensor"):
@@ -16,5 +16,5 @@ class SensorNonlinearity(PolynomialBlock, name="sensor-nonlinearity", place="sen
 
     terms = (0.0, 1.0, "quadratic", "cubic")
 
-    quadratic: float = number("1/Y", "weight of the square", -HUGE, HUGE)
-    cubic: float = number("1/Y^2", "weight of the cube", -HUGE, HUGE)
+    quadratic: float = number("1/Y", "weight of the square")
+    cubic: float = number("1/Y^2", "weight of the cube")

@@ -4,7 +4,7 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.parameter import TINY, number
 from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
@@ -22,7 +22,7 @@ class SlewLimit(Block, name="slew-limit", place="drive"):
        Press, 2021: saturation, rate limits and dead zones of actuators.
     """
 
-    rate: float = number("U/s", "largest rate of the output", TINY, HUGE)
+    rate: float = number("U/s", "largest rate of the output", TINY)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Follow the input at a limited rate."""

@@ -1,7 +1,7 @@
 """Block ``slider-with-gap``: dry friction in series with a clearance."""
 
 from hystbench.blocks.force import Force
-from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.parameter import TINY, number
 
 
 class SliderWithGap(Force, name="slider-with-gap", law="slider"):
@@ -17,9 +17,9 @@ class SliderWithGap(Force, name="slider-with-gap", law="slider"):
        Systems, World Scientific, 2003.
     """
 
-    contact_stiffness: float = number("U/Q", "of the contact", TINY, HUGE)
-    slip_force: float = number("U", "force at which it slides", 0.0, HUGE)
-    gap: float = number("Q", "half of the clearance", 0.0, HUGE)
+    contact_stiffness: float = number("U/Q", "of the contact", TINY)
+    slip_force: float = number("U", "force at which it slides", 0.0)
+    gap: float = number("Q", "half of the clearance", 0.0)
 
     def numbers(self) -> tuple[float, ...]:
         """Give the stiffness, the reach of the way and the gap."""

@@ -1,7 +1,7 @@
 """Block ``smooth-friction``: friction inside a mechanism that a fluid makes smooth."""
 
 from hystbench.blocks.force import Force
-from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.parameter import TINY, number
 
 
 class SmoothFriction(Force, name="smooth-friction", law="smooth"):
@@ -22,13 +22,13 @@ class SmoothFriction(Force, name="smooth-friction", law="smooth"):
        friction", Automatica 30 (1994) 1083-1138.
     """
 
-    coulomb: float = number("U", "force at high velocity", 0.0, HUGE)
+    coulomb: float = number("U", "force at high velocity", 0.0)
     velocity_scale: float = number(
-        "Q/s", "velocity at which 76 % of it are there", TINY, HUGE
+        "Q/s", "velocity at which 76 % of it are there", TINY
     )
     static_excess: float = number(
-        "U", "by how much the force near rest exceeds it", 0.0, HUGE, 0.0
+        "U", "by how much the force near rest exceeds it", 0.0, default=0.0
     )
     stribeck_velocity: float = number(
-        "Q/s", "velocity at which the excess has faded", 0.0, HUGE, 0.0
+        "Q/s", "velocity at which the excess has faded", 0.0, default=0.0
     )

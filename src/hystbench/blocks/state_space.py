@@ -153,11 +153,8 @@ TERMS = 36
 def _series(points: int, ahead: int) -> FloatArray:
     """Give what each term of an exponential's series takes of each sample.
 
-    The response to ``s^m`` is ``sum_n X^n b m! / (m + n + 1)!``.
-
-    Returns
-    -------
-    ndarray, shape (points, TERMS)
+    The response to ``s^m`` is ``sum_n X^n b m! / (m + n + 1)!``. The shape is (points,
+    TERMS).
     """
     m, n = np.arange(points)[:, None], np.arange(1, TERMS)
     shares = np.cumprod(np.hstack([1.0 / (m + 1), 1.0 / (m + n + 1)]), axis=1)

@@ -21,31 +21,21 @@ LARGEST_POINTS = 8
 
 @dataclass(frozen=True)
 class Sampling:
-    """What is known of the signal that exported code will get.
-
-    Parameters
-    ----------
-    dt : float
-        Sampling interval in seconds.
-    points : int
-        A signal that is smooth between its samples is taken as the polynomial through
-        the newest so many: code that runs sample by sample knows none to come.
-    duration_s : float, optional
-        Length of the record to which a path of drift belongs.
-    delay : int
-        Samples by which the output may be late: so many to come are then known.
-    ahead : int
-        Of a block: samples that are known beyond the one that it is asked for.
-    late : int
-        Of a block: samples by which what it is asked for is behind the model's input.
-    """
+    """What is known of the signal that exported code will get."""
 
     dt: float
+    """Sampling interval in seconds."""
     points: int = 6
+    """A signal that is smooth between its samples is taken as the polynomial through
+    the newest so many: code that runs sample by sample knows none to come."""
     duration_s: float | None = None
+    """Length of the record to which a path of drift belongs."""
     delay: int = 0
+    """Samples by which the output may be late: so many to come are then known."""
     ahead: int = 0
+    """Of a block: samples that are known beyond the one that it is asked for."""
     late: int = 0
+    """Of a block: samples by which what it is asked for is behind the model's input."""
 
     @property
     def curve_points(self) -> int:
@@ -55,51 +45,36 @@ class Sampling:
 
 @dataclass(frozen=True)
 class Step:
-    """One call of a function: constants, states, and then the signals that it takes.
-
-    Parameters
-    ----------
-    function : str
-        Name of the function, without the prefix that it has in C.
-    constants : mapping of str to int, float or ndarray of float
-        In the order of the function's arguments.
-    states : mapping of str to int
-        Name and length of each state, an array of numbers; zero at the start.
-    watches : bool
-        Whether its state ``history`` is of the model's input; it is filled, with as
-        many samples as the constant ``points`` says, before anything else is done.
-    gains : int
-        Samples to come with which the step is the simulation's, or as near as it gets;
-        none where it needs none.
-    rates : int
-        Samples to come that make a rate which it takes exact; none where it takes none.
-    grows : bool
-        Whether it takes a factor on its thresholds.
-    drives : int
-        For a block that wraps hysteresis: 0 where it adds its own output to that of
-        what is inside; else how often, at most, it calls what is inside in one sample.
-    undoes : bool
-        Whether it looks for the input of what is inside it, of which it tries some.
-    past : str
-        What came before the first sample, if that depends on samples to come:
-        :data:`PASSED`, :data:`TURNED` or :data:`REPEATED`. What is remembered of a
-        passage is the state ``w``.
-    differs : str
-        How the step differs from the block's simulation of a whole record, if it does:
-        the end of a sentence that begins with the block.
-    """
+    """One call of a function: constants, states, and then the signals that it takes."""
 
     function: str
+    """Name of the function, without the prefix that it has in C."""
     constants: Mapping[str, Any] = field(default_factory=dict)
+    """In the order of the function's arguments."""
     states: Mapping[str, int] = field(default_factory=dict)
+    """Name and length of each state, an array of numbers; zero at the start."""
     watches: bool = False
+    """Whether its state ``history`` is of the model's input; it is filled, with as many
+    samples as the constant ``points`` says, before anything else is done."""
     gains: int = 0
+    """Samples to come with which the step is the simulation's, or as near as it gets;
+    none where it needs none."""
     rates: int = 0
+    """Samples to come that make a rate exact; none where it takes no rate."""
     grows: bool = False
+    """Whether it takes a factor on its thresholds."""
     drives: int = 0
+    """For a block that wraps hysteresis: 0 where it adds its own output to that of what
+    is inside; else how often, at most, it calls what is inside in one sample."""
     undoes: bool = False
+    """Whether it looks for the input of what is inside it, of which it tries some."""
     past: str = ""
+    """What came before the first sample, if that depends on samples to come:
+    :data:`PASSED`, :data:`TURNED` or :data:`REPEATED`. What is remembered of a passage
+    is the state ``w``."""
     differs: str = ""
+    """How the step differs from the block's simulation of a whole record, if it does:
+    the end of a sentence that begins with the block."""
 
 
 def polynomial(*coefficients: float) -> Step:

@@ -1,7 +1,7 @@
 """Block ``stiffness``: a spring inside a mechanism that is not linear."""
 
 from hystbench.blocks.force import Force
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 
 
 class Stiffness(Force, name="stiffness", law="stiffness"):
@@ -15,5 +15,5 @@ class Stiffness(Force, name="stiffness", law="stiffness"):
        and their Behaviour, Wiley, 2011.
     """
 
-    quadratic: float = number("U/Q^2", "weight of the square", -HUGE, HUGE)
-    cubic: float = number("U/Q^3", "weight of the cube", -HUGE, HUGE)
+    quadratic: float = number("U/Q^2", "weight of the square")
+    cubic: float = number("U/Q^3", "weight of the cube")

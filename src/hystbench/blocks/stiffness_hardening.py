@@ -5,7 +5,7 @@ import numpy as np
 from hystbench import kernels
 from hystbench.blocks.curve import held_lines
 from hystbench.blocks.held import HeldBlock
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 from hystbench.blocks.step import Sampling, Step, lines_of
 from hystbench.record import FloatArray
 
@@ -30,7 +30,7 @@ class StiffnessHardening(HeldBlock, name="stiffness-hardening", place="mechanics
        and their Behaviour, Wiley, 2011.
     """
 
-    coefficient: float = number("1/Y^2", "weight of the cube", -HUGE, HUGE)
+    coefficient: float = number("1/Y^2", "weight of the cube")
     frequency_hz: float = number("Hz", "undamped frequency wn / 2 pi", 1e-3, 1e6)
     damping_ratio: float = number("-", "zeta, share of critical damping", 1e-5, 10.0)
     participation: float = number(

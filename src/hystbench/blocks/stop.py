@@ -1,7 +1,7 @@
 """Block ``stop``: contact inside a mechanism beyond a clearance."""
 
 from hystbench.blocks.force import Force
-from hystbench.blocks.parameter import HUGE, choice, number
+from hystbench.blocks.parameter import choice, number
 
 SIDES = {"both": 0.0, "upper": 1.0, "lower": -1.0}
 
@@ -18,9 +18,9 @@ class Stop(Force, name="stop", law="stop"):
        oscillator", Journal of Sound and Vibration 90 (1983) 129-155.
     """
 
-    contact_stiffness: float = number("U/Q", "stiffness of the contact", 0.0, HUGE)
-    gap: float = number("Q", "half of the clearance", 0.0, HUGE)
-    centre: float = number("Q", "middle of the clearance", -HUGE, HUGE, 0.0)
+    contact_stiffness: float = number("U/Q", "stiffness of the contact", 0.0)
+    gap: float = number("Q", "half of the clearance", 0.0)
+    centre: float = number("Q", "middle of the clearance", default=0.0)
     sides: str = choice("where there is contact", tuple(SIDES), "both")
 
     @property

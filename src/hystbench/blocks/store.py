@@ -34,13 +34,13 @@ class Store(HeldBlock, name="store", place="base"):
        Identification Benchmarks, 2016.
     """
 
-    gain: float = number("Q/(U s)", "of the inflow", -HUGE, HUGE)
-    rate: float = number("Q^(1-e)/s", "of the outflow", 0.0, HUGE)
+    gain: float = number("Q/(U s)", "of the inflow")
+    rate: float = number("Q^(1-e)/s", "of the outflow", 0.0)
     exponent: float = number("-", "e, of the level in the outflow", 0.1, 3.0, 0.5)
-    height: float = number("Q", "level at which it overflows", TINY, HUGE, HUGE)
+    height: float = number("Q", "level at which it overflows", TINY, default=HUGE)
     caught: float = number("-", "share of what is spilt that goes on", 0.0, 1.0, 0.0)
-    bias: float = number("Q/s", "constant inflow", -HUGE, HUGE, 0.0)
-    start_level: float = number("Q", "level at the first sample", 0.0, HUGE, 0.0)
+    bias: float = number("Q/s", "constant inflow", default=0.0)
+    start_level: float = number("Q", "level at the first sample", 0.0, default=0.0)
     output: str = choice("what the output is", ("level", "outflow"), "level")
     start: str = choice("level at the first sample", STARTS, "given")
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.linear import respond
-from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.parameter import number
 from hystbench.blocks.state_space import discretise, lag
 from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
@@ -23,7 +23,7 @@ class ThermalDrift(Block, name="thermal-drift", place="mechanics"):
        Press, 2000: losses and the heating of rod and coil.
     """
 
-    coefficient: float = number("Y/U^2", "expansion at a steady input", -HUGE, HUGE)
+    coefficient: float = number("Y/U^2", "expansion at a steady input")
     time_constant_s: float = number("s", "tau of the warming", 1e-6, 1e6)
     second_time_constant_s: float = number(
         "s", "tau of what is warmed in turn; 0 for none", 0.0, 1e6, default=0.0

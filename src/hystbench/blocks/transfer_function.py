@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hystbench.blocks.linear import LinearBlock
-from hystbench.blocks.parameter import HUGE, numbers
+from hystbench.blocks.parameter import numbers
 from hystbench.blocks.state_space import StateSpace
 from hystbench.errors import InputError
 
@@ -23,12 +23,8 @@ class TransferFunction(LinearBlock, name="transfer-function", place="base"):
        canonical form).
     """
 
-    numerator: tuple[float, ...] = numbers(
-        "powers of s", "n_0 to n_m, descending", -HUGE, HUGE
-    )
-    denominator: tuple[float, ...] = numbers(
-        "powers of s", "d_0 to d_k, descending", -HUGE, HUGE
-    )
+    numerator: tuple[float, ...] = numbers("powers of s", "n_0 to n_m, descending")
+    denominator: tuple[float, ...] = numbers("powers of s", "d_0 to d_k, descending")
 
     @property
     def static_gain(self) -> float:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.parameter import TINY, number
 from hystbench.record import FloatArray
 
 
@@ -17,7 +17,7 @@ class UnsignedSensor(Block, name="unsigned-sensor", place="sensor", curve="magni
        2017-024: pulse counters that do not tell the direction of turning.
     """
 
-    scale: float = number("-", "of what is shown", TINY, HUGE)
+    scale: float = number("-", "of what is shown", TINY)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Leave the sign out."""

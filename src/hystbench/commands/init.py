@@ -13,8 +13,8 @@ from hystbench.errors import InputError
 from hystbench.files import write_text
 from hystbench.inspection.columns import Flags
 from hystbench.inspection.draft import Draft, draft
+from hystbench.inspection.entries import yaml_text
 from hystbench.inspection.excitation import excitation_of
-from hystbench.inspection.writing import yaml_text
 from hystbench.signature import In, command, of_class
 from hystbench.written import writes
 

@@ -13,19 +13,13 @@ from hystbench.record import FloatArray
 
 @dataclass(frozen=True)
 class Off:
-    """Difference of exported code from the simulation of a record.
-
-    Parameters
-    ----------
-    largest, rms : float
-        As shares of the simulated output's range.
-    time_s : float
-        Where in the record it is largest.
-    """
+    """Difference of exported code from the simulation of a record."""
 
     largest: float
     rms: float
+    """As shares of the simulated output's range."""
     time_s: float
+    """Where in the record it is largest."""
 
     @property
     def words(self) -> str:

@@ -28,22 +28,14 @@ LARGEST_STATE = 1_000_000
 
 @dataclass(frozen=True)
 class Piece:
-    """One block's step, and for one that wraps hysteresis what is inside.
-
-    Parameters
-    ----------
-    label : str
-    step : Step
-    inner : Piece, optional
-    wait : int
-        Calls, from the first on, in which nothing comes out of it yet; none where what
-        is before it waits as long.
-    """
+    """One block's step, and for one that wraps hysteresis what is inside."""
 
     label: str
     step: Step
     inner: Piece | None = None
     wait: int = 0
+    """Calls, from the first on, in which nothing comes out of it yet; none where what
+    is before it waits as long."""
 
     @property
     def history(self) -> str:
@@ -78,28 +70,18 @@ class Piece:
 
 @dataclass(frozen=True)
 class Described:
-    """A model as the pieces that its signal passes, one call of each a sample.
-
-    Parameters
-    ----------
-    name : str
-        The model's name as an identifier of C and of Python.
-    title : str
-        The model's name as its file has it, in one line of printable letters.
-    input, output : Channel
-    sampling : Sampling
-    pieces : tuple of Piece
-    starts : mapping of str to ndarray of float
-        What states are at the start, by name; the others are zero.
-    """
+    """A model as the pieces that its signal passes, one call of each a sample."""
 
     name: str
+    """The model's name as an identifier of C and of Python."""
     title: str
+    """The model's name as its file has it, in one line of printable letters."""
     input: Channel
     output: Channel
     sampling: Sampling
     pieces: tuple[Piece, ...]
     starts: Mapping[str, FloatArray] = field(default_factory=dict)
+    """What states are at the start, by name; the others are zero."""
 
     def all_pieces(self) -> Iterator[Piece]:
         """Give every piece, what is inside another before it."""

@@ -8,7 +8,6 @@ from hystbench.model import Model
 from hystbench.record import Channel
 
 Part = Literal["before", "behind"]
-PARTS: tuple[Part, ...] = ("before", "behind")
 
 
 def part_of(model: Model, part: Part) -> Model:

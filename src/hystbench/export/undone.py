@@ -3,12 +3,12 @@
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
-from math import comb, factorial
+from math import comb
 
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.curve import AHEAD, through_samples
+from hystbench.blocks.curve import AHEAD, derivative_at
 from hystbench.blocks.force import Force
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.linear import LinearBlock, linear_step
@@ -150,7 +150,7 @@ def field(by: RateDependentHysteresis, sampling: Sampling) -> Step:
         "exponent": by.exponent,
         "points": points,
         "ahead": ahead,
-        "rate": _derivative(points, ahead, 1) / sampling.dt,
+        "rate": derivative_at(points, -ahead, 1) / sampling.dt,
     }
     told = f"takes its rate from the polynomial through the newest {points}"
     return Step(
@@ -191,7 +191,7 @@ def _derivatives(order: int, w: float, sampling: Sampling) -> Step:
     taps = np.zeros(points)
     for k in range(order + 1):
         share = comb(order, k) / (w * sampling.dt) ** k
-        taps += share * _derivative(points, ahead, k)
+        taps += share * derivative_at(points, -ahead, k)
     top = _band(taps, ahead, order, w * sampling.dt) / sampling.dt
     many = "one derivative" if order == 1 else f"{order} derivatives"
     return Step(
@@ -261,12 +261,6 @@ def _advanced(block: LinearBlock) -> tuple[StateSpace, int, float]:
     scale = float(np.abs(c).max(initial=0.0))
     c = np.where(np.abs(c) <= 1e-12 * max(scale, abs(d)), 0.0, c)
     return StateSpace(a, b, c, d), order, w
-
-
-def _derivative(points: int, ahead: int, order: int) -> FloatArray:
-    """Weights of the samples for the curve's derivative, per sample to that power."""
-    size = float(factorial(order))
-    return through_samples(points, lambda m: size * (m == order), -float(ahead))
 
 
 def _band(taps: FloatArray, ahead: int, order: int, turn: float) -> float:

@@ -8,10 +8,8 @@ from functools import cache
 from hystbench.errors import refuse_unknown
 from hystbench.filters.base import AdaptiveFilter as AdaptiveFilter
 from hystbench.filters.bound import MOST_CORRECTION as MOST_CORRECTION
-from hystbench.filters.bound import Bound as Bound
-from hystbench.filters.many import run_many as run_many
 from hystbench.filters.state import Result as Result
-from hystbench.filters.state import State as State
+from hystbench.filters.together import run_many as run_many
 from hystbench.published import in_order
 from hystbench.registered import classes_in, with_installed
 

@@ -18,28 +18,19 @@ of an incipient instability. 1.7 leaves 15 %.
 
 @dataclass(frozen=True)
 class Bound:
-    """Bound on the step size, Eq. 19, and what sets the speed of convergence.
-
-    Parameters
-    ----------
-    trace : float
-        Trace of ``R = E[H H']``, the mean over the record.
-    largest, smallest : float
-        Eigenvalues of R; the smallest is zero where R has less than full rank.
-    rank : int
-        Eigenvalues above ``size * eps * largest``: the others are rounding.
-    size : int
-        Number of weights.
-    smallest_nonzero : float
-        Smallest eigenvalue that counts for the rank.
-    """
+    """Bound on the step size, Eq. 19, and what sets the speed of convergence."""
 
     trace: float
+    """Trace of ``R = E[H H']``, the mean over the record."""
     largest: float
     smallest: float
+    """Eigenvalues of R; the smallest is zero where R has less than full rank."""
     rank: int
+    """Eigenvalues above ``size * eps * largest``: the others are rounding."""
     size: int
+    """Number of weights."""
     smallest_nonzero: float
+    """Smallest eigenvalue that counts for the rank."""
 
     @property
     def bound(self) -> float:

@@ -10,28 +10,19 @@ from hystbench.errors import InputError, refuse_unknown, short
 
 @dataclass(frozen=True)
 class Key:
-    """A key of ``filters`` in config.yaml, for a field of a filter.
-
-    Parameters
-    ----------
-    field : str
-        The filter's field that it sets.
-    meaning : str
-        What it means, in one sentence.
-    default : object
-        Where config.yaml leaves it out; ``dataclasses.MISSING`` where it must not.
-    least, most : float
-        Closed bounds of a number.
-    words : tuple of str
-        Words of which it takes one; empty for a number.
-    """
+    """A key of ``filters`` in config.yaml, for a field of a filter."""
 
     field: str
+    """The filter's field that it sets."""
     meaning: str
+    """What it means, in one sentence."""
     default: Any
+    """Where config.yaml leaves it out; ``dataclasses.MISSING`` where it must not."""
     least: float = -math.inf
     most: float = math.inf
+    """Closed bounds of a number."""
     words: tuple[str, ...] = ()
+    """Words of which it takes one; empty for a number."""
 
     @property
     def schema(self) -> dict[str, Any]:

@@ -14,31 +14,20 @@ from hystbench.record import FloatArray
 
 @dataclass(frozen=True)
 class State:
-    """What a filter carries from one chunk of a signal to the next.
-
-    Parameters
-    ----------
-    weights : ndarray
-        Weights after the last update.
-    past : ndarray, shape (history,)
-        The last inputs, oldest first: as many as the filter looks back on.
-    operators : ndarray
-        Outputs of the play operators, by tap; empty for filters without.
-    limit : float or None
-        Error beyond which the filter has diverged; None for a million times
-        ``largest``.
-    largest : float
-        Largest ``|d|`` so far.
-    diverged : bool
-        Whether it has; then it cannot go on.
-    """
+    """What a filter carries from one chunk of a signal to the next."""
 
     weights: FloatArray
+    """Weights after the last update."""
     past: FloatArray
+    """The last inputs, oldest first, shape (history,)."""
     operators: FloatArray
+    """Outputs of the play operators, by tap; empty for filters without."""
     limit: float | None = None
+    """Error beyond which it has diverged; None for a million times ``largest``."""
     largest: float = 0.0
+    """Largest ``|d|`` so far."""
     diverged: bool = False
+    """Whether it has; then it cannot go on."""
 
 
 End = tuple[FloatArray, FloatArray]
@@ -58,26 +47,18 @@ class Chunk(NamedTuple):
 
 @dataclass(frozen=True)
 class Result:
-    """What an adaptive filter made of a record.
-
-    Parameters
-    ----------
-    output, error : ndarray, shape (n,)
-        Prediction y and a priori error ``e = d - y`` at each sample. They end before
-        the sample at which the filter diverged.
-    weights : ndarray
-        Weights after the last sample; after divergence of no use, but finite.
-    diverged_at : int or None
-        First sample whose error was beyond the limit or not a number.
-    state : State
-        Where to go on with the next chunk.
-    """
+    """What an adaptive filter made of a record."""
 
     output: FloatArray
     error: FloatArray
+    """Prediction y and a priori error ``e = d - y`` at each sample, shape (n,) each.
+    They end before the sample at which the filter diverged."""
     weights: FloatArray
+    """Weights after the last sample; after divergence of no use, but finite."""
     diverged_at: int | None
+    """First sample whose error was beyond the limit or not a number."""
     state: State
+    """Where to go on with the next chunk."""
 
 
 def positive(name: str, value: float) -> None:

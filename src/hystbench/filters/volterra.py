@@ -20,16 +20,11 @@ TILE = 4  # the kernel keeps tiles of 4 x 4 second-order weights
 
 @dataclass(frozen=True)
 class VolterraBound(Bound):
-    """Bound of Eq. 19 for the whole regressor and for its two parts.
-
-    Parameters
-    ----------
-    first_order, second_order : float
-        Traces of the parts of R that belong to ``x(k-i)`` and ``x(k-i) x(k-j)``.
-    """
+    """Bound of Eq. 19 for the whole regressor and for its two parts."""
 
     first_order: float
     second_order: float
+    """Traces of the parts of R that belong to ``x(k-i)`` and ``x(k-i) x(k-j)``."""
 
     def margin(self, step_size: float, second_order_step: float) -> float:
         """Give ``mu1 tr R1 + mu2 tr R2``: below 1 the weights converge in the mean.

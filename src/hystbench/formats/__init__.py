@@ -11,7 +11,7 @@ from pathlib import Path
 from hystbench.errors import InputError, nearest
 from hystbench.formats.table import Column, Table
 
-__all__ = ["Column", "Table", "expected", "format_of", "read_table"]
+__all__ = ["Column", "Table", "format_of", "read_table"]
 
 #: Module of each suffix.
 SUFFIXES = {
@@ -34,17 +34,13 @@ BEGINNINGS = {
     b"RIFX": "wav",
     b"RF64": "wav",
 }
-#: What files may be, for messages.
-KINDS = (
-    "text such as CSV, MATLAB (.mat), Parquet, HDF5 (.h5), TDMS, NumPy (.npz) or WAV"
+EXPECTED = (
+    "expected text such as CSV, MATLAB (.mat), Parquet, HDF5 (.h5), TDMS, NumPy (.npz) "
+    "or WAV"
 )
+"""What files may be, for messages."""
 _SOME = 128
 """Bytes at the start of a file that tell its format."""
-
-
-def expected() -> str:
-    """Say which files can be read."""
-    return f"expected {KINDS}"
 
 
 def format_of(path: Path) -> str:
@@ -74,12 +70,11 @@ def format_of(path: Path) -> str:
         raise InputError(f"{path}: a workbook; save the sheet as 'CSV UTF-8'")
     if suffix in SUFFIXES:
         return SUFFIXES[suffix]
-    if start and b"\0" not in start:
-        return "text"
-    if start.startswith((b"\xff\xfe", b"\xfe\xff")):
+    is_utf_16 = start.startswith((b"\xff\xfe", b"\xfe\xff"))
+    if start and (b"\0" not in start or is_utf_16):
         return "text"
     raise InputError(
-        f"{path}: the suffix {path.suffix!r} tells no known format; {expected()} "
+        f"{path}: the suffix {path.suffix!r} tells no known format; {EXPECTED} "
         f"({nearest(suffix, SUFFIXES)})"
     )
 
@@ -105,7 +100,7 @@ def read_table(path: Path, wanted: Collection[str] | None = None) -> Table:
         missing, or a cell of a wanted column is no number.
     """
     if path.is_dir():
-        raise InputError(f"{path}: a folder; {expected()}")
+        raise InputError(f"{path}: a folder; {EXPECTED}")
     if not path.is_file():
         kin = sorted(item.name for item in path.parent.glob("*") if item.is_file())
         raise InputError(f"{path}: no such file; {nearest(path.name, kin)}")

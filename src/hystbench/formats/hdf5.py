@@ -6,8 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.formats.damaged import told
-from hystbench.formats.table import FREQUENCIES, INTERVALS, Filling, Table, fields_of
+from hystbench.formats.table import (
+    FREQUENCIES,
+    INTERVALS,
+    Filling,
+    Table,
+    fields_of,
+    told,
+)
 from hystbench.libraries import library
 
 OCTAVE = "OCTAVE_NEW_FORMAT"

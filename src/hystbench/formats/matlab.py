@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.formats.damaged import told
-from hystbench.formats.table import Filling, Table
+from hystbench.formats.table import Filling, Table, told
 from hystbench.libraries import library
 
 _HDF5 = b"\x89HDF"

@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.formats.damaged import told
-from hystbench.formats.table import Filling, Table, fields_of
+from hystbench.formats.table import Filling, Table, fields_of, told
 
 
 def read(path: Path) -> Table:

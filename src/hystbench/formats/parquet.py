@@ -4,8 +4,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from hystbench.formats.damaged import told
-from hystbench.formats.table import Filling, Table
+from hystbench.formats.table import Filling, Table, told
 from hystbench.libraries import library
 
 

@@ -103,18 +103,15 @@ def _dates(
     if len(firsts) > 1 or len(lasts) > 1:
         return None
     if firsts == {True}:
-        values = _seconds(found, ("one", "two", "three"))
-        return None if values is None else (values, "year-month-day")
-    if any(each["two"].isalpha() for each in stamps):
-        values = _seconds(found, ("three", "two", "one"))
-        return None if values is None else (values, "day-month-year, months by name")
-    ways = {
-        told: _seconds(found, order)
-        for told, order in (
-            ("day-month-year", ("three", "two", "one")),
-            ("month-day-year", ("three", "one", "two")),
-        )
-    }
+        orders = {"year-month-day": ("one", "two", "three")}
+    elif any(each["two"].isalpha() for each in stamps):
+        orders = {"day-month-year, months by name": ("three", "two", "one")}
+    else:
+        orders = {
+            "day-month-year": ("three", "two", "one"),
+            "month-day-year": ("three", "one", "two"),
+        }
+    ways = {told: _seconds(found, order) for told, order in orders.items()}
     possible = {told: values for told, values in ways.items() if values is not None}
     # Points stand between day, month and year alone.
     if stamps[0]["mark"] == "." and "day-month-year" in possible:
@@ -127,8 +124,7 @@ def _dates(
                 "expected year-month-day, as in 2024-02-28 23:59:59, or months by name"
             )
         return one, "dates of one day, whatever the order of day and month"
-    told, values = next(iter(possible.items()), ("", None))
-    return None if values is None else (values, told)
+    return next(((values, told) for told, values in possible.items()), None)
 
 
 def _seconds(

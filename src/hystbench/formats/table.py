@@ -1,6 +1,7 @@
 """What a file of measurements holds: named columns of numbers."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, in_line, nearest
 
 FloatArray = NDArray[np.float64]
 
@@ -28,29 +29,20 @@ INTERVALS = frozenset(
 
 @dataclass(frozen=True, repr=False)
 class Column:
-    """One column of a file.
-
-    Parameters
-    ----------
-    name : str
-        As dataset.yaml names it. What lies in a group of the file has the group before
-        a slash.
-    values : ndarray, shape (n,)
-        NaN where the file has no number.
-    unit : str, optional
-        As the file tells it.
-    sampling_frequency_hz : float, optional
-        Of this column alone, as the file tells it.
-    in_groups : bool
-        Whether a slash in the name stands between a group and a name in it. In a text
-        it does not: a header may be ``speed [m/s]``.
-    """
+    """One column of a file."""
 
     name: str
+    """As dataset.yaml names it. What lies in a group of the file has the group before a
+    slash."""
     values: FloatArray
+    """Shape (n,); NaN where the file has no number."""
     unit: str | None = None
+    """As the file tells it."""
     sampling_frequency_hz: float | None = None
+    """Of this column alone, as the file tells it."""
     in_groups: bool = True
+    """Whether a slash in the name stands between a group and a name in it. In a text it
+    does not: a header may be ``speed [m/s]``."""
 
     @property
     def group(self) -> str:
@@ -65,28 +57,18 @@ class Column:
 
 @dataclass(frozen=True, repr=False)
 class Table:
-    """Columns of one file; they may differ in length.
-
-    Parameters
-    ----------
-    path : Path
-    columns : tuple of Column
-    numbers : mapping of str to float
-        Lone numbers of the file, such as a sampling frequency, by name.
-    notes : tuple of str
-        What a reader should know: what was left out, what was taken for what.
-    rows : sequence of int, optional
-        The row of each sample, where the file is a text: as editors count.
-    others : tuple of str
-        Names of columns that were not read.
-    """
+    """Columns of one file; they may differ in length."""
 
     path: Path
     columns: tuple[Column, ...]
     numbers: Mapping[str, float] = field(default_factory=dict)
+    """Lone numbers of the file, such as a sampling frequency, by name."""
     notes: tuple[str, ...] = ()
+    """What a reader should know: what was left out, what was taken for what."""
     rows: Sequence[int] | None = None
+    """The row of each sample, where the file is a text: as editors count."""
     others: tuple[str, ...] = ()
+    """Names of columns that were not read."""
 
     @property
     def names(self) -> list[str]:
@@ -251,6 +233,20 @@ def fields_of(name: str, array: Any) -> dict[str, Any]:
     """Give the fields of a record array as arrays of their own, by name."""
     names = array.dtype.names
     return {f"{name}/{key}": array[key] for key in names} if names else {name: array}
+
+
+@contextmanager
+def told(path: Path, kind: str) -> Iterator[None]:
+    """Turn what a library raises of a damaged file into one line."""
+    try:
+        yield
+    except InputError:
+        raise
+    except MemoryError as error:
+        raise InputError(f"{path}: more than fits into memory") from error
+    except Exception as error:
+        # Libraries raise anything of what is damaged.
+        raise InputError(f"{path}: no readable {kind} ({in_line(error)})") from error
 
 
 #: Of a matrix: wider ones are pictures or tables of something else.

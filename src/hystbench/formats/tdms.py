@@ -5,8 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from hystbench.formats.damaged import told
-from hystbench.formats.table import Filling, Table
+from hystbench.formats.table import Filling, Table, told
 from hystbench.libraries import library
 
 UNITS = ("unit_string", "NI_UnitDescription", "unit", "Unit")

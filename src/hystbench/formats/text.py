@@ -40,24 +40,16 @@ _UNIT_CELL = re.compile(r"\s*(?:\[(?P<square>[^\]]*)\]|\((?P<round>[^)]*)\))\s*"
 
 @dataclass(frozen=True)
 class Layout:
-    """How a text is laid out.
-
-    Parameters
-    ----------
-    separator, decimal : str
-    names : tuple of str
-        Names of the columns.
-    units : tuple of str, optional
-        Of the columns, where a row of units stands below their names.
-    first : int
-        Index of the first line of numbers.
-    """
+    """How a text is laid out."""
 
     separator: str
     decimal: str
     names: tuple[str, ...]
+    """Names of the columns."""
     units: tuple[str, ...] | None
+    """Of the columns, where a row of units stands below their names."""
     first: int
+    """Index of the first line of numbers."""
 
 
 def read(path: Path, wanted: Collection[str] | None = None) -> Table:
@@ -213,14 +205,9 @@ def _are_units(cells: Sequence[str]) -> bool:
         return False
     if all(_UNIT_CELL.fullmatch(cell) for cell in said):
         return True
-    from hystbench.units import check_known  # late: most texts have no such row
+    from hystbench.units import is_known  # late: most texts have no such row
 
-    try:
-        for cell in said:
-            check_known("", cell)
-    except InputError:
-        return False
-    return True
+    return all(map(is_known, said))
 
 
 def _unit(cell: str) -> str:
@@ -329,31 +316,31 @@ def _numbers(
             values, stamps[column] = times
             found.append(values)
             continue
-        values, bad, spoilt = np.full(len(rows), np.nan), ("", ""), 0
-        for k, cells in enumerate(cut):
-            cell = cells[column].strip() if column < len(cells) else ""
-            if decimal == ",":
-                cell = cell.replace(",", ".")
-            if cell.lower() in NO_NUMBER:
-                continue
-            try:
-                if "_" in cell:
-                    raise ValueError
-                values[k] = float(cell)
-                if strict and np.isinf(values[k]):
-                    raise ValueError
-            except ValueError:
-                bad = bad if spoilt else (str(rows[k] + 1), cell)
-                spoilt += 1
+        if decimal == ",":
+            said = [cell.replace(",", ".") for cell in said]
+        numbers = [_value(cell, strict) for cell in said]
+        spoilt = [k for k, number in enumerate(numbers) if number is None]
+        values = np.array([np.nan if x is None else x for x in numbers])
         # A column of words is none of numbers; one with a few of them is spoilt.
-        words = not strict and (spoilt > len(rows) / 2 or np.isnan(values).all())
+        words = not strict and (len(spoilt) > len(rows) / 2 or np.isnan(values).all())
         if spoilt and not words:
             raise InputError(
-                f"{path}: row {bad[0]}: column {layout.names[column]!r} is {bad[1]!r}; "
-                "expected a finite number"
+                f"{path}: row {rows[spoilt[0]] + 1}: column {layout.names[column]!r} "
+                f"is {said[spoilt[0]]!r}; expected a finite number"
             )
         found.append(None if words else values)
     return found, stamps
+
+
+def _value(cell: str, strict: bool) -> float | None:
+    """Read a cell: NaN where it has no number, None where it is something else."""
+    if cell.lower() in NO_NUMBER:
+        return math.nan
+    try:
+        value = float(cell)
+    except ValueError:
+        return None
+    return None if "_" in cell or (strict and math.isinf(value)) else value
 
 
 def _no_numbers(lines: Sequence[str], wanted: Collection[str] | None) -> str:

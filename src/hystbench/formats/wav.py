@@ -5,8 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hystbench.formats.damaged import told
-from hystbench.formats.table import Column, FloatArray, Table
+from hystbench.formats.table import Column, FloatArray, Table, told
 
 
 def read(path: Path) -> Table:

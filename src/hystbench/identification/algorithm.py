@@ -5,20 +5,27 @@ Hysteresis Using a GPO-Based Adaptive Filter", Sensors 16(2), 205, 2016,
 doi:10.3390/s16020205.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hystbench.envelope import Envelope, fewest_samples, thresholds
+from hystbench.envelope import (
+    PUBLISHED_ENVELOPE,
+    Envelope,
+    fewest_samples,
+    thresholds,
+)
 from hystbench.errors import InputError
 from hystbench.identification import shape
 from hystbench.identification.result import Identification
 from hystbench.identification.search import Progress, Search
 from hystbench.identification.weights import Samples, Start, lead_in, solve
 from hystbench.metrics import relative_error
-from hystbench.record import FloatArray
+from hystbench.record import FloatArray, Record
 
 #: Samples of the thinned record on which starting points are improved.
 SEARCH_SAMPLES = 600
@@ -163,6 +170,41 @@ def identify(
         epsilon=epsilon,
         starts=used,
         published_relative_error=compared,
+    )
+
+
+def identify_slow_loop(
+    slow: Record, settings: Mapping[str, Any], progress: Progress | None = None
+) -> Identification:
+    """Identify envelope functions, thresholds and weights on a slow record.
+
+    On the twin the published envelopes are fitted beside the identified ones, and
+    these get the same scale: data cannot tell it, and the GPO filter's convergence
+    factor depends on it.
+
+    Parameters
+    ----------
+    slow : Record
+    settings : mapping
+        ``tolerable_relative_error``, ``order``, ``max_iterations``, ``starts`` and
+        ``seed``.
+    progress : callable, optional
+        As for :func:`hystbench.identification.identify`.
+    """
+    tolerable = settings["tolerable_relative_error"]
+    twin = slow.origin == "twin"
+    span = float(slow.u.min()), float(slow.u.max())
+    return identify(
+        slow.u,
+        slow.y,
+        settings["order"],
+        epsilon=tolerable**2 * float(np.sum(slow.y**2)),
+        max_iterations=settings["max_iterations"],
+        starts=settings["starts"],
+        seed=settings["seed"],
+        scale=shape.envelope_scale(PUBLISHED_ENVELOPE, *span) if twin else None,
+        published=PUBLISHED_ENVELOPE if twin else None,
+        progress=progress,
     )
 
 

@@ -13,49 +13,32 @@ from hystbench.record import FloatArray
 
 @dataclass(frozen=True)
 class Identification:
-    """Generalized Prandtl-Ishlinskii model of a slow record, by Algorithm 1.
-
-    Parameters
-    ----------
-    envelope : Envelope
-        Envelope functions, Eqs. 5 and 6.
-    thresholds : ndarray, shape (N + 1,)
-        Thresholds by Eq. 10.
-    weights : ndarray, shape (N + 1,)
-        Weights of Eq. 9 in units of output per unit of envelope.
-    offset : float
-        Constant beside Eq. 9, in the unit of the output; zero unless it was fitted.
-    amplitude : float
-        Largest magnitude of the input.
-    start : {"rest", "settled"}
-        States before the first sample: zero (Eq. 3), or as the same input leaves
-        them.
-    cost : float
-        J of Eq. 11 over the whole record.
-    cost_history : tuple of float
-        The least J over the whole record after each iteration.
-    epsilon : float
-        Tolerable J.
-    relative_error : float
-        RE over the whole record.
-    starts : int
-        Starting points that were used.
-    published_relative_error : float, optional
-        RE with the published envelopes and the weights that fit best with them.
-    """
+    """Generalized Prandtl-Ishlinskii model of a slow record, by Algorithm 1."""
 
     envelope: Envelope
+    """Envelope functions, Eqs. 5 and 6."""
     thresholds: FloatArray
+    """Thresholds by Eq. 10, shape (N + 1,)."""
     weights: FloatArray
+    """Weights of Eq. 9, output per unit of envelope, shape (N + 1,)."""
     offset: float
+    """Constant beside Eq. 9, in the unit of the output; zero unless it was fitted."""
     amplitude: float
+    """Largest magnitude of the input."""
     start: Start
+    """States before the first sample: zero (Eq. 3), or as the input leaves them."""
     cost: float
+    """J of Eq. 11 over the whole record."""
     cost_history: tuple[float, ...]
+    """The least J over the whole record after each iteration."""
     epsilon: float
+    """Tolerable J."""
     relative_error: float
+    """RE over the whole record."""
     starts: int
+    """Starting points that were used."""
     published_relative_error: float | None = None
+    """RE with the published envelopes and the weights that fit best with them."""
 
     def __post_init__(self) -> None:
         """Freeze the arrays."""

@@ -19,25 +19,17 @@ SINGULAR = 1e-4
 
 @dataclass(frozen=True)
 class Samples:
-    """Samples of a slow record, with the path of the input that led to them.
-
-    Parameters
-    ----------
-    u, y : ndarray, shape (n,)
-        Input and output.
-    lead : ndarray, shape (m,)
-        Input before the first sample; it only sets the states of the operators.
-    with_offset : bool
-        Whether a constant stands beside Eq. 9.
-    nonnegative : bool
-        Whether the weights may not be negative.
-    """
+    """Samples of a slow record, with the path of the input that led to them."""
 
     u: FloatArray
     y: FloatArray
+    """Input and output, shape (n,) each."""
     lead: FloatArray
+    """Input before the first sample, shape (m,): it sets the operators' states."""
     with_offset: bool = False
+    """Whether a constant stands beside Eq. 9."""
     nonnegative: bool = True
+    """Whether the weights may not be negative."""
 
     def outputs(self, envelope: Envelope, thresholds: FloatArray) -> FloatArray:
         """Outputs of the generalized play operators, shape (n, N + 1)."""

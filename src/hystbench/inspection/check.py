@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.blocks import block_class
 from hystbench.dataset import Dataset
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
@@ -15,11 +16,11 @@ from hystbench.flat import flats
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.floor import Floor, noise_floor
 from hystbench.gap.records.scored_samples import Compared, rms
-from hystbench.inspection.base import loop_of_plays
+from hystbench.inspection.entries import entry_text
 from hystbench.inspection.facts import Facts, facts_of, late
 from hystbench.inspection.visible import SmallestSeen, seen_effects
-from hystbench.inspection.writing import entry_text
 from hystbench.model import Model
+from hystbench.operators import play
 from hystbench.record import Record
 from hystbench.yaml_files import load_yaml
 
@@ -27,61 +28,43 @@ ALIKE = 2.0
 """Ratio of the fastest rate to the slowest below which records are of one rate."""
 JITTERS = 0.01
 """Of a step: a clock that is less even than that is told."""
+OPERATORS = 10
+"""Play operators, the first of threshold zero: the input itself."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that a reader should know.
-
-    Parameters
-    ----------
-    kind : {"wrong", "missing", "note"}
-        Refused by ``hystbench gap``; to be added to dataset.yaml; good to know.
-    text : str
-    paste : tuple of str
-        Lines for dataset.yaml that mend it.
-    topic : str
-        Findings of one topic say the same of several records.
-    record : str
-        Whom it concerns; empty where that is no single record.
-    """
+    """One thing that a reader should know."""
 
     kind: str
+    """``wrong``: ``hystbench gap`` refuses it; ``missing``: dataset.yaml lacks it; or
+    ``note``."""
     text: str
     paste: tuple[str, ...] = ()
+    """Lines for dataset.yaml that mend it."""
     topic: str = ""
+    """Findings of one topic say the same of several records."""
     record: str = ""
+    """Whom it concerns; empty where that is no single record."""
 
 
 @dataclass(frozen=True, eq=False)
 class Check:
-    """A dataset that was looked at.
-
-    Parameters
-    ----------
-    dataset : Dataset
-    records : tuple of Record
-        With the periods that were found.
-    facts : tuple of Facts
-        In their order.
-    floor : Floor
-    base : Model
-        Beside which effects were simulated.
-    left : float
-        Rms of what it leaves on the fit records, in the output's unit.
-    findings : tuple of Finding
-    effects : tuple of SmallestSeen
-        None where they were not simulated.
-    """
+    """A dataset that was looked at."""
 
     dataset: Dataset
     records: tuple[Record, ...]
+    """With the periods that were found."""
     facts: tuple[Facts, ...]
+    """In their order."""
     floor: Floor
     base: Model
+    """Beside which effects were simulated."""
     left: float
+    """Rms of what it leaves on the fit records, in the output's unit."""
     findings: tuple[Finding, ...]
     effects: tuple[SmallestSeen, ...]
+    """Empty where they were not simulated."""
 
     @property
     def revealed(self) -> tuple[SmallestSeen, ...]:
@@ -136,6 +119,50 @@ def check(dataset: Dataset, effects: bool = True) -> Check:
     )
 
 
+def loop_of_plays(records: Sequence[Record]) -> Model:
+    """Fit a gain, an offset and play operators to records, by least squares.
+
+    ``y = g (u + sum_i w_i P_i[u]) + c``: a hysteresis that does not depend on the rate.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        All of one input and output.
+
+    Returns
+    -------
+    Model
+        A ``prandtl-ishlinskii`` block and a ``gain``.
+    """
+    amplitude = max(float(np.abs(record.u).max()) for record in records)
+    thresholds = amplitude * np.arange(OPERATORS) / OPERATORS
+    tables, outputs = [], []
+    for record in records:
+        plays = play(record.u, thresholds)[0]
+        weight = 1 / np.sqrt(len(record))  # a record counts once, however long
+        tables.append(weight * np.column_stack([np.ones(len(record)), plays]))
+        outputs.append(weight * record.y)
+    table, y = np.vstack(tables), np.concatenate(outputs)
+    size = np.linalg.norm(table, axis=0)
+    size[size == 0] = 1.0
+    offset, *weights = np.linalg.lstsq(table / size, y, rcond=1e-6)[0] / size
+    reach = max(float(np.ptp(r.y)) for r in records) / (2 * amplitude)
+    gain = max(abs(sum(weights)), 1e-3 * reach)
+    shares = np.array(weights) / gain
+    shares[0] -= 1.0  # the block has the input itself beside its operators
+    return Model(
+        "loop of play operators",
+        records[0].input,
+        records[0].output,
+        (
+            block_class("prandtl-ishlinskii").from_mapping(
+                {"thresholds": thresholds.tolist(), "weights": shares.tolist()}
+            ),
+            block_class("gain").from_mapping({"value": gain, "offset": float(offset)}),
+        ),
+    )
+
+
 def _findings(
     dataset: Dataset, records: Sequence[Record], facts: Sequence[Facts], floor: Floor
 ) -> list[Finding]:
@@ -148,12 +175,10 @@ def _findings(
         lines = [_entry(dataset, item.name, period_samples=item.period) for item in new]
         found.append(_finding("periods", told=told, paste=lines))
     found += [each for item in facts for each in _holes(item)]
-    for item in late(facts):
-        delay: dict[str, Any] = {
-            "ms": 1e3 * item.delay_s,
-            "samples": item.delay_s / item.dt,
-        }
-        found.append(_finding("late", name=item.name, **delay))
+    found += [
+        _finding("late", name=x.name, ms=1e3 * x.delay_s, samples=x.delay_s / x.dt)
+        for x in late(facts)
+    ]
     fit = [item.excitation for item in facts if item.use == "fit"]
     rates, spans = ([x.rate for x in fit], [round(x.span, 12) for x in fit])
     on_the_whole = {

@@ -12,15 +12,9 @@ from hystbench.device_kinds import DeviceKind
 from hystbench.errors import InputError, refuse_unknown
 from hystbench.formats import Column, Table
 from hystbench.inspection.clocks import clock_of
-from hystbench.inspection.names import (
-    choose,
-    is_known,
-    is_simulated,
-    is_time,
-    split_unit,
-)
+from hystbench.inspection.names import choose, is_simulated, is_time, split_unit
 from hystbench.record import FloatArray
-from hystbench.units import NONE, check_known, plain
+from hystbench.units import NONE, check_known, is_known, plain
 
 LEAST = 20
 """Samples of a signal; fewer are a table of something else."""
@@ -61,20 +55,13 @@ class Flags:
 
 @dataclass(frozen=True)
 class RecordColumns:
-    """One record to be: a group of columns of one length in a file.
-
-    Parameters
-    ----------
-    table : Table
-    group : str
-        Where the columns lie in the file; empty at the top.
-    columns : mapping of str to Column
-        By the name that they have in every record.
-    """
+    """One record to be: a group of columns of one length in a file."""
 
     table: Table
     group: str
+    """Where the columns lie in the file; empty at the top."""
     columns: Mapping[str, Column]
+    """By the name that they have in every record."""
 
     @property
     def where(self) -> str:

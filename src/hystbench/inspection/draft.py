@@ -33,23 +33,15 @@ from hystbench.written import sha256
 
 @dataclass(frozen=True)
 class Draft:
-    """A proposed dataset.
-
-    Parameters
-    ----------
-    dataset : Dataset
-        Checked: each record can be read.
-    records : tuple of Record
-    notes : tuple of str
-        What was found and what was taken for what, one line each.
-    warnings : tuple of str
-        What is hardly meant.
-    """
+    """A proposed dataset."""
 
     dataset: Dataset
+    """Checked: each record can be read."""
     records: tuple[Record, ...]
     notes: tuple[str, ...]
+    """What was found and what was taken for what, one line each."""
     warnings: tuple[str, ...] = ()
+    """What is hardly meant."""
 
 
 def draft(files: Sequence[Path], place: Path, given: Flags, ask: Ask) -> Draft:

@@ -4,7 +4,7 @@ import math
 import os
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -16,10 +16,9 @@ from hystbench.dataset import RECORD_NAME
 from hystbench.errors import InputError, refuse_unknown
 from hystbench.inspection.clocks import Ticks, ticks_of
 from hystbench.inspection.columns import LEAST, Ask, ChosenColumns, Flags, RecordColumns
-from hystbench.inspection.excitation import excitation_of
+from hystbench.inspection.excitation import InputSummary, excitation_of
 from hystbench.inspection.missing import cannot_be_bridged, runs
 from hystbench.inspection.names import split_unit
-from hystbench.inspection.roles import propose
 from hystbench.periods import find_period
 from hystbench.record import Record
 from hystbench.samples import UNIFORM_TOLERANCE
@@ -27,6 +26,13 @@ from hystbench.units import seconds
 
 ONE_HELD_OUT = 3
 """Of a lone record: a third is held out."""
+HEAD = (
+    "# Proposed by hystbench init. Change what is wrong; the tutorial has all keys.\n"
+)
+ORDER = (
+    *("file", "group", "rows", "name", "use", "period_samples", "missing"),
+    *("sampling_frequency_hz", "stands_still", "meant", "sha256"),
+)
 
 Entry = dict[str, Any]
 
@@ -294,3 +300,92 @@ def cut_in_two(
         {**entry, "name": f"{name}-1", "rows": [first, before], "use": "fit"},
         {**entry, "name": f"{name}-2", "rows": [after, last], "use": "hold-out"},
     ]
+
+
+def propose(inputs: Mapping[str, InputSummary]) -> tuple[tuple[str, ...], str]:
+    """Propose the records to hold out.
+
+    Where there are several kinds of input, one kind is held out: that with the fewest
+    records, so long as it does not reach beyond the others in range; of equals the one
+    that reaches least beyond them in frequency. Of one kind alone the record in the
+    middle of the rates is held out, of eight or more every fourth: a model is judged
+    between what it was fitted to, and not beyond.
+
+    Parameters
+    ----------
+    inputs : mapping of str to InputSummary
+        Two records or more.
+
+    Returns
+    -------
+    tuple of str
+        Names of those to hold out; at least one record is left to fit.
+    str
+        Why these.
+    """
+    kinds: dict[str, list[str]] = {}
+    for name, item in inputs.items():
+        kinds.setdefault(item.kind, []).append(name)
+    tried = [
+        (len(names) > len(inputs) // 2, *_beyond(inputs, names), len(names), kind)
+        for kind, names in kinds.items()
+    ]
+    if len(kinds) > 1:
+        *_, kind = min(tried)
+        others = " and ".join(sorted(set(kinds) - {kind}))
+        return (
+            tuple(kinds[kind]),
+            f"the inputs held out are of another kind ({kind}) than those to fit "
+            f"({others})",
+        )
+    by_rate = sorted(inputs, key=lambda name: inputs[name].rate)
+    count = max(1, len(by_rate) // 4)
+    step = len(by_rate) / count
+    chosen = {by_rate[int((k + 0.5) * step - 0.5)] for k in range(count)}
+    kind = next(iter(kinds))
+    return (
+        tuple(name for name in inputs if name in chosen),
+        f"all inputs are of one kind ({kind}); of these one in the middle of the rates "
+        "is held out, and a record of another kind would prove more",
+    )
+
+
+def _beyond(inputs: Mapping[str, InputSummary], names: list[str]) -> tuple[bool, float]:
+    """Tell whether records reach beyond the range of the others, and their band."""
+    own = [inputs[name] for name in names]
+    rest = [item for name, item in inputs.items() if name not in names]
+    if not rest:
+        return True, 0.0
+    span = max(item.high for item in rest) - min(item.low for item in rest)
+    over = max(
+        max(item.high for item in own) - max(item.high for item in rest),
+        min(item.low for item in rest) - min(item.low for item in own),
+    )
+    faster = max(i.high_hz for i in own) / max(i.high_hz for i in rest)
+    return over > 0.1 * span, max(faster, 1.0)
+
+
+def yaml_text(about: Mapping[str, Any]) -> str:
+    """Write a dataset.yaml, one line a key and one a record."""
+    lines = [HEAD]
+    for key, value in about.items():
+        if key != "records":
+            lines.append(f"{key}: {_flow(value)}\n")
+    lines.append("records:\n")
+    lines += [f"  - {entry_text(entry)}\n" for entry in about["records"]]
+    return "".join(lines)
+
+
+def entry_text(entry: Mapping[str, Any]) -> str:
+    """Write a record's entry in one line."""
+    ordered = {key: entry[key] for key in ORDER if key in entry}
+    return _flow(ordered)
+
+
+def _flow(value: Any) -> str:
+    import yaml  # late: as everywhere
+
+    text: str = yaml.safe_dump(
+        value, default_flow_style=True, width=10**6, allow_unicode=True, sort_keys=False
+    )
+    return text.removesuffix("...\n").strip()

@@ -24,28 +24,19 @@ IN_BAND = 0.99
 
 @dataclass(frozen=True)
 class InputSummary:
-    """An input in a few numbers.
-
-    Parameters
-    ----------
-    kind : str
-    low_hz, high_hz : float
-        Band that holds 99 % of the power of its changes about the mean.
-    low, high : float
-        Range, in the input's unit.
-    rate : float
-        Rms of its rate, in its unit a second.
-    fastest : float
-        Largest rate.
-    """
+    """An input in a few numbers."""
 
     kind: ExcitationKind
     low_hz: float
     high_hz: float
+    """Band that holds 99 % of the power of its changes about the mean."""
     low: float
     high: float
+    """Range, in the input's unit."""
     rate: float
+    """Rms of its rate, in its unit a second."""
     fastest: float
+    """Largest rate."""
 
     @property
     def span(self) -> float:

@@ -33,54 +33,36 @@ INDEPENDENT = 20
 
 @dataclass(frozen=True)
 class Facts:
-    """One record in a few numbers.
-
-    Parameters
-    ----------
-    name : str
-    use : {"fit", "hold-out"}
-    samples : int
-    dt : float
-        Sampling interval in seconds.
-    jitter : float or None
-        Rms of the steps of time about their mean, as a share of it; None without a
-        column of time.
-    period : int or None
-        Samples, as the dataset says or as it was found.
-    declared : bool
-        Whether the dataset says it.
-    excitation : InputSummary
-    low, high : float
-        Range of the output.
-    stuck : str
-        What looks stuck or clipped, in words; empty where nothing does.
-    missing : int
-        Samples that were interpolated, in time, input or output.
-    bridged_too_far : bool
-        Whether a gap of the input is longer than a straight line can stand for.
-    delay_s, delay_error_s : float
-        By how much the output is behind a loop that does not depend on the rate, and
-        the standard error of that.
-    delay_share : float
-        Share of the power that the loop leaves which goes with the delay.
-    """
+    """One record in a few numbers."""
 
     name: str
     use: Use
     samples: int
     dt: float
+    """Sampling interval in seconds."""
     jitter: float | None
+    """Rms of the steps of time about their mean, as a share of it; None without a
+    column of time."""
     period: int | None
+    """Samples, as the dataset says or as it was found."""
     declared: bool
+    """Whether the dataset says it."""
     excitation: InputSummary
     low: float
     high: float
+    """Range of the output."""
     stuck: str
+    """What looks stuck or clipped, in words; empty where nothing does."""
     missing: int
+    """Samples that were interpolated, in time, input or output."""
     bridged_too_far: bool
+    """Whether a gap of the input is longer than a straight line can stand for."""
     delay_s: float
     delay_error_s: float
+    """By how much the output is behind a loop that does not depend on the rate, and the
+    standard error of that."""
     delay_share: float
+    """Share of the power that the loop leaves which goes with the delay."""
 
     @property
     def periods(self) -> float:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 
 from hystbench.errors import InputError
-from hystbench.units import PREFIXES, SYMBOLS, check_known, plain, seconds
+from hystbench.units import PREFIXES, SYMBOLS, is_known, plain, seconds
 
 #: Words of a name, in small letters. Of compounds the end counts: ``spulenstrom``.
 TIME = ("time", "t", "zeit", "temps", "tiempo", "tempo", "timestamp", "timestamps")
@@ -49,15 +49,6 @@ def split_unit(name: str) -> tuple[str, str | None]:
     if found and _is_simple(plain(found["unit"])):
         return found["name"].replace("_", " ").strip(), plain(found["unit"])
     return name.replace("_", " ").strip(), None
-
-
-def is_known(unit: str) -> bool:
-    """Tell whether a unit is one that is known."""
-    try:
-        check_known("", unit)
-    except InputError:
-        return False
-    return True
 
 
 def _is_simple(unit: str) -> bool:

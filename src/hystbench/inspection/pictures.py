@@ -44,11 +44,8 @@ def bands(axes: Sequence[Axes], found: Check) -> None:
     """Draw each record's band, over the swing of its input."""
     (ax,) = axes
     for use, colour in (("fit", BLUE), ("hold-out", VERMILION)):
-        label: str | None = use
-        for item in found.facts:
-            if item.use != use:
-                continue
-            given = item.excitation
+        inputs = [item.excitation for item in found.facts if item.use == use]
+        for k, given in enumerate(inputs):
             ax.plot(
                 [given.low_hz, given.high_hz],
                 [given.span, given.span],
@@ -57,9 +54,8 @@ def bands(axes: Sequence[Axes], found: Check) -> None:
                 markersize=7,
                 linewidth=2,
                 alpha=0.8,
-                label=label,
+                label=None if k else use,
             )
-            label = None
     ax.set_xscale("log")
     ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     ax.xaxis.set_minor_formatter(NullFormatter())

@@ -21,35 +21,24 @@ POINTS = 6
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """What an effect adds at one point of its range.
-
-    Parameters
-    ----------
-    effect, form, place : str
-    values : dict of str to float
-        Numbers that are searched, such as a time constant.
-    scaled : str
-        The number that it is proportional to; empty where ``values`` alone say how
-        strong it is.
-    block : Block or None
-        With ``scaled`` at its unit; None of a signal beside the chain.
-    columns : ndarray, shape (scored samples, k)
-        What it adds; more than one where each record has its own.
-    unit : float
-        The value of ``scaled`` at which it adds that.
-    charge : float
-        Numbers that it is charged for in the search for names.
-    """
+    """What an effect adds at one point of its range."""
 
     effect: str
     form: str
     place: str
     values: dict[str, float]
+    """Numbers that are searched, such as a time constant."""
     scaled: str
+    """The number that it is proportional to; empty where ``values`` alone say how
+    strong it is."""
     block: Block | None
+    """With ``scaled`` at its unit; None of a signal beside the chain."""
     columns: FloatArray
+    """What it adds, shape (scored samples, k); k > 1 where each record has its own."""
     unit: float
+    """The value of ``scaled`` at which it adds that."""
     charge: float
+    """Numbers that it is charged for in the search for names."""
 
 
 def shapes_of(state: ModelState) -> tuple[list[Shape], dict[str, str]]:

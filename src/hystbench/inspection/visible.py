@@ -33,39 +33,27 @@ TAKEN = 0.99
 
 @dataclass(frozen=True)
 class SmallestSeen:
-    """How strong an effect must be on these records.
-
-    Parameters
-    ----------
-    effect, place : str
-    seen_from : float
-        The rms that it must add for the search to pay for it, as a share of the
-        output's rms about its mean; infinite where nothing it does stands out.
-    value : float
-        The number that says how strong it then is; NaN where none does.
-    number, unit : str
-        That number's name and unit in the block, U and Y for those of the signals.
-    form : str
-        In which it is seen first, with the other numbers of that.
-    absorbed : float
-        Share of the power of what it adds that the base could do as well.
-    rivals : tuple of (str, float)
-        What it can be mistaken for, with the share from which on it can be told;
-        infinite where never. The nearest first.
-    why : str
-        Why it is not revealed; empty where it is.
-    """
+    """How strong an effect must be on these records."""
 
     effect: str
-    place: str
-    seen_from: float
-    value: float
-    number: str
-    unit: str
-    form: str
-    absorbed: float
-    rivals: tuple[tuple[str, float], ...]
-    why: str
+    place: str = ""
+    seen_from: float = np.inf
+    """The rms that it must add for the search to pay for it, as a share of the output's
+    rms about its mean; infinite where nothing it does stands out."""
+    value: float = np.nan
+    """The number that says how strong it then is; NaN where none does."""
+    number: str = ""
+    unit: str = ""
+    """That number's name and unit in the block, U and Y for those of the signals."""
+    form: str = ""
+    """In which it is seen first, with the other numbers of that."""
+    absorbed: float = 0.0
+    """Share of the power of what it adds that the base could do as well."""
+    rivals: tuple[tuple[str, float], ...] = ()
+    """What it can be mistaken for, with the share from which on it can be told;
+    infinite where never. The nearest first."""
+    why: str = ""
+    """Why it is not revealed; empty where it is."""
 
     @property
     def revealed(self) -> bool:
@@ -121,11 +109,7 @@ def seen_effects(
         rest = [item for item in measured if item.shape.effect != name]
         found.append(judge.seen(mine, rest))
     for name, why in declined.items():
-        found.append(
-            SmallestSeen(
-                name, "", np.inf, np.nan, "", "", "", 0.0, (), f"not tried: {why}"
-            )
-        )
+        found.append(SmallestSeen(name, why=f"not tried: {why}"))
     return tuple(sorted(found, key=lambda item: (item.seen_from, item.effect)))
 
 
@@ -232,22 +216,18 @@ class _Judge:
         self, mine: Sequence[_Measured], rest: Sequence[_Measured]
     ) -> SmallestSeen:
         """Give what it takes to see an effect, in the form in which it shows first."""
-        found = [*_scaled(mine), *_graded(mine)]
-        first = min(found, key=lambda each: each.share, default=None)
-        item = min(mine, key=lambda each: each.needed) if first is None else first.item
-        share = float("inf") if first is None else first.share
-        shape = item.shape
-        number, unit = _number(shape)
+        nowhere = _Found(np.inf, np.nan, min(mine, key=lambda each: each.needed))
+        found = [nowhere, *_scaled(mine), *_graded(mine)]
+        share, value, item = min(found, key=lambda each: each.share)
         return SmallestSeen(
-            shape.effect,
-            shape.place,
+            item.shape.effect,
+            item.shape.place,
             share,
-            float("nan") if first is None else first.value,
-            number,
-            unit,
-            _words(shape),
+            value,
+            *_number(item.shape),
+            _words(item.shape),
             item.absorbed,
-            () if first is None else self._rivals(item, share, rest),
+            self._rivals(item, share, rest) if np.isfinite(share) else (),
             self._why(item, share),
         )
 

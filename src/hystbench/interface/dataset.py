@@ -34,13 +34,7 @@ class ShownDataset(files.Dataset):
         return tuple(self.read(name) for name in self.record_files)
 
     def __getitem__(self, name: str) -> Record:
-        """Give the record of a name.
-
-        Raises
-        ------
-        InputError
-            If there is none.
-        """
+        """Give the record of a name; refuse a name that no record has."""
         for record in self.records:
             if record.name == name:
                 return record
@@ -87,7 +81,19 @@ class ShownDataset(files.Dataset):
         """
         import pandas as pd  # late: it takes half a second
 
-        return pd.concat([_frame(record) for record in self.records], ignore_index=True)
+        frames = []
+        for record in self.records:
+            columns = {
+                "record": record.name,
+                "use": record.use,
+                "time_s": record.time,
+                column_name(record.input.name, record.input.unit): record.u,
+                column_name(record.output.name, record.output.unit): record.y,
+            }
+            if record.simulated is not None:
+                columns["simulated"] = record.simulated
+            frames.append(pd.DataFrame(columns))
+        return pd.concat(frames, ignore_index=True)
 
     def plot(self) -> Picture:
         """Draw each record: input and output over time, and output over input.
@@ -96,11 +102,10 @@ class ShownDataset(files.Dataset):
         -------
         matplotlib.figure.Figure
         """
-        from hystbench.interface import pictures  # late: it draws
-        from hystbench.interface.picture import drawn
+        from hystbench.interface.picture import drawn, records  # late: it draws
 
         shown = self.records[:DRAWN]
-        return drawn(lambda axes: pictures.records(axes, shown), len(shown), 3, 1.9)
+        return drawn(lambda axes: records(axes, shown), len(shown), 3, 1.9)
 
 
 def load_dataset(path: str | Path) -> ShownDataset:
@@ -122,18 +127,3 @@ def load_dataset(path: str | Path) -> ShownDataset:
     """
     found = files.load_dataset(path)
     return ShownDataset(**vars(found))
-
-
-def _frame(record: Record) -> pd.DataFrame:
-    import pandas as pd
-
-    columns = {
-        "record": record.name,
-        "use": record.use,
-        "time_s": record.time,
-        column_name(record.input.name, record.input.unit): record.u,
-        column_name(record.output.name, record.output.unit): record.y,
-    }
-    if record.simulated is not None:
-        columns["simulated"] = record.simulated
-    return pd.DataFrame(columns)

@@ -182,18 +182,14 @@ class Gap:
         -------
         matplotlib.figure.Figure
         """
-        from hystbench.interface import pictures  # late: it draws
         from hystbench.interface.dataset import DRAWN
-        from hystbench.interface.picture import drawn
+        from hystbench.interface.picture import drawn, gap  # late: it draws
 
         records = self.closed.evidence.hold_out[:DRAWN]
         outputs = self.closed.outcome.outputs[:DRAWN]
         floor = self.content["gap"]["noise_floor"]
         return drawn(
-            lambda axes: pictures.gap(axes, records, outputs, floor),
-            len(records),
-            2,
-            2.2,
+            lambda axes: gap(axes, records, outputs, floor), len(records), 2, 2.2
         )
 
     def save(self, folder: str | Path, report: bool = True) -> Path:

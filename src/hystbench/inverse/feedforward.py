@@ -34,26 +34,18 @@ class InputRange(NamedTuple):
 
 @dataclass(frozen=True)
 class Feedforward:
-    """An input, and how well the model's output follows the reference with it.
-
-    Parameters
-    ----------
-    u, y : ndarray, shape (n,)
-        The input and the model's output.
-    error : tuple of float
-        RMS error of the model's output after each correction, as a share of the
-        reference's peak-to-peak.
-    exact : str
-        The block that was inverted exactly, or nothing.
-    clipped : int
-        Samples at which the input stands at a limit.
-    """
+    """An input, and how well the model's output follows the reference with it."""
 
     u: FloatArray
     y: FloatArray
+    """The input and the model's output, shape (n,) each."""
     error: tuple[float, ...]
+    """RMS error of the model's output after each correction, as a share of the
+    reference's peak-to-peak."""
     exact: str
+    """The block that was inverted exactly, or nothing."""
     clipped: int
+    """Samples at which the input stands at a limit."""
 
     @property
     def left(self) -> float:
@@ -152,24 +144,17 @@ class Start:
     """How what is iterated becomes an input: by plays that are inverted exactly.
 
     What is iterated is then the output of these plays, else the input itself.
-
-    Parameters
-    ----------
-    name : str
-        The block of the plays; nothing where there is none.
-    plays : Plays or None
-    scale, shift : float
-        The straight line before the plays; what else is before or around them counts
-        as nothing here, and is left to the iteration.
-    limits : InputRange
-        Those of the input.
     """
 
     name: str
+    """The block of the plays; nothing where there is none."""
     plays: Plays | None
     scale: float
     shift: float
+    """The straight line before the plays; what else is before or around them counts as
+    nothing here, and is left to the iteration."""
     limits: InputRange
+    """Those of the input."""
 
     @classmethod
     def of(cls, model: Model, limits: InputRange) -> Start:

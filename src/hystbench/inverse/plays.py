@@ -16,7 +16,6 @@ from typing import NamedTuple
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.base import Block
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.blocks.prandtl_ishlinskii import PrandtlIshlinskii
 from hystbench.record import FloatArray
@@ -41,8 +40,6 @@ class Plays(NamedTuple):
     @classmethod
     def of(cls, block: object) -> Plays | None:
         """Give the plays that a block is made of, None of any other block."""
-        if not isinstance(block, Block):
-            return None
         if isinstance(block, GeneralizedPrandtlIshlinskii):
             terms = np.zeros((3, len(block.weights)))
             terms[0] = block.weights

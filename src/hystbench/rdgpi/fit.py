@@ -16,21 +16,14 @@ from hystbench.record import FloatArray, Record
 
 @dataclass(frozen=True)
 class RateDependentFit:
-    """A model fitted to records, and how well it fits them.
-
-    Parameters
-    ----------
-    model : RateDependentGPI
-        The fitted model.
-    relative_error : dict of str to float
-        RE of the free-run output by record, over the whole record.
-    starts : int
-        Starting points that were tried.
-    """
+    """A model fitted to records, and how well it fits them."""
 
     model: RateDependentGPI
+    """The fitted model."""
     relative_error: dict[str, float]
+    """RE of the free-run output by record, over the whole record."""
     starts: int
+    """Starting points that were tried."""
 
 
 #: Largest step of the input between samples of a fit, as a share of its range, and

@@ -17,10 +17,6 @@ from hystbench.errors import InputError, refuse_unknown
 from hystbench.operators import rate_dependent_prandtl_ishlinskii
 from hystbench.record import FloatArray
 
-#: The paper's symbols where the names here differ; its mu is no convergence factor.
-PAPER_SYMBOLS = {"envelope_gain": "xi", "envelope_offset": "mu"}
-
-
 Start = Literal["rest", "settled"]
 STARTS: tuple[Start, ...] = ("rest", "settled")
 
@@ -56,7 +52,7 @@ class RateDependentGPI(NamedNumbers):
     rho, tau : float
         Weight of the first operator times N + 1, and its decay over the thresholds.
     envelope_gain, envelope_offset : float
-        The paper's xi and mu.
+        The paper's xi and mu, which is no convergence factor.
     order : int
         Order N.
     start : {"rest", "settled"}

@@ -5,9 +5,9 @@ from dataclasses import asdict
 from typing import Any
 
 from hystbench.compare.evidence import Cell, Run
+from hystbench.identification.algorithm import identify_slow_loop
 from hystbench.rdgpi import RateDependentGPI, identify_rdgpi
 from hystbench.record import Record
-from hystbench.slow_loop import identify_slow_loop
 from hystbench.twins.read import Twin
 from hystbench.twins.runs import Settings, bare_run, draw_signals, measure_twin
 

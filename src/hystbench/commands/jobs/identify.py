@@ -3,9 +3,9 @@
 import click
 
 from hystbench.files import write_json
+from hystbench.identification.algorithm import identify_slow_loop
 from hystbench.record import load_record
 from hystbench.signature import In, Out, Settings, command
-from hystbench.slow_loop import identify_slow_loop
 
 
 @command
