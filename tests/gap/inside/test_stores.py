@@ -14,7 +14,12 @@ from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import Fitted, judged
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.inside.hosts import best_host, hosts, may_be_stores
+from hystbench.gap.inside.hosts import (
+    all_are_seen_filling,
+    best_host,
+    hosts,
+    may_be_stores,
+)
 from hystbench.gap.inside.named_inside import chosen
 from hystbench.gap.inside.stores import how_it_fills, stores
 from hystbench.gap.records.scored_samples import ScoredSamples
@@ -305,6 +310,15 @@ def test_a_base_that_is_the_tangent_of_the_outflow_lacks_its_root(about):
     assert store.rate == pytest.approx(rate, rel=0.02)
     assert store.exponent == pytest.approx(0.5, abs=0.02)
     assert np.sqrt(np.mean(best.state.residual**2)) < 1.1 * NOISE
+
+
+@pytest.mark.parametrize(("fast", "seen"), [(0.7, True), (0.9, False)])
+def test_a_store_that_fills_within_a_sample_is_no_host(fast, seen):
+    """The samples, four seconds apart, show rates of up to pi / 4 a second."""
+    slow, other = (Store(gain=1.0, rate=x, exponent=1.0) for x in (0.02, fast))
+    record = tanks(root=False, height=np.inf)
+    state = ModelState((slow, other), (record,), ScoredSamples.of((record,)))
+    assert all_are_seen_filling(state) == seen
 
 
 def _ends(value):

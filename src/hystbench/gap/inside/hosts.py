@@ -170,7 +170,7 @@ def _of_stores(start: ModelState, identified: bool, score: Score) -> Iterator[Ho
     for count, words in STORES.items():
         begun = stores(start.records, start.hold, noise, count)
         best = best_host(list(begun), score)
-        if best is None:
+        if best is None or not all_are_seen_filling(best.state):
             continue
         words, alone, charge = f"{words} in place of the base", best.state, 0.0
         if not identified:
@@ -346,6 +346,17 @@ def is_seen_moving(state: ModelState) -> bool:
     poles = np.roots([block.mass, block.damping, block.stiffness])
     step = min(record.dt for record in state.records)
     return bool(np.min(np.abs(poles)) < np.pi / step)
+
+
+def all_are_seen_filling(state: ModelState) -> bool:
+    """Tell whether each of linear stores is slow enough for its records to show it.
+
+    One that fills within a sampling interval does nothing; a law inside of it would be
+    searched without end.
+    """
+    step = min(record.dt for record in state.records)
+    rates = [block.rate for block in state.chain if isinstance(block, Store)]
+    return max(rates) < np.pi / step
 
 
 def of_many_modes(start: ModelState) -> bool:
