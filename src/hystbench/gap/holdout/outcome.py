@@ -2,7 +2,8 @@
 
 They choose nothing. A model that is worse on them than the base goes as a whole: to
 keep those of its effects that do better there would be to choose by hold-out records.
-A name whose step widens the gap there is no surer than even.
+A name whose step widens the gap there is no surer than even. ``content`` is what
+gap.json holds, in every function.
 """
 
 from __future__ import annotations
@@ -77,24 +78,13 @@ def outcome(
     content["shortfall"] = shortfall(content)
     content = with_what_was_asked(content, vocabulary)
     if built_in is not None:
-        content = with_built_in(content, built_in, _alone(built_in, fitted, evidence))
+        content = _with_built_in(content, built_in, _alone(built_in, fitted, evidence))
     content = with_device(content, evidence.device_kind, evidence.quantities)
     return replace(shown, content=content)
 
 
 def more_than_on_fit_records(content: Mapping[str, Any]) -> list[str]:
-    """Say that hold-out records show a gap where the fit records show none.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-
-    Returns
-    -------
-    list of str
-        One sentence, or none.
-    """
+    """Say that hold-out records show a gap where the fit records show none, if so."""
     before, floor = content["gap"]["before"], content["gap"]["noise_floor"]
     if content["verdict"] != "no-gap" or before is None:
         return []
@@ -152,13 +142,7 @@ LEAST = 5e-4
 
 
 def first_figure(content: Mapping[str, Any]) -> str:
-    """Say what is gone on the hold-out records, and of what it is a share.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-    """
+    """Say what is gone on the hold-out records, and of what it is a share."""
     gap, unit = content["gap"], content["unit"]
     sizes = f"{gap['before']:.3g} to {sized(gap['after'], unit)} rms"
     share = gap["explained"]
@@ -239,14 +223,7 @@ def without_names(
 def with_what_was_asked(
     content: Mapping[str, Any], vocabulary: Vocabulary
 ) -> dict[str, Any]:
-    """Tell in the reason which effects the user put in or left out.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-    vocabulary : Vocabulary
-    """
+    """Tell in the reason which effects the user put in or left out."""
     words = vocabulary.words()
     if not words:
         return dict(content)
@@ -254,18 +231,13 @@ def with_what_was_asked(
     return {**content, "reason": reason, "asked": vocabulary.mapping()}
 
 
-def with_built_in(
+def _with_built_in(
     content: Mapping[str, Any], built_in: BuiltIn, alone: float
 ) -> dict[str, Any]:
     """Tell what the effects that the user put in do, apart from what was found.
 
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds; its ``gap`` begins with the effects that were put in.
-    built_in : BuiltIn
-    alone : float
-        RMS residual of the simulator without them on the hold-out records.
+    The ``gap`` of the content begins with them; ``alone`` is the RMS residual of the
+    simulator without them on the hold-out records.
     """
     names = " and ".join(built_in.names)
     first, *rest = content["ladder"]
@@ -296,11 +268,6 @@ WORTH_A_REASON = 0.05
 
 def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
     """Compare what is gone on the hold-out records with what is gone on the fit ones.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
 
     Returns
     -------
@@ -362,13 +329,7 @@ def _steps_up(content: Mapping[str, Any]) -> list[tuple[Any, Any]]:
 
 
 def no_surer_than_even(content: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Give the effects: a name that widens the gap there is no surer than even.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-    """
+    """Give the effects: a name that widens the gap there is no surer than even."""
     doubtful = {
         name for _, step in _steps_up(content) for name in step["name"].split(" + ")
     }
