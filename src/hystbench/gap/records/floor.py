@@ -64,10 +64,6 @@ def noise_floor(compared: Sequence[Compared], declared: float | None = None) -> 
     declared : float, optional
         ``noise_rms`` of the dataset, in the output's unit.
 
-    Returns
-    -------
-    Floor
-
     Notes
     -----
     The estimate from the residual is called an upper bound always: nothing in one

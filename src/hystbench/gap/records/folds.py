@@ -62,10 +62,6 @@ def make_folds(
         Whether whole records are held out. By default where there are three; False
         asks the easier question, whether a model interpolates within each record: of
         sines of one frequency a record, a free model cannot guess the next frequency.
-
-    Returns
-    -------
-    tuple of Fold
     """
     if whole is None:
         whole = len(records) >= RECORDS

@@ -130,10 +130,6 @@ def stages(model: Model, gap: Mapping[str, Any]) -> tuple[Stage, ...]:
     gap : mapping
         What gap.json holds: its ``effects`` and ``built_in`` tell which blocks were
         added.
-
-    Returns
-    -------
-    tuple of Stage
     """
     owners = _owners(model, gap)
     found: list[Stage] = []

@@ -60,12 +60,7 @@ def verdict_text(gap: dict[str, Any]) -> str:
 
 
 def rerun_commands(gap: dict[str, Any]) -> list[tuple[str, str]]:
-    """Give what an engineer may say to a verdict, and the command for each.
-
-    Returns
-    -------
-    list of (str, str)
-    """
+    """Give what an engineer may say to a verdict, and the command for each."""
     place = gap.get("command") or {"dataset": "DATASET", "model": "MODEL", "out": "OUT"}
     asked = gap.get("asked") or {"without": [], "with": []}
     named = [effect["name"] for effect in gap["effects"]]
