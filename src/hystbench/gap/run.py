@@ -36,7 +36,7 @@ from hystbench.gap.records.floor import Floor
 from hystbench.gap.search import search
 from hystbench.gap.vocabulary import Vocabulary, say_in_words, with_device
 from hystbench.model import Model
-from hystbench.record import Channel, FloatArray, Record
+from hystbench.record import Channel, Record
 from hystbench.written import writes
 
 DECISIVE = ("gap.json", "model.yaml")
@@ -214,21 +214,13 @@ def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> 
         The hold-out records.
     outcome : Outcome
     """
-    for record, (before, after) in zip(records, outcome.outputs, strict=True):
-        _write_hold_out(
-            folder / "holdout" / f"{record.name}.csv", record, before, after
-        )
+    names = ("time_s", "measured", "before", "after")
+    for record, outputs in zip(records, outcome.outputs, strict=True):
+        signals = (record.time, record.y, *outputs)
+        columns = {name: x.tolist() for name, x in zip(names, signals, strict=True)}
+        write_columns(folder / "holdout" / f"{record.name}.csv", columns, 9)
     outcome.model.save(folder / "model.yaml")
     write_json(folder / "gap.json", outcome.content)
-
-
-def _write_hold_out(
-    path: Path, record: Record, before: FloatArray, after: FloatArray
-) -> None:
-    signals = (record.time, record.y, before, after)
-    names = ("time_s", "measured", "before", "after")
-    columns = {name: x.tolist() for name, x in zip(names, signals, strict=True)}
-    write_columns(path, columns, 9)
 
 
 def write_next_experiment(decision: Decision, channel: Channel, path: Path) -> str:

@@ -259,13 +259,8 @@ def _with_forces(
 ) -> tuple[ModelState, Floor, Inside | None, OwnValues]:
     """Look for forces inside the dynamics, beside what is a record's own.
 
-    Returns
-    -------
-    start : ModelState
-        The base on the records, without what was found to be their own.
-    floor : Floor
-    inside : Inside or None
-    own : OwnValues
+    What is given back first is the base on the records without what was found to be
+    their own.
     """
     identified, records, hold = is_identified(base), start.records, start.hold
     say = asked.say

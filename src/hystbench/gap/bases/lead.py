@@ -82,7 +82,7 @@ def _without(record: Record, base: Model, asked: Model) -> Record:
     rest = record.y - asked.simulate(record.u, record.dt)
     first, behind = rest[:lead], rest[lead:][record.counted[lead:]]
     measured = record.counted[:lead]
-    free = free_motion(base, record.time[:lead])[measured]
+    free = _free_motion(base, record.time[:lead])[measured]
     first = first[measured]
     if len(behind) == 0 or len(first) <= free.shape[1]:
         return record
@@ -94,19 +94,11 @@ def _without(record: Record, base: Model, asked: Model) -> Record:
     return replace(record, lead=lead)
 
 
-def free_motion(base: Model, time: FloatArray) -> FloatArray:
+def _free_motion(base: Model, time: FloatArray) -> FloatArray:
     """Give what other states of a linear base at the first sample would do.
 
-    Parameters
-    ----------
-    base : Model
-    time : ndarray, shape (n,)
-
-    Returns
-    -------
-    ndarray, shape (n, poles)
-        Damped sines and cosines, and exponentials; zeros where the base does not
-        settle within the time given.
+    Those are damped sines and cosines, and exponentials, shape (n, poles); zeros where
+    the base does not settle within the time given.
     """
     poles = np.zeros(0, dtype=complex)
     for block in base.chain:

@@ -23,7 +23,7 @@ from hystbench.gap.bases.spectral import (
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.folds import Fold, make_folds
 from hystbench.gap.thresholds import ANOTHER_MODE, NUMBER_PAYS, TIMING_PAYS
-from hystbench.record import Mask, Record
+from hystbench.record import Mask
 
 #: Highest order that is tried, of all poles at once, and with modes added one by one.
 HIGHEST = 6
@@ -98,8 +98,10 @@ class Orders:
 
     @cached_property
     def whole(self) -> tuple[Mask, ...]:
-        """Samples that count."""
-        return behind_the_lead(self.evidence.fit)
+        """Samples that count: those behind the lead."""
+        return tuple(
+            (np.arange(len(x)) >= LEAD * len(x)) & x.counted for x in self.evidence.fit
+        )
 
     @cached_property
     def folds(self) -> tuple[Fold, ...]:
@@ -302,13 +304,6 @@ def with_plainest_start(task: OutputError, ratio: Ratio) -> OutputError:
     tasks = [replace(task, start=start) for start in possible_starts(task.records)]
     costs = [task.squares(ratio, everything) for task in tasks]
     return tasks[plainest_start(costs)]
-
-
-def behind_the_lead(records: Sequence[Record]) -> tuple[Mask, ...]:
-    """Give the samples of records that count."""
-    return tuple(
-        (np.arange(len(item)) >= LEAD * len(item)) & item.counted for item in records
-    )
 
 
 def _both(masks: tuple[Mask, ...], others: tuple[Mask, ...]) -> tuple[Mask, ...]:

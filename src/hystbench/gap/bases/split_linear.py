@@ -20,6 +20,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from operator import attrgetter
 
 import numpy as np
 
@@ -33,6 +34,7 @@ from hystbench.gap.records.folds import Fold
 from hystbench.gap.thresholds import LOOSE, NUMBER_PAYS
 from hystbench.record import FloatArray
 
+COST = attrgetter("cost")
 #: Of the error's power a curve inside leaves no more, beside one at either end.
 ENOUGH = 1 - LOOSE
 #: With more ways to deal poles and zeros, all zeros stay together.
@@ -78,10 +80,10 @@ def best_split(
     """
     ends = [task.bent(way) for ratio in ratios for way in ways_at_ends(ratio)]
     ways = [[task.bent(way) for way in ways_inside(ratio)] for ratio in ratios]
-    end = task.refined(min(ends, key=_cost), TO_THE_END)
-    likely = [way for own in ways for way in sorted(own, key=_cost)[:LIKELY]]
+    end = task.refined(min(ends, key=COST), TO_THE_END)
+    likely = [way for own in ways for way in sorted(own, key=COST)[:LIKELY]]
     tried = [task.refined(way, ROUNDS) for way in likely]
-    best = min(tried, key=_cost, default=None)
+    best = min(tried, key=COST, default=None)
     if best is None or best.cost > ENOUGH * end.cost:
         return None
     enough = [way for way in tried if way.cost <= best.cost / (1 - NUMBER_PAYS) ** 2]
@@ -156,7 +158,7 @@ def _grown(task: HalvesError, halves: Halves) -> Halves:
         ]
         if not tried:
             return halves
-        best = task.refined(min(tried, key=_cost), TO_THE_END)
+        best = task.refined(min(tried, key=COST), TO_THE_END)
         if best.cost > (1 - NUMBER_PAYS) ** 2 * halves.cost:
             return halves
         halves = best
@@ -232,7 +234,3 @@ def _dealt(
         ]
         found.append(np.atleast_1d(np.real(np.poly(np.array(own))))[::-1].copy())
     return found[0], found[1]
-
-
-def _cost(halves: Halves) -> float:
-    return halves.cost

@@ -58,7 +58,10 @@ def with_signs(evidence: Evidence) -> Evidence | None:
     best: tuple[float, Evidence] | None = None
     for signs in _beginnings(evidence):
         for _ in range(TURNS):
-            signed = _signed(evidence, signs)
+            pairs = zip(fit, signs, strict=True)
+            signed = replace(
+                evidence, fit=tuple(replace(x, y=s * x.y) for x, s in pairs)
+            )
             orders = Orders(signed)
             shown = _simulated(orders)
             off = _off(shown, orders)
@@ -84,11 +87,6 @@ def _beginnings(evidence: Evidence) -> Iterator[tuple[FloatArray, ...]]:
         block = DriveLag(time_constant_s=lag, hold="linear")
         late = (block.simulate(x.u, x.u, x.dt) for x in evidence.fit)
         yield tuple(np.where(z < 0.0, -1.0, 1.0) for z in late)
-
-
-def _signed(evidence: Evidence, signs: tuple[FloatArray, ...]) -> Evidence:
-    fit = zip(evidence.fit, signs, strict=True)
-    return replace(evidence, fit=tuple(replace(x, y=s * x.y) for x, s in fit))
 
 
 def _simulated(orders: Orders) -> list[FloatArray]:

@@ -19,7 +19,7 @@ from hystbench.gap.effects.variant import Beside, Refused, Values
 from hystbench.gap.fitting.beside import beside_columns
 from hystbench.gap.records.scored_samples import ScoredSamples, rms
 from hystbench.gap.simulation.reshape import orthonormal, reshapings
-from hystbench.gap.simulation.shared import in_short_steps, quick
+from hystbench.gap.simulation.shared import shared
 from hystbench.gap.simulation.simulation import Signals, Simulation
 from hystbench.record import FloatArray, Record
 
@@ -103,7 +103,7 @@ class ModelState:
     @cached_property
     def simulation(self) -> Simulation:
         """The chain on the records, simulated quickly."""
-        return quick(self.chain, self.records, self.hold)
+        return shared(self.chain, self.records, self.hold, quick=True)
 
     def on(
         self, records: tuple[Record, ...], sample: ScoredSamples, rows: NDArray[Any]
@@ -115,7 +115,7 @@ class ModelState:
     @cached_property
     def exact(self) -> Signals:
         """The chain's output, simulated in short steps."""
-        return in_short_steps(self.chain, self.records, self.hold).output
+        return shared(self.chain, self.records, self.hold, quick=False).output
 
     def settled(self) -> ModelState:
         """Give the state with what the quick simulation lacks made up for."""

@@ -2,7 +2,8 @@
 
 They choose nothing. A model that is worse on them than the base goes as a whole: to
 keep those of its effects that do better there would be to choose by hold-out records.
-A name whose step widens the gap there is no surer than even.
+A name whose step widens the gap there is no surer than even. ``content`` is what
+gap.json holds, in every function.
 """
 
 from __future__ import annotations
@@ -77,7 +78,7 @@ def outcome(
     content["shortfall"] = shortfall(content)
     content = with_what_was_asked(content, vocabulary)
     if built_in is not None:
-        content = with_built_in(content, built_in, _alone(built_in, fitted, evidence))
+        content = _with_built_in(content, built_in, _alone(built_in, fitted, evidence))
     content = with_device(content, evidence.device_kind, evidence.quantities)
     return replace(shown, content=content)
 
@@ -254,18 +255,13 @@ def with_what_was_asked(
     return {**content, "reason": reason, "asked": vocabulary.mapping()}
 
 
-def with_built_in(
+def _with_built_in(
     content: Mapping[str, Any], built_in: BuiltIn, alone: float
 ) -> dict[str, Any]:
     """Tell what the effects that the user put in do, apart from what was found.
 
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds; its ``gap`` begins with the effects that were put in.
-    built_in : BuiltIn
-    alone : float
-        RMS residual of the simulator without them on the hold-out records.
+    The ``gap`` of the content begins with them; ``alone`` is the RMS residual of the
+    simulator without them on the hold-out records.
     """
     names = " and ".join(built_in.names)
     first, *rest = content["ladder"]

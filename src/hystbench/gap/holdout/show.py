@@ -102,10 +102,20 @@ def score_hold_out(fitted: FitResult, records: tuple[Record, ...]) -> Outcome:
 
 def nuisance_of(state: ModelState, own: OwnValues) -> Nuisance | None:
     """Give regressors of what is new in every record, of the device or its own."""
-    nuisance = what_is_new(state)
-    if own.kinds and nuisance is None:
-        nuisance = path_and_mains(None)  # nothing more, but the first part estimates
-    return nuisance
+    if not state.beside:
+        # There is nothing more, but the first part of a record estimates its own.
+        return path_and_mains(None) if own.kinds else None
+    tones = [
+        order * values["frequency_hz"]
+        for beside, values in state.beside
+        if "frequency_hz" in values
+        for order in range(1, beside.order + 1)
+    ]
+    if all("frequency_hz" in values for _, values in state.beside):
+        return path_and_mains(None, tones)
+    outputs = Simulation(state.chain, state.records, state.hold).output
+    degree = degree_that_carries_on(state.records, outputs, tones)
+    return path_and_mains(degree, tones)
 
 
 def as_recorded(
@@ -121,23 +131,6 @@ def as_recorded(
         else own.fitted_first(record, output, floor.rms**2).of(output, record.dt)
         for record, output in zip(records, outputs, strict=True)
     ]
-
-
-def what_is_new(state: ModelState) -> Nuisance | None:
-    """Give regressors of what is new in every record, if an effect says so."""
-    if not state.beside:
-        return None
-    tones = [
-        order * values["frequency_hz"]
-        for beside, values in state.beside
-        if "frequency_hz" in values
-        for order in range(1, beside.order + 1)
-    ]
-    if all("frequency_hz" in values for _, values in state.beside):
-        return path_and_mains(None, tones)
-    outputs = Simulation(state.chain, state.records, state.hold).output
-    degree = degree_that_carries_on(state.records, outputs, tones)
-    return path_and_mains(degree, tones)
 
 
 def _run(

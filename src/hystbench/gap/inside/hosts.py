@@ -9,7 +9,7 @@ in place of a base that does something else, which is then said.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -29,7 +29,7 @@ from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted, fitted_to
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.laws import host_places
-from hystbench.gap.inside.modes import frequency_of, modes, shows_a_pole
+from hystbench.gap.inside.modes import frequency_of, modes
 from hystbench.gap.inside.one_coordinate import (
     MOTIONS,
     free_masses,
@@ -116,10 +116,13 @@ def hosts(
         return
     if quantities.causality in ("storage", "unknown") and not exact:
         yield from _of_stores(start, identified, score)
-    moves = shows_a_pole(start) or quantities.causality == "motion to force"
+    # Of a mass that follows at once only its spring is seen: a force inside is then a
+    # curve or a loop of what drives it, which a chain has.
+    shows_a_pole = not all(isinstance(block, Gain) for block in start.chain)
+    moves = shows_a_pole or quantities.causality == "motion to force"
     if identified and moves and not of_many_modes(start):
         begun = one_coordinate(start.records, quantities, start.hold)
-        best = best_host(list(begun), score)
+        best = best_host(begun, score)
         if best is not None and is_seen_moving(best.state):
             words = "a model of one coordinate stands in place of the linear base"
             yield Host(best.state, best, words)
@@ -169,7 +172,7 @@ def _of_stores(start: ModelState, identified: bool, score: Score) -> Iterator[Ho
     noise = float(np.sqrt(score.floor))
     for count, words in STORES.items():
         begun = stores(start.records, start.hold, noise, count)
-        best = best_host(list(begun), score)
+        best = best_host(begun, score)
         if best is None or not all_are_seen_filling(best.state):
             continue
         words, alone, charge = f"{words} in place of the base", best.state, 0.0
@@ -202,11 +205,8 @@ def stores_like(start: ModelState, count: int) -> ModelState | None:
     simulated = as_simulated(start)
     sample = ScoredSamples.of(simulated)
     score = Score.plain(sample, np.finfo(float).tiny)
-    begun = list(stores(simulated, start.hold, np.inf, count))
-    if not begun:
-        return None
-    best = _likeliest(begun, score)
-    if _missed(best) > _most_missed(start) * len(sample):
+    best = _likeliest(stores(simulated, start.hold, np.inf, count), score)
+    if best is None or _missed(best) > _most_missed(start) * len(sample):
         return None
     return replace(best.state, records=start.records, sample=start.sample).settled()
 
@@ -240,20 +240,22 @@ def _about(state: ModelState, free: Free) -> Free:
     return free._replace(tolerance=ABOUT * abs(value), given=value)
 
 
-def best_host(states: Sequence[ModelState], score: Score) -> Fitted | None:
+def best_host(states: Iterable[ModelState], score: Score) -> Fitted | None:
     """Fit linear hosts, the likely ones to the end; give the one that scores least.
 
     What it gives as its output may also have a share of the next derivative (a zero).
     """
-    if not states:
-        return None
     best = _likeliest(states, score)
+    if best is None:
+        return None
     return min(best, _with_zero(best, score), key=lambda item: item.score)
 
 
-def _likeliest(states: Sequence[ModelState], score: Score) -> Fitted:
-    """Fit hosts a little, and the best of them to the end."""
+def _likeliest(states: Iterable[ModelState], score: Score) -> Fitted | None:
+    """Fit hosts a little, and the best of them to the end; None without any."""
     quick = [fitted(state, score, QUICK) for state in states]
+    if not quick:
+        return None
     return fitted(min(quick, key=lambda item: item.score).state, score)
 
 
@@ -287,7 +289,7 @@ def _of_two(one: Fitted, frequencies: Sequence[float], score: Score) -> Iterator
     if not (frequencies and isinstance(block, Mechanism)):
         return
     loose = free_masses(state.records, block.output, state.hold)
-    best = best_host(list(two_masses([state, *loose], frequencies)), score)
+    best = best_host(two_masses([state, *loose], frequencies), score)
     if best is not None and best.score < one.score - PAYS:
         words = "a mass with another one attached stands in place of the linear base"
         yield Host(best.state, best, words)
@@ -462,5 +464,4 @@ def _coordinate_like(
     if with_zero:
         plain = _coordinate_like(simulated, quantities, hold, False)
         return None if plain is None else _with_zero(plain, score)
-    begun = list(one_coordinate(records, quantities, hold))
-    return _likeliest(begun, score) if begun else None
+    return _likeliest(one_coordinate(records, quantities, hold), score)

@@ -72,16 +72,15 @@ def laws_for(
         filled = how_it_fills(host.state)
         own = {name: effect.stored(filled) for name, effect in known.items()}
         # A lag beside stores is one more store.
-        around = {name: _curves(laws) for name, laws in around.items()}
+        around = {
+            name: tuple(law for law in laws if not isinstance(law.block, LinearBlock))
+            for name, laws in around.items()
+        }
     else:
         moved = how_it_moves(host.state, turns)
         own = {name: effect.in_mechanism(moved) for name, effect in known.items()}
     every = {name: (*own[name], *around[name]) for name in known}
     return {name: laws for name, laws in every.items() if laws}
-
-
-def _curves(laws: Iterable[Law]) -> tuple[Law, ...]:
-    return tuple(law for law in laws if not isinstance(law.block, LinearBlock))
 
 
 def what_passes(state: ModelState, times: Times | None = None) -> Passed:

@@ -16,7 +16,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.thresholds import MOST
-from hystbench.record import ComplexArray, FloatArray
+from hystbench.record import ComplexArray
 
 NUMBERS = ("mass", "damping", "stiffness", "blend")
 """Of a mode."""
@@ -68,15 +68,6 @@ def modes(
     for share, _, state in found:
         if -share >= MOST * -found[0][0]:
             yield with_others_free(state) if others_too else state
-
-
-def shows_a_pole(start: ModelState) -> bool:
-    """Tell whether a base that was identified has a pole, or is a gain alone.
-
-    Of a mass that follows at once only its spring is seen. A force inside is then a
-    curve or a loop of what drives it, which a chain has.
-    """
-    return not all(isinstance(block, Gain) for block in start.chain)
 
 
 def frequency_of(mode: Mechanism) -> float:
@@ -267,14 +258,10 @@ def explained_by_levels(state: ModelState) -> float:
     """Mean share of a record that other numbers of the mode in it would explain."""
     shares = []
     for part in state.sample.slices:
-        rest, columns = state.residual[part], _unit(state.tangents[part])
+        rest, columns = state.residual[part], state.tangents[part]
         power = float(np.sum(rest**2))
         if power > 0:
-            basis = np.linalg.qr(columns)[0]
+            sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+            basis = np.linalg.qr(columns / sizes)[0]
             shares.append(float(np.sum((basis.T @ rest) ** 2)) / power)
     return float(np.mean(shares)) if shares else 0.0
-
-
-def _unit(columns: FloatArray) -> FloatArray:
-    sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-    return np.asarray(columns / sizes)

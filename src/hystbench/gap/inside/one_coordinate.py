@@ -124,11 +124,8 @@ def _solved_for(
 ) -> list[tuple[float, Mechanism, float, float]]:
     """Find how many times each mechanism moves, and another signal beside it.
 
-    Returns
-    -------
-    list of (float, Mechanism, float, float)
-        Mean square that is left, mechanism, its gain and that of the other signal; the
-        best come first.
+    Each comes with the mean square that is left, its gain and that of the other signal;
+    the best first.
     """
     sample = ScoredSamples.of(records)
     wanted = sample.take([record.y for record in records])

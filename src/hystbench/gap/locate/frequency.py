@@ -228,10 +228,7 @@ def take_spectra(samples: ViewSamples) -> BinSpectra:
 def _lines(item: Compared) -> tuple[FloatArray, ComplexArray]:
     """Average over whole periods where there are enough, else over segments.
 
-    Returns
-    -------
-    frequency : ndarray, shape (m,)
-    matrix : ndarray of complex, shape (9, m)
+    Give frequencies, shape (m,), and spectral matrices, shape (9, m).
     """
     record = item.record
     signals = np.stack([record.u, item.residual, item.simulated])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from matplotlib.axes import Axes
@@ -25,7 +25,7 @@ from hystbench.gap.report.diagram_layout import (
     Summation,
     layout,
 )
-from hystbench.gap.report.parts import Stage, Whose, in_one_line, stages
+from hystbench.gap.report.parts import Whose, in_one_line, stages
 from hystbench.model import Model
 
 #: Edge, face and width of the edge of a box. Added boxes differ by their edges too.
@@ -39,6 +39,8 @@ SAID: dict[Whose, str] = {
     "added": "added by the search",
     "put in": "put in by you",
 }
+DRAWN = {"color": BLACK, "linewidth": 0.8}
+"""Look of a line."""
 ARROW = "-|>,head_length=3.2,head_width=1.6"
 KEY = 0.24
 """Height of the line that says what the colours mean, in inches."""
@@ -69,19 +71,13 @@ def figure_of(model: Model, gap: Mapping[str, Any]) -> Figure:
     axes.set_xlim(0.0, diagram.width)
     axes.set_ylim(-KEY, diagram.height)
     _paint(axes, diagram.shapes)
-    _key(axes, _whose(found))
+    _key(axes, {part.whose for stage in found for part in stage.parts})
     return figure
 
 
 def words_of(model: Model, gap: Mapping[str, Any]) -> str:
     """Tell the diagram in words."""
     return f"Block diagram: {in_one_line(model, stages(model, gap))}"
-
-
-def _whose(found: Sequence[Stage]) -> list[Whose]:
-    """Give whose parts there are, in the order of the key."""
-    there = {part.whose for stage in found for part in stage.parts}
-    return [whose for whose in LOOKS if whose in there]
 
 
 def _paint(axes: Axes, shapes: Sequence[Shape]) -> None:
@@ -125,31 +121,16 @@ def _text(axes: Axes, x: float, y: float, text: str, size: float) -> None:
 
 
 def _line(axes: Axes, line: Line) -> None:
-    axes.add_patch(
-        FancyArrowPatch(
-            path=Path(line.points),
-            arrowstyle=ARROW if line.arrow else "-",
-            mutation_scale=1.0,
-            joinstyle="miter",
-            color=BLACK,
-            linewidth=0.8,
-        )
-    )
+    style = ARROW if line.arrow else "-"
+    look: dict[str, Any] = {"mutation_scale": 1.0, "joinstyle": "miter", **DRAWN}
+    axes.add_patch(FancyArrowPatch(path=Path(line.points), arrowstyle=style, **look))
 
 
 def _sum(axes: Axes, item: Summation) -> None:
-    axes.add_patch(
-        Circle(
-            (item.x, item.y),
-            RADIUS,
-            edgecolor=BLACK,
-            facecolor="white",
-            linewidth=0.8,
-            zorder=3,
-        )
-    )
+    edge: dict[str, Any] = {"edgecolor": BLACK, "linewidth": 0.8, "zorder": 3}
+    axes.add_patch(Circle((item.x, item.y), RADIUS, facecolor="white", **edge))
     arm = 0.55 * RADIUS
-    look: dict[str, Any] = {"color": BLACK, "linewidth": 0.8, "zorder": 4}
+    look: dict[str, Any] = {**DRAWN, "zorder": 4}
     axes.add_line(Line2D((item.x - arm, item.x + arm), (item.y, item.y), **look))
     axes.add_line(Line2D((item.x, item.x), (item.y - arm, item.y + arm), **look))
     if item.minus:  # what comes from below is subtracted
@@ -157,10 +138,10 @@ def _sum(axes: Axes, item: Summation) -> None:
         axes.add_line(Line2D((x, x + 1.2 * arm), (y, y), **look))
 
 
-def _key(axes: Axes, there: Sequence[Whose]) -> None:
+def _key(axes: Axes, there: Collection[Whose]) -> None:
     """Say below the diagram whose each colour is."""
     x = PAD
-    for whose in there:
+    for whose in (each for each in LOOKS if each in there):
         _frame(axes, x, -0.17, 0.16, 0.1, whose)
         axes.text(x + 0.22, -0.12, SAID[whose], fontsize=NUMBER, va="center")
         x += 1.5

@@ -302,20 +302,9 @@ def _branches(
 ) -> tuple[tuple[Shape, ...], float]:
     """Stack groups on ways from where a signal is tapped to where they are summed.
 
-    Parameters
-    ----------
-    groups : sequence of Group
-        Of a single box each, where the ways go back.
-    tap, total : float
-        Where, along the signal's line, the ways begin and end.
-    edge : float
-        How far from the line the stack begins; below zero it goes down.
-
-    Returns
-    -------
-    drawn : tuple of Shape
-    reach : float
-        How far from the line it ends.
+    The stack begins at ``edge`` from the signal's line; below zero it goes down. How
+    far from the line it ends is given as well. Where the ways go back each group is a
+    single box.
     """
     up = 1 if edge > 0 else -1
     onward = 1 if total > tap else -1

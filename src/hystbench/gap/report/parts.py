@@ -94,16 +94,12 @@ class _Owner:
     whose: Whose
     numbers: Mapping[str, _Number]
     """Value and unit of each, by parameter."""
-    of_block: bool
-    """Whether they are numbers of a block that is not the effect's own."""
 
-    @classmethod
-    def of(
-        cls, item: Mapping[str, Any], whose: Whose, numbers: Mapping[str, _Number]
-    ) -> _Owner:
-        """Give the owner for an effect of gap.json."""
-        effect = effects().get(item["name"])
-        return cls(item["name"], whose, numbers, bool(effect and effect.numbers))
+    @property
+    def of_block(self) -> bool:
+        """Whether they are numbers of a block that is not the effect's own."""
+        effect = effects().get(self.effect)
+        return bool(effect and effect.numbers)
 
     @property
     def part(self) -> Part:
@@ -241,14 +237,14 @@ def _owners(model: Model, gap: Mapping[str, Any]) -> dict[int, list[_Owner]]:
                     f"{nearest(label, places)}"
                 )
             k = places[label]
-            own = _Owner.of(item, "added", _told_of(item, model.chain[k]))
+            own = _Owner(item["name"], "added", _told_of(item, model.chain[k]))
             found.setdefault(k, []).append(own)
     for item in (gap.get("built_in") or {"effects": []})["effects"]:
         effect = effects().get(item["name"])
         names = {item["name"], *(effect.laws if effect else ())}
         for k, block in enumerate(model.chain):
             if block.name in names and all(x.of_block for x in found.get(k, [])):
-                own = _Owner.of(item, "put in", _now_of(item, block))
+                own = _Owner(item["name"], "put in", _now_of(item, block))
                 found.setdefault(k, []).append(own)
     return found
 

@@ -70,7 +70,7 @@ def products(simulation: Simulation, sample: ScoredSamples) -> FloatArray:
     with another: they tell a hysteresis whose loops depend on where they lie, as of
     most materials, from one of play operators. Sent on as the reshapings are.
 
-    Parameters and what is returned are those of :func:`reshapings`.
+    What is returned is as of :func:`reshapings`.
     """
     return _behind(simulation, sample, _mixed)
 
@@ -144,15 +144,7 @@ def _ways(
 ) -> list[Signals]:
     """Give ways in which the output of a hysteresis could differ.
 
-    Parameters
-    ----------
-    block : Block
-    v : tuple of ndarray
-        What enters it.
-    given : tuple of ndarray
-        Its output, where its inside is not seen.
-    sample : ScoredSamples, optional
-        What is wanted of the records; by default all.
+    They are made of what enters it and, where its inside is not seen, of what it gives.
     """
     ways: list[Signals] = [tuple(np.ones(len(z)) for z in _at(v, sample))]
     for signals in filter(None, (v, given)):
@@ -238,12 +230,7 @@ def _sent(
 ) -> tuple[Signals, float]:
     """Send a small change of the hysteresis's output through the blocks behind it.
 
-    Returns
-    -------
-    output : tuple of ndarray
-        With the change.
-    change : float
-        How small it is.
+    Give the output with the change, and how small the change is.
     """
     if _are_linear(behind):  # they answer to the change alone, of any size
         return simulation.run(behind, signals), 1.0

@@ -15,18 +15,14 @@ from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import Record
 
 
-def quick(
-    chain: tuple[Block, ...], records: tuple[Record, ...], hold: Hold
+def shared(
+    chain: tuple[Block, ...], records: tuple[Record, ...], hold: Hold, quick: bool
 ) -> Simulation:
-    """Give the simulation by which models are compared."""
-    return _shared(chain, Same(records), hold, True)
+    """Give the quick simulation, by which models are compared, or a fine one.
 
-
-def in_short_steps(
-    chain: tuple[Block, ...], records: tuple[Record, ...], hold: Hold
-) -> Simulation:
-    """Give the simulation that misses least by its own steps."""
-    return _shared(chain, Same(records), hold, False)
+    The fine one misses least by its own steps.
+    """
+    return _shared(chain, Same(records), hold, quick)
 
 
 class Same:

@@ -276,10 +276,9 @@ class Simulation:
         high = max(float(z.max()) for z in self.at(place))
         return (low + high) / 2, (high - low) / 2
 
-    def fastest(self, place: int = 0) -> float:
-        """Largest rate of the signal before a block, in its unit a second."""
-        pairs = zip(self.at(place), self.records, strict=True)
-        return float(max(np.abs(np.diff(z)).max() / record.dt for z, record in pairs))
+    def fastest(self) -> float:
+        """Largest rate of the input, in its unit a second."""
+        return float(max(np.abs(np.diff(x.u)).max() / x.dt for x in self.records))
 
 
 class _Known:
