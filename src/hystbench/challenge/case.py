@@ -77,7 +77,16 @@ class Plant:
 
 
 def make_case(spec: CaseSpec) -> Case:
-    """Make a case of an actuator; the same spec gives the same numbers."""
+    """Make a case; the same spec gives the same numbers.
+
+    Parameters
+    ----------
+    spec : CaseSpec
+
+    Returns
+    -------
+    Case
+    """
     commands = CAMPAIGNS[spec.campaign](spec.random(EXCITATION))
     plant, drawn = _draw(spec, commands)
     bare = Readings(plant.actuator(()), commands)

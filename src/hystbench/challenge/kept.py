@@ -35,8 +35,11 @@ class KeptGroup:
     def allowed(self, kind: Kind, inside: bool) -> tuple[str, ...]:
         """Give the forms of an effect that a set draws from.
 
-        ``inside`` is whether the set is of the group: it has the group's own forms, if
-        there are any.
+        Parameters
+        ----------
+        kind : Kind
+        inside : bool
+            Whether the set is of the group: then its own forms, if there are any.
         """
         own = [form for form in kind.forms if f"{kind.name}: {form}" in self.forms]
         if inside and own:

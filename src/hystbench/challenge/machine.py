@@ -206,7 +206,12 @@ def draw_machine(
 ) -> Machine:
     """Draw a machine of a family, how it is driven and what is measured.
 
-    With ``closed=False`` it has no controller; by default a coin of a mass tells.
+    Parameters
+    ----------
+    family : str
+    random : numpy.random.Generator
+    closed : bool, optional
+        False for no controller; by default a coin of a mass tells.
     """
 
     def between(low: float, high: float) -> float:
@@ -255,13 +260,19 @@ def draw_machine(
 
 
 def linear_parts(machine: Machine, signals: InputsAndOutputs) -> InputsAndOutputs:
-    """Fit the same machine without any effect to inputs and outputs without noise.
+    """Fit the same machine without any effect; give each record's model output.
+
+    Parameters
+    ----------
+    machine : Machine
+    signals : list of (input, output)
+        At the samples, without noise.
 
     Returns
     -------
     list of (output, model's output)
-        Of each record. The model is the best of the machine's own equation in least
-        squares, with an offset of its output: no effect could improve on it.
+        The model is the best of the machine's own equation in least squares, with an
+        offset of its output, and hence what no effect could improve on.
     """
     if machine.output == "force":
         return _linear_impedance(machine, signals)

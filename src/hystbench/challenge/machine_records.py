@@ -49,7 +49,11 @@ def machine_records(
 ) -> tuple[RecordCommand, ...]:
     """Four records to fit and two held out, of levels up to about one.
 
-    ``middle`` is the frequency in Hz, at 4 kHz, about which the machine is to be moved.
+    Parameters
+    ----------
+    random : numpy.random.Generator
+    middle : float
+        Frequency in Hz, at 4 kHz, about which the machine is to be moved.
     """
     low, high = middle / 6.0, 2.5 * middle
     edge = 0.2 / middle

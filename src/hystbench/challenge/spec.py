@@ -187,8 +187,13 @@ def draw_spec(
     Parameters
     ----------
     seed, kind, family, ratio_db, spread, campaign, kept, of_kept
-        As in :class:`CaseSpec`, which says what is refused. The group's sorts outside
-        the vocabulary are left out too, or drawn alone.
+        As in :class:`CaseSpec`. The group's sorts outside the vocabulary are left out
+        too, or drawn alone.
+
+    Raises
+    ------
+    InputError
+        As :class:`CaseSpec`.
     """
     refuse_unknown(kind, CASE_KINDS, f"kind: {kind!r}")
     names = effects_of(kind, family, kept, of_kept)

@@ -42,7 +42,14 @@ def write_case(case: Case, folder: str | Path, truth_file: str | Path) -> None:
 
 
 def write_folder(case: Case, folder: Path) -> None:
-    """Write what a solver gets, and nothing else, into a new or empty folder."""
+    """Write what a solver gets, and nothing else: ``dataset/`` and ``model.yaml``.
+
+    Parameters
+    ----------
+    case : Case
+    folder : Path
+        New or empty.
+    """
     for record in case.records:
         write_text(folder / "dataset" / f"{record.name}.csv", _csv(record))
     if case.model is not None:

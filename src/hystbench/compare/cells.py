@@ -100,7 +100,11 @@ def compare_cells(
 ) -> tuple[ComparedCell, ...]:
     """Set ours beside each of the 124 printed numbers, run or not.
 
-    ``held_out`` are signals whose published errors the twin was not fitted to.
+    Parameters
+    ----------
+    evidence : ClaimEvidence
+    held_out : iterable of str
+        Signals whose published errors the twin was not fitted to.
     """
     unseen = set(held_out)
     consistent = standings(evidence.published)

@@ -53,8 +53,13 @@ def compare_measured(
 def errors_table(name: str, of: str, why: str, runs: Sequence[Run]) -> PrintedTable:
     """Set the errors of all models side by side, a row a record and metric.
 
-    ``name`` is the stem of the table's files, ``of`` and ``why`` the first and the last
-    sentence of its caption; between them stands the kind of error.
+    Parameters
+    ----------
+    name : str
+        Stem of the table's files.
+    of, why : str
+        First and last sentence of its caption; between them stands the kind of error.
+    runs : sequence of Run
     """
     by_cell = {(run.signal, run.model): run for run in runs}
     signals = dict.fromkeys(run.signal for run in runs)

@@ -34,7 +34,13 @@ class ShownDataset(files.Dataset):
         return tuple(self.read(name) for name in self.record_files)
 
     def __getitem__(self, name: str) -> Record:
-        """Give the record of a name; refuse a name that no record has."""
+        """Give the record of a name.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
         for record in self.records:
             if record.name == name:
                 return record

@@ -20,7 +20,14 @@ MAINS = np.concatenate([np.linspace(49.8, 50.2, 17), np.linspace(59.8, 60.2, 17)
 
 
 def fit(task: Task, effect: str) -> EffectFit | None:
-    """Fit one effect of the vocabulary; None where it makes no sense in the chain."""
+    """Fit one effect; None where it makes no sense in the chain.
+
+    Parameters
+    ----------
+    task : Task
+    effect : str
+        Name of the vocabulary.
+    """
     if effect in ("hysteresis", "hysteresis-shape"):
         return _fit_plays(task, effect)
     if effect == "mains-pickup":

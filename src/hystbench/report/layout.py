@@ -9,9 +9,17 @@ from markupsafe import Markup
 def page_environment(package: str) -> Environment:
     """Give the environment in which the templates of a package make pages.
 
-    It finds ``*.j2`` in the package's folder, and what all pages share. It escapes what
-    is not marked as HTML, and an unknown name is an error. Its globals ``style`` and
-    ``script`` hold what stands in the head of every page.
+    Parameters
+    ----------
+    package : str
+        Whose templates (``*.j2`` in its folder) are found, beside ``layout.html.j2``
+        and ``parts.html.j2``, which all pages share.
+
+    Returns
+    -------
+    Environment
+        It escapes what is not marked as HTML, and an unknown name is an error. Its
+        globals ``style`` and ``script`` hold what stands in the head of every page.
     """
     environment = Environment(
         loader=ChoiceLoader(

@@ -135,8 +135,14 @@ def table_of(
 ) -> PageTable:
     """Make a table with a row an item.
 
-    ``shown`` tells of each column what it shows of an item: text or a cell; ``about``
-    is what else a :class:`PageTable` is told.
+    Parameters
+    ----------
+    name, caption : str
+    items : iterable
+    shown : mapping
+        Each column, and what it shows of an item: text or a cell.
+    **about
+        What else a :class:`PageTable` is told.
     """
     rows = [
         [cell if isinstance(cell, Cell) else Cell(cell) for cell in cells]

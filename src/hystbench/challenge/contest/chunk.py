@@ -25,7 +25,15 @@ def judge_chunk(
     answers: Iterable[Mapping[str, Any]],
     schema: Mapping[str, Any],
 ) -> Iterator[Row]:
-    """Judge the answers of all solvers, as the runner writes them, to some cases.
+    """Judge the answers of all solvers to some cases.
+
+    Parameters
+    ----------
+    entries : iterable of Entry
+    answers : iterable of mapping
+        What each solver answered, as the runner writes it.
+    schema : mapping
+        Of gap.json.
 
     Raises
     ------

@@ -13,7 +13,14 @@ WIDTH = NormalDist().inv_cdf(0.975)
 def recovered(
     hidden: Sequence[Mapping[str, Any]], named: Sequence[Mapping[str, Any]]
 ) -> dict[str, Any]:
-    """Compare the parameters of effects of the truth with those of gap.json.
+    """Compare the parameters of effects that are hidden and named.
+
+    Parameters
+    ----------
+    hidden : sequence of mapping
+        The truth's effects.
+    named : sequence of mapping
+        The effects of gap.json.
 
     Returns
     -------

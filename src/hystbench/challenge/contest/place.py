@@ -15,9 +15,15 @@ def where_hit(
 ) -> bool:
     """Tell whether a view is right for one of the effects and holds half its power.
 
-    The view is the first entry of ``where`` in gap.json, the effects are the truth's.
     Of a delay the range must hold the delay that explains most of the effect, or lie
     within half of it and twice.
+
+    Parameters
+    ----------
+    first : mapping or None
+        The first entry of ``where`` in gap.json.
+    effects : sequence of mapping
+        The truth's effects.
     """
     return first is not None and any(_right(first, effect) for effect in effects)
 

@@ -176,7 +176,15 @@ def carried_over(cases: pd.DataFrame, transfer: pd.DataFrame) -> AskedFigure:
 def further(cases: pd.DataFrame) -> list[tuple[str, Any, Any, Any, int]]:
     """Give what else there is to say of a score: strict figures, sizes, errors.
 
-    A row is a figure, what was reached, the interval of a share, and the cases.
+    Parameters
+    ----------
+    cases : DataFrame
+        Of one solver on one set.
+
+    Returns
+    -------
+    list of (str, float or None, float or None, float or None, int)
+        A figure, what was reached, its interval where it is a share, and the cases.
     """
     return [(figure.name, *figure.of(cases)) for figure in figures("further")]
 

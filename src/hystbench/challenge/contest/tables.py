@@ -40,6 +40,10 @@ class Share(NamedTuple):
 def wilson(hits: int, cases: int) -> Share:
     """Compute a share and its 95 % score interval.
 
+    Parameters
+    ----------
+    hits, cases : int
+
     References
     ----------
     .. [1] E. B. Wilson, "Probable inference, the law of succession, and statistical
@@ -114,7 +118,13 @@ def confused(cases: pd.DataFrame) -> list[tuple[str, str, int, int, str]]:
 
 
 def experiment(one: str, other: str) -> str:
-    """Tell an experiment that separates two effects of the vocabulary."""
+    """Tell an experiment that separates two effects, for docs/confusions.md.
+
+    Parameters
+    ----------
+    one, other : str
+        Names of the vocabulary; of others nothing is known.
+    """
     for here, there, told in table("experiments"):
         if (one in here and other in there) or (other in here and one in there):
             return str(told)

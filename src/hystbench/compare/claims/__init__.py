@@ -80,8 +80,12 @@ def judge_all(
 ) -> tuple[Judgement, ...]:
     """Judge every claim of the ledger.
 
-    A claim that is judged by held-out signals, which no fit has read, and by others is
-    also judged on them alone.
+    Parameters
+    ----------
+    evidence : ClaimEvidence
+    held_out : iterable of str
+        Signals that no fit has read. A claim that is judged by them and by others is
+        also judged on them alone.
     """
     alone = evidence.on_signals(held_out)
     return tuple(_judge(claim, evidence, alone) for claim in CLAIMS)
