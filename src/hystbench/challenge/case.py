@@ -39,20 +39,13 @@ PLANT, EFFECTS, EXCITATION, NOISE = 1, 2, 3, 4
 
 @dataclass(frozen=True)
 class Case:
-    """What a solver gets, and beside it what only the judge may see.
-
-    Parameters
-    ----------
-    records : tuple of Record
-    model : Model or None
-        The base model; None where the solver is to identify a linear one.
-    truth : mapping
-        As docs/challenge.md tells.
-    """
+    """What a solver gets, and beside it what only the judge may see."""
 
     records: tuple[Record, ...]
     model: Model | None
+    """The base model; None where the solver is to identify a linear one."""
     truth: dict[str, Any] = field(repr=False)
+    """As docs/challenge.md tells."""
 
 
 @dataclass(frozen=True)

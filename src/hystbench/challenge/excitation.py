@@ -31,27 +31,17 @@ EDGE_SECONDS, EDGE_SAMPLES = 0.02, 12
 
 @dataclass(frozen=True)
 class RecordCommand:
-    """One record's command.
-
-    Parameters
-    ----------
-    use : {"fit", "hold-out"}
-    name : str
-    rate_hz : float
-        Sampling rate.
-    samples : int
-    function : callable
-        Command in A at any times in s.
-    period_samples : int, optional
-        Period of what follows the switch-on.
-    """
+    """One record's command."""
 
     use: Use
     name: str
     rate_hz: float
+    """Sampling rate."""
     samples: int
     function: Function
+    """Command in A at any times in s."""
     period_samples: int | None = None
+    """Period of what follows the switch-on."""
 
     @property
     def dt(self) -> float:

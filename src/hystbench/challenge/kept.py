@@ -16,21 +16,14 @@ from hystbench.yaml_files import load_yaml
 
 @dataclass(frozen=True)
 class KeptGroup:
-    """What is left out together.
-
-    Parameters
-    ----------
-    families : tuple of str
-        One of actuators, then one of machines.
-    unlisted : tuple of str
-        Effects that the vocabulary has no word for.
-    forms : tuple of str
-        ``effect: form`` of effects that it has a word for.
-    """
+    """What is left out together."""
 
     families: tuple[str, ...]
+    """One of actuators, then one of machines."""
     unlisted: tuple[str, ...]
+    """Effects that the vocabulary has no word for."""
     forms: tuple[str, ...]
+    """``effect: form`` of effects that it has a word for."""
 
     def allowed(self, kind: Kind, inside: bool) -> tuple[str, ...]:
         """Give the forms of an effect that a set draws from.

@@ -42,34 +42,22 @@ InputsAndOutputs = list[tuple[FloatArray, FloatArray]]
 
 @dataclass(frozen=True)
 class Machine:
-    """A linear machine and how it is driven.
-
-    Parameters
-    ----------
-    family : str
-    rate_hz : float
-        Sampling rate.
-    part : MovingPart or None
-        None of tanks.
-    tanks : tuple of Tank
-    output : str
-        A motion, ``force`` or ``level``.
-    size : float
-        Of the records' unit: newtons, millimetres or, for tanks, volts.
-    gains : tuple of float
-        Of a controller, the records being its reference; zeros for none.
-    records : tuple of RecordCommand
-        Those to fit first.
-    """
+    """A linear machine and how it is driven."""
 
     family: str
     rate_hz: float
+    """Sampling rate."""
     part: MovingPart | None
+    """None of tanks."""
     tanks: tuple[Tank, ...]
     output: str
+    """A motion, ``force`` or ``level``."""
     size: float
+    """Of the records' unit: newtons, millimetres or, for tanks, volts."""
     gains: tuple[float, float]
+    """Of a controller, the records being its reference; zeros for none."""
     records: tuple[RecordCommand, ...]
+    """Those to fit first."""
 
     @property
     def channels(self) -> tuple[Channel, Channel]:

@@ -33,29 +33,6 @@ RATIO_LIMITS = (-20.0, 60.0)
 class CaseSpec:
     """A case to be made; the same spec gives the same bytes.
 
-    Parameters
-    ----------
-    seed : int
-        Draws plant, forms, parameters, excitation and noise.
-    kind : {"single", "pair", "triple", "none", "unlisted"}
-    effects : tuple of str
-        Names, in no order.
-    family : str
-        One of :data:`FAMILIES`: the hysteresis of an actuator, or a machine.
-    ratio_db : float
-        20 log10 of rms(output with the effect minus without) over the noise's rms on
-        the fit records; of several effects, for the one that shows least. With
-        nothing hidden it is not used. Of a machine's effect it is what no linear
-        machine explains that is held against the noise.
-    spread : float
-        Multiplies the ranges of time constants, frequencies and sizes.
-    campaign : {"standard", "other"}
-        Which laboratory took the records.
-    kept : int
-        The group of forms that is left out, as ``kept.yaml`` has it.
-    of_kept : bool
-        Whether an effect takes the group's own forms instead, where it has any.
-
     Raises
     ------
     InputError
@@ -63,14 +40,25 @@ class CaseSpec:
     """
 
     seed: int
+    """Draws plant, forms, parameters, excitation and noise."""
     kind: str
     effects: tuple[str, ...]
+    """Names, in no order."""
     family: str
+    """One of :data:`FAMILIES`: the hysteresis of an actuator, or a machine."""
     ratio_db: float
+    """20 log10 of rms(output with the effect minus without) over the noise's rms on the
+    fit records; of several effects, for the one that shows least. With nothing hidden
+    it is not used. Of a machine's effect it is what no linear machine explains that is
+    held against the noise."""
     spread: float = 1.0
+    """Multiplies the ranges of time constants, frequencies and sizes."""
     campaign: str = "standard"
+    """Which laboratory took the records."""
     kept: int = KEPT
+    """The group of forms that is left out, as ``kept.yaml`` has it."""
     of_kept: bool = False
+    """Whether an effect takes the group's own forms instead, where it has any."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot be made."""

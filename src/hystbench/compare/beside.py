@@ -43,26 +43,17 @@ HOLDS = ("yes", "no", "not testable")
 
 @dataclass(frozen=True)
 class Draw:
-    """Errors of a model on one draw of the random sum; infinite where it diverged.
-
-    Parameters
-    ----------
-    signal : str
-    sines, draw : int
-        Number of its sines, and which draw; 0 is the configured one.
-    model : str
-    mse, re : float
-    rms : float
-        RMS displacement of the record (um).
-    """
+    """Errors of a model on one draw of the random sum; infinite where it diverged."""
 
     signal: str
     sines: int
     draw: int
+    """Number of its sines, and which draw; 0 is the configured one."""
     model: str
     mse: float
     re: float
     rms: float
+    """RMS displacement of the record (um)."""
 
 
 ErrorKey = tuple[str, str, Metric]
@@ -97,19 +88,13 @@ def read_spreads(path: str | Path) -> dict[ErrorKey, tuple[float, float]]:
 
 @dataclass(frozen=True)
 class Holding:
-    """In how many experiments on the twins of a family a claim holds.
-
-    Parameters
-    ----------
-    family : str
-        Name of the block that makes the hysteresis.
-    held, judged : int
-        Experiments in which it holds, and in which it could be judged.
-    """
+    """In how many experiments on the twins of a family a claim holds."""
 
     family: str
+    """Name of the block that makes the hysteresis."""
     held: int
     judged: int
+    """Experiments in which it holds, and in which it could be judged."""
 
     @property
     def throughout(self) -> bool:
@@ -153,18 +138,12 @@ def read_holdings(path: str | Path) -> dict[str, tuple[Holding, ...]]:
 
 @dataclass(frozen=True)
 class Drawn:
-    """What the draws of one signal say, by model and metric.
-
-    Parameters
-    ----------
-    errors : mapping
-        Errors over the draws, by model and metric.
-    rms : tuple of float
-        RMS displacements (um) over the draws.
-    """
+    """What the draws of one signal say, by model and metric."""
 
     errors: Mapping[tuple[str, Metric], tuple[float, ...]]
+    """Errors over the draws, by model and metric."""
     rms: tuple[float, ...]
+    """RMS displacements (um) over the draws."""
 
 
 def read_draws(path: str | Path) -> dict[str, Drawn]:
@@ -188,34 +167,24 @@ class Edge:
     """How far the step size of a filter can go on a signal.
 
     Volterra's two step sizes go together; the first-order one is told.
-
-    Parameters
-    ----------
-    signal, model : str
-    mu : float
-        The configured step size.
-    largest_correction : float
-        2 mu max|H|^2 of it, the share of an error that one update corrects.
-    at_trace : float
-        Step size at Eq. 19's bound, 1 / tr[R].
-    at_power : float
-        Step size at which one update corrects twice the error, 1 / max|H|^2.
-    edge : float or None
-        Least step size of the sweep at which the error is as large as the
-        displacement or the filter diverges; None where the sweep found none.
-    speed_trend : float or None
-        Rank correlation with the step size, up to half of the edge, of the time after
-        which the error is small; None where the time does not change.
     """
 
     signal: str
     model: str
     mu: float
+    """The configured step size."""
     largest_correction: float
+    """2 mu max|H|^2 of it, the share of an error that one update corrects."""
     at_trace: float
+    """Step size at Eq. 19's bound, 1 / tr[R]."""
     at_power: float
+    """Step size at which one update corrects twice the error, 1 / max|H|^2."""
     edge: float | None
+    """Least step size of the sweep at which the error is as large as the displacement
+    or the filter diverges; None where the sweep found none."""
     speed_trend: float | None
+    """Rank correlation with the step size, up to half of the edge, of the time after
+    which the error is small; None where the time does not change."""
 
     @property
     def inside(self) -> bool:

@@ -25,47 +25,34 @@ Half = Literal["calibrated", "held-out"]
 
 @dataclass(frozen=True, kw_only=True)
 class ComparedCell:
-    """A printed error and ours.
-
-    Parameters
-    ----------
-    table : int
-        Table of the paper.
-    signal, model, metric : str
-        Which error.
-    half : {"calibrated", "held-out"}
-        Whether the twin was fitted to the published errors of the signal.
-    published : str
-        As printed.
-    ours : float or None
-        None where it was not run or diverged. Of a signal that was drawn many times
-        the median over the draws.
-    spread_low, spread_high : float or None
-        Smallest and largest of ours over equally good twins, infinite where a run
-        diverged; None where there are no two of them.
-    draws_low, draws_high : float or None
-        Smallest and largest of ours over the draws of the signal, infinite where a run
-        diverged; None where it has none.
-    published_consistent : {"yes", "no", "undecided"}
-        Whether the printed pair of MSE and RE can be true beside the others of its
-        signal; undecided where one of several pairs must be wrong.
-    status : str
-        ``finite``, ``not run``, or the sentence that tells where it diverged.
-    """
+    """A printed error and ours."""
 
     table: int
+    """Table of the paper."""
     signal: str
     model: str
     metric: Metric
+    """Which error."""
     half: Half
+    """Whether the twin was fitted to the published errors of the signal."""
     published: str
+    """As printed."""
     ours: float | None
+    """None where it was not run or diverged. Of a signal that was drawn many times the
+    median over the draws."""
     spread_low: float | None = None
     spread_high: float | None = None
+    """Smallest and largest of ours over equally good twins, infinite where a run
+    diverged; None where there are no two of them."""
     draws_low: float | None = None
     draws_high: float | None = None
+    """Smallest and largest of ours over the draws of the signal, infinite where a run
+    diverged; None where it has none."""
     published_consistent: Standing
+    """Whether the printed pair of MSE and RE can be true beside the others of its
+    signal; undecided where one of several pairs must be wrong."""
     status: str
+    """``finite``, ``not run``, or the sentence that tells where it diverged."""
 
     @property
     def ran(self) -> bool:

@@ -40,50 +40,36 @@ Cell = tuple[str, str]
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """Result of one model on one record, as ``results/filters`` holds it.
-
-    Parameters
-    ----------
-    signal, model, origin : str
-        What ran on what; ``origin`` is ``twin`` or ``measured``.
-    error_kind : str
-        ``one-step a priori`` or ``free-run simulation``.
-    order, weight_count : int or None
-        Order N and number of weights; None where the model has none.
-    step_size, bound : mapping of str to float
-        Step sizes and their bounds by Eq. 19, by the same names.
-    diverged : str or None
-        The sentence that tells where it diverged; None for a finite run.
-    mse, re, mse_after_transient, re_after_transient : float or None
-        Errors over the record, and after its transient; None where diverged.
-    unit : str
-        Unit of the MSE.
-    largest_eigenvalue, spread : float or None
-        Of the input correlation matrix R; the spread is over nonzero eigenvalues.
-    convergence_s : float or None
-        Time after which the smoothed squared error stays near its end.
-    transient_fraction : float
-        Part of the record that the errors after the transient leave out.
-    """
+    """Result of one model on one record, as ``results/filters`` holds it."""
 
     signal: str
     model: str
     origin: str
+    """What ran on what; ``origin`` is ``twin`` or ``measured``."""
     error_kind: str
+    """``one-step a priori`` or ``free-run simulation``."""
     order: int | None = None
     weight_count: int | None = None
+    """Order N and number of weights; None where the model has none."""
     step_size: Mapping[str, float] = field(default_factory=dict)
     bound: Mapping[str, float] = field(default_factory=dict)
+    """Step sizes and their bounds by Eq. 19, by the same names."""
     diverged: str | None = None
+    """The sentence that tells where it diverged; None for a finite run."""
     mse: float | None = None
     re: float | None = None
     mse_after_transient: float | None = None
     re_after_transient: float | None = None
+    """Errors over the record, and after its transient; None where diverged."""
     unit: str
+    """Unit of the MSE."""
     largest_eigenvalue: float | None = None
     spread: float | None = None
+    """Of the input correlation matrix R; the spread is over nonzero eigenvalues."""
     convergence_s: float | None = None
+    """Time after which the smoothed squared error stays near its end."""
     transient_fraction: float = 0.0
+    """Part of the record that the errors after the transient leave out."""
 
     @property
     def start_up_share(self) -> float | None:

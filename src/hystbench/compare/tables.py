@@ -33,24 +33,16 @@ def grid(frame: pd.DataFrame, style: str) -> str:
 
 @dataclass(frozen=True)
 class PrintedTable:
-    """A table with its caption and what its marks mean.
-
-    Parameters
-    ----------
-    name : str
-        Stem of its files.
-    caption : str
-        What it holds; names the kind of error and where the data are from.
-    legend : str
-        What the marks in its cells mean; empty where there are none.
-    frame : DataFrame
-        Its cells as text.
-    """
+    """A table with its caption and what its marks mean."""
 
     name: str
+    """Stem of its files."""
     caption: str
+    """What it holds; names the kind of error and where the data are from."""
     legend: str
+    """What the marks in its cells mean; empty where there are none."""
     frame: pd.DataFrame
+    """Its cells as text."""
 
     def csv(self) -> str:
         """Give the table as CSV, with the caption in a column of its own."""

@@ -33,14 +33,6 @@ NO_MODEL = "linear"
 class Solver:
     """A solver that has entered.
 
-    Parameters
-    ----------
-    name : str
-    command : tuple of str
-        With ``{dataset}``, ``{model}`` and ``{out}`` where the paths are to stand.
-    time_limit_s : float
-        Seconds on the clock for one case.
-
     Raises
     ------
     InputError
@@ -49,7 +41,9 @@ class Solver:
 
     name: str
     command: tuple[str, ...]
+    """With ``{dataset}``, ``{model}`` and ``{out}`` where the paths are to stand."""
     time_limit_s: float
+    """Seconds on the clock for one case."""
 
     def __post_init__(self) -> None:
         """Refuse a command that cannot answer."""

@@ -22,19 +22,13 @@ _TELLING = ("PWD", "OLDPWD", "SNAKEMAKE")
 
 @dataclass(frozen=True)
 class Ended:
-    """How a process ended.
-
-    Parameters
-    ----------
-    status : int or None
-        Exit status, negative for a signal; None if its time was up.
-    seconds, cpu_seconds : float
-        Time on the clock, and computing time on all cores together.
-    """
+    """How a process ended."""
 
     status: int | None
+    """Exit status, negative for a signal; None if its time was up."""
     seconds: float
     cpu_seconds: float
+    """Time on the clock, and computing time on all cores together."""
 
 
 def preload(command: Sequence[str]) -> None:

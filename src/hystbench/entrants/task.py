@@ -18,22 +18,14 @@ Predict = Callable[[Record], FloatArray]
 
 @dataclass(frozen=True)
 class Given:
-    """A dataset and the model it is held against.
-
-    Parameters
-    ----------
-    name : str
-    model : Model
-    fit, hold_out : tuple of Record
-    model_file : Path
-        Where the model was read.
-    """
+    """A dataset and the model it is held against."""
 
     name: str
     model: Model
     fit: tuple[Record, ...]
     hold_out: tuple[Record, ...]
     model_file: Path = Path()
+    """Where the model was read."""
 
     def base(self, record: Record) -> FloatArray:
         """Give the base's output."""
@@ -51,22 +43,14 @@ class NamedEffect:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a rival says of a dataset.
-
-    Parameters
-    ----------
-    predict : callable
-        The model that is to close the gap, for the hold-out records.
-    verdict : {"named", "no-gap", "unnamed"}
-    reason : str
-    named : sequence of NamedEffect
-        In their order.
-    """
+    """What a rival says of a dataset."""
 
     predict: Predict
+    """The model that is to close the gap, for the hold-out records."""
     verdict: str = "unnamed"
     reason: str = "Nothing is named."
     named: Sequence[NamedEffect] = ()
+    """In their order."""
 
 
 def read(dataset: Path, model: Path) -> Given:

@@ -13,19 +13,13 @@ from hystbench.record import FloatArray, Record, load_record
 
 @dataclass(frozen=True)
 class Output:
-    """A run and its arrays, which end early where the run diverged.
-
-    Parameters
-    ----------
-    run : Run
-        What ran on what, and its errors.
-    y, error : ndarray, shape (samples,)
-        Output of the model, and the record's output minus it.
-    """
+    """A run and its arrays, which end early where the run diverged."""
 
     run: Run
+    """What ran on what, and its errors."""
     y: FloatArray
     error: FloatArray
+    """Shape (samples,). Output of the model, and the record's output minus it."""
 
 
 def read_one(records: Sequence[Path], which: str) -> Record:

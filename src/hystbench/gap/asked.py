@@ -12,25 +12,17 @@ from hystbench.gap.vocabulary import EVERYTHING, Vocabulary
 
 @dataclass(frozen=True, kw_only=True)
 class Asked:
-    """Limits, shares and names, and who is told how far the search is.
-
-    Parameters
-    ----------
-    limits : mapping of str to float, optional
-        What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
-        What is not given is taken from the fit records.
-    unnamed_share : float
-        Share of the power of the gap that may stay unnamed beside a name.
-    vocabulary : Vocabulary
-        Effects that may be named, and those that are in the model from the start.
-    say : callable
-        Told a line of progress at a time.
-    """
+    """Limits, shares and names, and who is told how far the search is."""
 
     limits: Mapping[str, float] | None = None
+    """What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
+    What is not given is taken from the fit records."""
     unnamed_share: float = UNNAMED_SHARE
+    """Share of the power of the gap that may stay unnamed beside a name."""
     vocabulary: Vocabulary = EVERYTHING
+    """Effects that may be named, and those that are in the model from the start."""
     say: Say = silent
+    """Told a line of progress at a time."""
 
 
 USUAL = Asked()

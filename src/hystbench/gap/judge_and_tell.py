@@ -53,26 +53,17 @@ from hystbench.model import Model
 
 @dataclass(frozen=True, kw_only=True)
 class Decision(FitResult):
-    """What the fit records decide; hold-out records have not been read.
-
-    Parameters
-    ----------
-    model : Model
-        The base with the effects that were added.
-    left : Left
-    content : mapping
-        What gap.json holds, but for what the hold-out records show.
-    curves : mapping
-        What the pictures of where the gap is are drawn from.
-    experiment : Experiment, optional
-        What would tell likely effects apart best.
-    """
+    """What the fit records decide; hold-out records have not been read."""
 
     model: Model
+    """The base with the effects that were added."""
     left: Left
     content: Mapping[str, Any]
+    """What gap.json holds, but for what the hold-out records show."""
     curves: Mapping[str, Any]
+    """What the pictures of where the gap is are drawn from."""
     experiment: Experiment | None
+    """What would tell likely effects apart best."""
 
 
 def judge_and_tell(

@@ -50,40 +50,24 @@ RESULT = (*FILES, "holdout/*.csv")
 
 @dataclass(frozen=True)
 class Decided:
-    """What goes from the fit records to those that are held out.
-
-    Parameters
-    ----------
-    base : Model
-        As it was given, or identified: it tells what another state at the first sample
-        would do, as what stands for it may hold a place that no record forgets.
-    fitted : FitResult
-    content : mapping
-        What gap.json holds, but for what the hold-out records show.
-    vocabulary : Vocabulary
-    built_in : BuiltIn or None
-    """
+    """What goes from the fit records to those that are held out."""
 
     base: Model
+    """As it was given, or identified: it tells what another state at the first sample
+    would do, as what stands for it may hold a place that no record forgets."""
     fitted: FitResult
     content: Mapping[str, Any]
+    """What gap.json holds, but for what the hold-out records show."""
     vocabulary: Vocabulary
     built_in: BuiltIn | None
 
 
 @dataclass(frozen=True)
 class Closed:
-    """A gap that was searched and shown on hold-out records; nothing is written yet.
-
-    Parameters
-    ----------
-    decision : Decision
-        Its ``model`` and ``content`` are those after the hold-out records were read.
-    outcome : Outcome
-    evidence : Evidence
-    """
+    """A gap that was searched and shown on hold-out records; nothing is written yet."""
 
     decision: Decision
+    """Its ``model`` and ``content`` are those after the hold-out records were read."""
     outcome: Outcome
     evidence: Evidence
 

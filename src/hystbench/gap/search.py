@@ -111,26 +111,16 @@ def search(
 
 @dataclass(frozen=True)
 class _Searched:
-    """What was named beside a base.
-
-    Parameters
-    ----------
-    base : Model
-    start : ModelState
-        The same on the fit records.
-    floor : Floor
-    chain : Named or None
-        Effects in a chain; none where forces were enough.
-    inside : Inside or None
-        Forces inside the dynamics, where they do better than a chain.
-    own : OwnValues
-    """
+    """What was named beside a base."""
 
     base: Model
     start: ModelState
+    """The same on the fit records."""
     floor: Floor
     chain: Named | None
+    """Effects in a chain; none where forces were enough."""
     inside: Inside | None
+    """Forces inside the dynamics, where they do better than a chain."""
     own: OwnValues
 
     @property

@@ -22,16 +22,6 @@ from hystbench.sentences import listed
 class Vocabulary:
     """What a user accepts and rejects before a search.
 
-    Parameters
-    ----------
-    without : tuple of str
-        Effects that the search must not name.
-    fixed : tuple of str
-        Effects that are in the model from the start. They are fitted, and found by
-        nobody: what they close of the gap is told apart from what is found.
-    kind : str, optional
-        Kind of the device; what it cannot have is not named, unless it is put in.
-
     Raises
     ------
     InputError
@@ -39,8 +29,12 @@ class Vocabulary:
     """
 
     without: tuple[str, ...] = ()
+    """Effects that the search must not name."""
     fixed: tuple[str, ...] = ()
+    """Effects that are in the model from the start. They are fitted, and found by
+    nobody: what they close of the gap is told apart from what is found."""
     kind: DeviceKind | None = None
+    """Kind of the device; what it cannot have is not named, unless it is put in."""
 
     def __post_init__(self) -> None:
         """Refuse names that mean nothing."""

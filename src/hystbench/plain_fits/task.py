@@ -14,30 +14,21 @@ from hystbench.record import FloatArray, Record
 
 @dataclass(frozen=True)
 class EffectFit:
-    """An effect fitted to records.
-
-    Parameters
-    ----------
-    effect : str
-    output : ndarray, shape (n,)
-        With the effect, over all samples of all records, one after the other.
-    mean_square : float
-        Of the residual, over the same.
-    freedom : int
-        Parameters fitted.
-    values : dict of str to float
-        Of the block's parameters; empty where there is no block.
-    predict : callable
-        Output for another record. What is new in every record (a phase, a path) is
-        unknown there and left out.
-    """
+    """An effect fitted to records."""
 
     effect: str
     output: FloatArray
+    """Shape (n,). With the effect, over all samples of all records, one after the
+    other."""
     mean_square: float
+    """Of the residual, over the same."""
     freedom: int
+    """Parameters fitted."""
     values: dict[str, float]
+    """Of the block's parameters; empty where there is no block."""
     predict: Callable[[Record], FloatArray]
+    """Output for another record. What is new in every record (a phase, a path) is
+    unknown there and left out."""
 
 
 class Task:

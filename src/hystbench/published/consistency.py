@@ -56,24 +56,16 @@ def smallest_removals(
 
 @dataclass(frozen=True)
 class SignalCheck:
-    """What the filters' rows of one signal (Tables 1-3) say about each other.
-
-    Parameters
-    ----------
-    intervals : dict of str to Interval
-        RMS displacement (um) that the row of each model implies, RDGPI included.
-    conflicts : tuple of (str, str)
-        Filters whose rows cannot both be true.
-    removals : tuple of tuple of str
-        All smallest sets of filters whose removal restores consistency.
-    rms : tuple of Interval
-        RMS displacement (um) that is left, one for each of ``removals``.
-    """
+    """What the filters' rows of one signal (Tables 1-3) say about each other."""
 
     intervals: dict[str, Interval]
+    """RMS displacement (um) that the row of each model implies, RDGPI included."""
     conflicts: tuple[tuple[str, str], ...]
+    """Filters whose rows cannot both be true."""
     removals: tuple[tuple[str, ...], ...]
+    """All smallest sets of filters whose removal restores consistency."""
     rms: tuple[Interval, ...]
+    """RMS displacement (um) that is left, one for each of ``removals``."""
 
     @property
     def implied_rms(self) -> float:

@@ -26,30 +26,20 @@ class Link:
 
 @dataclass(frozen=True)
 class PagePicture:
-    """A picture with its caption.
-
-    Parameters
-    ----------
-    name : str
-        Name of the element, by which it can be linked.
-    source : str
-        The image itself, as a data URI.
-    alt : str
-        What it shows, for those who do not see it.
-    caption : Markup
-    width, height : int
-        In CSS pixels.
-    files : tuple of Link
-        Where it can be had as a file.
-    """
+    """A picture with its caption."""
 
     name: str
+    """Name of the element, by which it can be linked."""
     source: str
+    """The image itself, as a data URI."""
     alt: str
+    """What it shows, for those who do not see it."""
     caption: Markup
     width: int
     height: int
+    """In CSS pixels."""
     files: tuple[Link, ...] = ()
+    """Where it can be had as a file."""
 
     @property
     def wide(self) -> bool:

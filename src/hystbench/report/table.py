@@ -15,21 +15,14 @@ Key = float | str | None
 
 @dataclass(frozen=True)
 class Cell:
-    """One cell.
-
-    Parameters
-    ----------
-    shown : str
-        Text, or HTML where it is ``Markup``.
-    sort : float or str, optional
-        What it is sorted and filtered by; the text where it is None.
-    mark : str
-        CSS class: ``good``, ``bad``, ``quiet`` or none.
-    """
+    """One cell."""
 
     shown: str
+    """Text, or HTML where it is ``Markup``."""
     sort: Key = None
+    """What it is sorted and filtered by; the text where it is None."""
     mark: str = ""
+    """CSS class: ``good``, ``bad``, ``quiet`` or none."""
 
 
 @dataclass(frozen=True)
@@ -56,37 +49,24 @@ class Body:
 
 @dataclass(frozen=True)
 class PageTable:
-    """A table with its caption.
-
-    Parameters
-    ----------
-    name : str
-        Name of the element, by which it can be linked.
-    caption : str
-        Text or ``Markup``.
-    columns : sequence of Heading
-    bodies : sequence of Body
-    files : tuple of Link
-        Where it can be had as a file.
-    filtered : tuple of str
-        Titles of columns by whose values rows can be chosen.
-    cards : bool
-        Whether its cells hold sentences: a row is a card on a phone.
-    dense : bool
-        Whether it has many narrow columns.
-    note : str
-        What its marks mean.
-    """
+    """A table with its caption."""
 
     name: str
+    """Name of the element, by which it can be linked."""
     caption: str
+    """Text or ``Markup``."""
     columns: Sequence[Heading]
     bodies: Sequence[Body]
     files: tuple[Link, ...] = ()
+    """Where it can be had as a file."""
     filtered: tuple[str, ...] = ()
+    """Titles of columns by whose values rows can be chosen."""
     cards: bool = False
+    """Whether its cells hold sentences: a row is a card on a phone."""
     dense: bool = False
+    """Whether it has many narrow columns."""
     note: str = ""
+    """What its marks mean."""
 
     @property
     def count(self) -> int:

@@ -20,22 +20,15 @@ from hystbench.twins.runs import Settings
 
 @dataclass(frozen=True)
 class TwinExperiment:
-    """What is changed in an experiment.
-
-    Parameters
-    ----------
-    seed : int
-        Draw of the noise and of the random sum's phases; 0 is the configured one.
-    steps : dict of str to float
-        Factor on the step sizes of each filter.
-    zero, noise : float
-        Factors on the zero error and on the noise of the recorded input.
-    """
+    """What is changed in an experiment."""
 
     seed: int
+    """Draw of the noise and of the random sum's phases; 0 is the configured one."""
     steps: dict[str, float]
+    """Factor on the step sizes of each filter."""
     zero: float
     noise: float
+    """Factors on the zero error and on the noise of the recorded input."""
 
     def measured(self, settings: Settings) -> dict[str, Any]:
         """Give the settings of the measurement with zero error and noise changed."""

@@ -13,21 +13,14 @@ HYSTERESIS = ("gpi", "preisach", "jiles-atherton", "rdgpi")
 
 @dataclass(frozen=True)
 class Twin:
-    """A twin.
-
-    Parameters
-    ----------
-    name, place : str
-        Stem of its file, and the file.
-    model : Model
-    family : str
-        Name of the block that makes its hysteresis.
-    """
+    """A twin."""
 
     name: str
     place: str
+    """Stem of its file, and the file."""
     model: Model
     family: str
+    """Name of the block that makes its hysteresis."""
 
 
 def read_twins(paths: Iterable[Path]) -> tuple[Twin, ...]:

@@ -37,16 +37,10 @@ class Stratum:
 
 @dataclass(frozen=True)
 class Entry:
-    """A case of a contest.
-
-    Parameters
-    ----------
-    name : str
-        Tells nothing of what is hidden: a hash, in whose order the cases stand.
-    spec : CaseSpec
-    """
+    """A case of a contest."""
 
     name: str
+    """Tells nothing of what is hidden: a hash, in whose order the cases stand."""
     spec: CaseSpec
 
 

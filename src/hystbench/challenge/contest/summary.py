@@ -33,29 +33,20 @@ KINDS = {"hidden": HIDDEN, "several": ("pair", "triple")}
 
 
 class Figure(NamedTuple):
-    """A figure of some cases, and what the project asks of its own solver.
-
-    Parameters
-    ----------
-    name : str
-    column : str
-        The share of cases of which this is true; or, before the name of a column, what
-        is made of it, as :data:`MADE` has it.
-    kind, family : str
-        ``all``, or a kind of case (or of :data:`KINDS`) and one of :data:`FAMILIES`.
-    ratio_db : float or None
-        None for all.
-    sense, bound
-        What is asked: ``>=`` or ``<=``, and of what; or ``to`` between two ends.
-    """
+    """A figure of some cases, and what the project asks of its own solver."""
 
     name: str
     column: str
+    """The share of cases of which this is true; or, before the name of a column, what
+    is made of it, as :data:`MADE` has it."""
     kind: str = "all"
     family: str = "all"
+    """``all``, or a kind of case (or of :data:`KINDS`) and one of :data:`FAMILIES`."""
     ratio_db: float | None = None
+    """None for all."""
     sense: str = ""
     bound: Any = 0.0
+    """What is asked: ``>=`` or ``<=``, and of what; or ``to`` between two ends."""
 
     @property
     def asked(self) -> str:

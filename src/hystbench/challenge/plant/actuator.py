@@ -41,23 +41,15 @@ class KnownMode:
 
 @dataclass(frozen=True)
 class Actuator:
-    """A plant with the effects that it hides.
-
-    Parameters
-    ----------
-    loop : PlantLoop or float
-        The hysteresis, or the gain of a material without any in um/A.
-    mode : KnownMode, optional
-        The known mode.
-    effects : tuple of HiddenEffect
-    seed : int
-        Seed of what is new in every record.
-    """
+    """A plant with the effects that it hides."""
 
     loop: PlantLoop | float
+    """The hysteresis, or the gain of a material without any in um/A."""
     mode: KnownMode | None
+    """The known mode."""
     effects: tuple[HiddenEffect, ...]
     seed: int
+    """Seed of what is new in every record."""
 
     def read(
         self, excitation: Command, dt: float, samples: int, record: int

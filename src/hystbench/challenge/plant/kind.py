@@ -52,48 +52,32 @@ RESIZINGS = 6
 
 @dataclass(frozen=True)
 class PlantRun:
-    """What an effect may see of one record beside its own input.
-
-    Parameters
-    ----------
-    time, u : ndarray, shape (n,)
-        The fine grid in seconds and the command on it in amperes.
-    dt : float
-        Step of the fine grid in seconds.
-    random : numpy.random.Generator
-        Source of what is new in every record: a phase, a path.
-    """
+    """What an effect may see of one record beside its own input."""
 
     time: FloatArray
     u: FloatArray
+    """Shape (n,). The fine grid in seconds and the command on it in amperes."""
     dt: float
+    """Step of the fine grid in seconds."""
     random: np.random.Generator
+    """Source of what is new in every record: a phase, a path."""
 
 
 @dataclass(frozen=True)
 class Range:
-    """Interval that a parameter is drawn from, evenly in its logarithm.
-
-    Parameters
-    ----------
-    low, high : float
-        The interval.
-    unit : str
-    sign : bool
-        Whether a coin gives the sign.
-    shifts : bool
-        Whether ``spread`` multiplies the interval.
-    least, most : float, optional
-        What physics and the numerics allow, whatever the spread.
-    """
+    """Interval that a parameter is drawn from, evenly in its logarithm."""
 
     low: float
     high: float
+    """The interval."""
     unit: str
     sign: bool = False
+    """Whether a coin gives the sign."""
     shifts: bool = True
+    """Whether ``spread`` multiplies the interval."""
     least: float = 0.0
     most: float = np.inf
+    """What physics and the numerics allow, whatever the spread."""
 
     def draw(self, random: np.random.Generator, spread: float = 1.0) -> float:
         """Draw a value."""
@@ -111,22 +95,16 @@ class Range:
 
 @dataclass(frozen=True)
 class Reach:
-    """The largest values of the linear machine on its fit records.
-
-    Parameters
-    ----------
-    position, velocity, force, output : float
-        Of a tank ``position`` is the level of each, so far as they are alike, ``force``
-        the inflow and ``velocity`` that level over the time in which it settles.
-    stiffness : float
-        That of the linear spring; where there is none, force over position.
-    """
+    """The largest values of the linear machine on its fit records."""
 
     position: float
     velocity: float
     force: float
     output: float
+    """Of a tank ``position`` is the level of each, so far as they are alike, ``force``
+    the inflow and ``velocity`` that level over the time in which it settles."""
     stiffness: float
+    """That of the linear spring; where there is none, force over position."""
 
 
 Act = Callable[[FloatArray, PlantRun, Parameters], FloatArray]
@@ -142,68 +120,45 @@ def nothing(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
 
 @dataclass(frozen=True)
 class Form:
-    """One way in which an effect may be written.
-
-    Parameters
-    ----------
-    act : callable
-        In an actuator: takes the signal, the run and the parameters and gives the
-        signal.
-    ranges : mapping of str to Range
-        By parameter.
-    size : str
-        The parameter that makes the effect larger (``power`` above zero: the
-        difference grows roughly with this power) or smaller (below zero); empty where
-        there is none.
-    power : float
-    stage : str, optional
-        Where this form acts, if not where its kind does.
-    told : callable
-        Gives the parameters under the vocabulary's names.
-    numbers : callable, optional
-        Inside a machine: gives the numbers of its part or of each tank.
-    curve : callable, optional
-        Before or behind a machine: gives the signal.
-    """
+    """One way in which an effect may be written."""
 
     act: Act = nothing
+    """In an actuator: takes the signal, the run and the parameters and gives the
+    signal."""
     ranges: Mapping[str, Range] = field(default_factory=dict)
+    """By parameter."""
     size: str = ""
+    """The parameter that makes the effect larger (``power`` above zero: the difference
+    grows roughly with this power) or smaller (below zero); empty where there is
+    none."""
     power: float = 1.0
     stage: Stage | None = None
+    """Where this form acts, if not where its kind does."""
     told: Callable[[Parameters], dict[str, Any]] = dict
+    """Gives the parameters under the vocabulary's names."""
     numbers: Inside | None = None
+    """Inside a machine: gives the numbers of its part or of each tank."""
     curve: Curve | None = None
+    """Before or behind a machine: gives the signal."""
 
 
 @dataclass(frozen=True)
 class Kind:
-    """A physical effect: where it acts, where it shows, how it may be written.
-
-    Parameters
-    ----------
-    name : str
-    place : str
-        In an actuator ``drive``, ``material``, ``mechanics`` or ``sensor``; in a
-        machine ``before``, ``inside`` or ``behind``.
-    stage : str
-        Where in the chain of an actuator it acts.
-    views : tuple of str
-        Where in an actuator it shows.
-    forms : mapping of str to Form
-    listed : bool
-        Whether the vocabulary has a word for it.
-    families : tuple of str
-        Machines that it may be in.
-    """
+    """A physical effect: where it acts, where it shows, how it may be written."""
 
     name: str
     place: str
+    """In an actuator ``drive``, ``material``, ``mechanics`` or ``sensor``; in a machine
+    ``before``, ``inside`` or ``behind``."""
     stage: Stage = "mechanics"
+    """Where in the chain of an actuator it acts."""
     views: tuple[View, ...] = ()
+    """Where in an actuator it shows."""
     forms: Mapping[str, Form] = field(default_factory=dict)
     listed: bool = True
+    """Whether the vocabulary has a word for it."""
     families: tuple[str, ...] = ()
+    """Machines that it may be in."""
 
 
 @dataclass(frozen=True)

@@ -19,71 +19,54 @@ FINE = 32
 
 @dataclass(frozen=True)
 class MovingPart:
-    """A moving part: ``m q'' + c q' + k q + forces = u``.
-
-    Parameters
-    ----------
-    mass, damping, stiffness : float
-        The linear part.
-    quadratic, cubic : float
-        Of the spring's force, times q^2 and q^3.
-    sinh_force, sinh_reach : float
-        Adds ``sinh_force (sinh(q / sinh_reach) - q / sinh_reach)``.
-    pendulum, angle : float
-        Adds ``pendulum`` times what ``sin(q + angle)`` differs from its tangent at 0.
-    wall_right, wall_left, wall_stiffness : float
-        Springs that are touched beyond a clearance to either side.
-    coulomb, surplus, stribeck_speed : float
-        Dry friction ``coulomb + surplus exp(-(v / stribeck_speed)^2)``.
-    presliding : float
-        Distance over which dry friction builds up; 0 for a rigid contact.
-    drag : float
-        Adds ``drag v |v|``.
-    remembered, yield_distance, sharpness, unloading : float
-        Bouc-Wen's force: at most ``remembered``, and its slope on the way back.
-    slider_stiffness, slip, clearance : float
-        A spring that slips beyond ``slip`` and carries nothing within ``clearance``.
-    coil_width, coil_shift : float
-        What drives it has a force that falls by half at this distance from the middle
-        of its magnet; 0 for a force that is the same everywhere.
-    ripple, ripple_rate, ripple_phase : float
-        Share by which the linear spring swings in time, in rad/s and rad.
-    loose_stiffness, loose, wear : float
-        A spring behind a clearance that grows by ``wear`` times the way gone.
-    """
+    """A moving part: ``m q'' + c q' + k q + forces = u``."""
 
     mass: float = 1.0
     damping: float = 0.0
     stiffness: float = 0.0
+    """The linear part."""
     quadratic: float = 0.0
     cubic: float = 0.0
+    """Of the spring's force, times q^2 and q^3."""
     sinh_force: float = 0.0
     sinh_reach: float = 1.0
+    """Adds ``sinh_force (sinh(q / sinh_reach) - q / sinh_reach)``."""
     pendulum: float = 0.0
     angle: float = 0.0
+    """Adds ``pendulum`` times what ``sin(q + angle)`` differs from its tangent at 0."""
     wall_right: float = np.inf
     wall_left: float = np.inf
     wall_stiffness: float = 0.0
+    """Springs that are touched beyond a clearance to either side."""
     coulomb: float = 0.0
     surplus: float = 0.0
     stribeck_speed: float = 1.0
+    """Dry friction ``coulomb + surplus exp(-(v / stribeck_speed)^2)``."""
     presliding: float = 0.0
+    """Distance over which dry friction builds up; 0 for a rigid contact."""
     drag: float = 0.0
+    """Adds ``drag v |v|``."""
     remembered: float = 0.0
     yield_distance: float = 1.0
     sharpness: float = 1.0
     unloading: float = 1.0
+    """Bouc-Wen's force: at most ``remembered``, and its slope on the way back."""
     slider_stiffness: float = 0.0
     slip: float = 0.0
     clearance: float = 0.0
+    """A spring that slips beyond ``slip`` and carries nothing within ``clearance``."""
     coil_width: float = 0.0
     coil_shift: float = 0.0
+    """What drives it has a force that falls by half at this distance from the middle of
+    its magnet; 0 for a force that is the same everywhere."""
     ripple: float = 0.0
     ripple_rate: float = 0.0
     ripple_phase: float = 0.0
+    """Share by which the linear spring swings in time, in rad/s and rad."""
     loose_stiffness: float = 0.0
     loose: float = 0.0
     wear: float = 0.0
+    """A spring behind a clearance that grows by ``wear`` times the way gone."""
 
     @property
     def numbers(self) -> FloatArray:
@@ -136,30 +119,21 @@ def resist(part: MovingPart, position: FloatArray, dt: float) -> FloatArray:
 
 @dataclass(frozen=True)
 class Tank:
-    """A tank: ``area h' = inflow - coefficient h^exponent``, with a rim.
-
-    Parameters
-    ----------
-    area, coefficient, exponent : float
-    rim : float
-        Level above which it runs over.
-    caught : float
-        Share of what runs over that falls into the next tank.
-    back : float
-        1 where the next tank's level stands against the outlet, else 0.
-    leak, leak_time : float
-        A seal lets through ``leak coefficient w h``, where ``w`` is how wet it is: it
-        follows the level with this time in seconds.
-    """
+    """A tank: ``area h' = inflow - coefficient h^exponent``, with a rim."""
 
     area: float
     coefficient: float
     exponent: float = 1.0
     rim: float = np.inf
+    """Level above which it runs over."""
     caught: float = 0.0
+    """Share of what runs over that falls into the next tank."""
     back: float = 0.0
+    """1 where the next tank's level stands against the outlet, else 0."""
     leak: float = 0.0
     leak_time: float = 1.0
+    """A seal lets through ``leak coefficient w h``, where ``w`` is how wet it is: it
+    follows the level with this time in seconds."""
 
 
 def fill(

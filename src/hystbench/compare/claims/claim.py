@@ -60,13 +60,6 @@ class NotTestable(Exception):  # noqa: N818 - it is no error but a verdict
 class Condition:
     """A comparison of a measured number with a limit: ``2 * better >= both``.
 
-    Parameters
-    ----------
-    text : str
-        ``name predicate limit``. The predicate is one of ``PREDICATES``; the limit is
-        a number or the name of another measured number. A factor may stand before
-        each name.
-
     Raises
     ------
     ValueError
@@ -74,6 +67,9 @@ class Condition:
     """
 
     text: str
+    """``name predicate limit``. The predicate is one of ``PREDICATES``; the limit is a
+    number or the name of another measured number. A factor may stand before each
+    name."""
 
     def __post_init__(self) -> None:
         """Refuse what cannot be read."""
@@ -120,27 +116,18 @@ def number(value: float) -> str:
 
 @dataclass(frozen=True)
 class Test:
-    """How a claim is judged: a measure, conditions on its numbers, and a sentence.
-
-    Parameters
-    ----------
-    measure : callable or None
-        None where nothing can judge it: the sentence says why.
-    arguments : mapping of str to object
-        What the measure takes beside the evidence.
-    holds : tuple of Condition
-        The claim holds where all of them do.
-    says : str
-        Sentence with the numbers in braces.
-    otherwise : str
-        The sentence where the claim does not hold; empty for the same.
-    """
+    """How a claim is judged: a measure, conditions on its numbers, and a sentence."""
 
     measure: Measure | None
+    """None where nothing can judge it: the sentence says why."""
     arguments: Mapping[str, Any] = field(default_factory=dict)
+    """What the measure takes beside the evidence."""
     holds: tuple[Condition, ...] = ()
+    """The claim holds where all of them do."""
     says: str = ""
+    """Sentence with the numbers in braces."""
     otherwise: str = ""
+    """The sentence where the claim does not hold; empty for the same."""
 
     def __call__(self, evidence: ClaimEvidence) -> Tested:
         """Judge the claim by evidence.
@@ -160,36 +147,24 @@ class Test:
 
 @dataclass(frozen=True)
 class Claim:
-    """One checkable sentence of the paper; a row of ``claims.yaml``.
-
-    Parameters
-    ----------
-    id : str
-        Short name.
-    claim : str
-        The sentence, quoted or in short.
-    where : str
-        Section, equation, table or figure.
-    kind : {"result", "theory", "condition", "notation"}
-        What sort of sentence it is.
-    reading : str
-        How the sentence was made checkable, where its words alone do not say.
-    basis : str
-        What the twin knew of it; see ``Basis``.
-    ours : callable
-        Judges it by our own evidence.
-    theirs : callable or None
-        Judges it by the paper's printed numbers; None where it prints none.
-    """
+    """One checkable sentence of the paper; a row of ``claims.yaml``."""
 
     id: str
+    """Short name."""
     claim: str
+    """The sentence, quoted or in short."""
     where: str
+    """Section, equation, table or figure."""
     kind: ClaimKind
+    """What sort of sentence it is."""
     reading: str
+    """How the sentence was made checkable, where its words alone do not say."""
     basis: str
+    """What the twin knew of it; see ``Basis``."""
     ours: Callable[[ClaimEvidence], Tested]
+    """Judges it by our own evidence."""
     theirs: Callable[[ClaimEvidence], Tested] | None = None
+    """Judges it by the paper's printed numbers; None where it prints none."""
 
 
 @dataclass(frozen=True)

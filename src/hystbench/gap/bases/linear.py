@@ -43,28 +43,19 @@ def is_identified(base: Model) -> bool:
 
 
 class Linear(NamedTuple):
-    """A linear base, and how it was found.
-
-    Parameters
-    ----------
-    model : Model
-    note : str
-        One sentence.
-    fit_rms, fold_rms : float
-        Error on the fit records, and on the folds of them that did not fit it, in
-        units of the output, both after the first tenth of each record.
-    constant_rms : float
-        Error of a constant on these folds.
-    signed : bool
-        Whether it is of an output with a sign that the sensor may not show.
-    """
+    """A linear base, and how it was found."""
 
     model: Model
     note: str
+    """One sentence."""
     fit_rms: float
     fold_rms: float
+    """Error on the fit records, and on the folds of them that did not fit it, in units
+    of the output, both after the first tenth of each record."""
     constant_rms: float
+    """Error of a constant on these folds."""
     signed: bool = False
+    """Whether it is of an output with a sign that the sensor may not show."""
 
 
 def identified_linear(evidence: Evidence) -> Linear:

@@ -84,17 +84,11 @@ class Found(NamedTuple):
 
 @dataclass(frozen=True)
 class Orders:
-    """Records that ratios of all orders are fitted to.
-
-    Parameters
-    ----------
-    evidence : Evidence
-    late : float
-        Sampling intervals by which their input was made later; below zero earlier.
-    """
+    """Records that ratios of all orders are fitted to."""
 
     evidence: Evidence
     late: float = 0.0
+    """Sampling intervals by which their input was made later; below zero earlier."""
 
     @cached_property
     def whole(self) -> tuple[Mask, ...]:

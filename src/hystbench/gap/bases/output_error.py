@@ -79,29 +79,19 @@ def descended(
 
 @dataclass(frozen=True)
 class OutputError:
-    """Records that a ratio is fitted to by its simulation, as the block gives it.
-
-    Parameters
-    ----------
-    records : tuple of Record
-    hold : {"zero-order", "linear", "band-limited"}
-    scale : float
-        Unit of the ratio's s, in rad/s.
-    start : {"rest", "settled", "moving", "repeating"}
-        As of the block.
-    own_offsets : bool
-        Whether each record has a constant of its own, as where a sensor's zero is
-        another one every time; a ratio has their mean.
-    held : int
-        So many of the lowest coefficients of the denominator stay as they are.
-    """
+    """Records that a ratio is fitted to by its simulation, as the block gives it."""
 
     records: tuple[Record, ...]
     hold: Hold
     scale: float
+    """Unit of the ratio's s, in rad/s."""
     start: str = "rest"
+    """As of the block."""
     own_offsets: bool = False
+    """Whether each record has a constant of its own, as where a sensor's zero is
+    another one every time; a ratio has their mean."""
     held: int = 0
+    """So many of the lowest coefficients of the denominator stay as they are."""
 
     def block(self, ratio: Ratio) -> TransferFunction:
         """Give the block of a ratio; its constant is left out."""

@@ -51,23 +51,16 @@ class Stretch(NamedTuple):
 
 @dataclass(frozen=True)
 class RecordSpectrum:
-    """Spectral lines of one stretch.
-
-    Parameters
-    ----------
-    s : ndarray of complex, shape (l,)
-        ``j w`` over the scale.
-    u, y : ndarray of complex, shape (l,)
-        Input as its hold shapes it, and output; the sum of ``|y|^2`` is the sum of
-        squares of the samples.
-    constant : ndarray, shape (l,)
-        Spectrum of a constant of one.
-    """
+    """Spectral lines of one stretch."""
 
     s: ComplexArray
+    """Shape (l,). ``j w`` over the scale."""
     u: ComplexArray
     y: ComplexArray
+    """Shape (l,). Input as its hold shapes it, and output; the sum of ``|y|^2`` is the
+    sum of squares of the samples."""
     constant: FloatArray
+    """Shape (l,). Spectrum of a constant of one."""
 
     @cached_property
     def powers(self) -> ComplexArray:

@@ -25,22 +25,15 @@ MARGIN = 5e-3
 
 @dataclass(frozen=True)
 class Halves:
-    """A front, a curve ``c_1 w + c_2 w^2 + ..`` and a back, with a constant at the end.
-
-    Parameters
-    ----------
-    front, back : Rational
-    curve : ndarray, shape (DEGREE,)
-    offset : float
-    cost : float
-        Sum of squares.
-    """
+    """A front, a curve ``c_1 w + c_2 w^2 + ..``, a back, and a constant at the end."""
 
     front: Rational
     back: Rational
     curve: FloatArray = field(default_factory=lambda: np.zeros(DEGREE))
+    """Shape (DEGREE,)."""
     offset: float = 0.0
     cost: float = np.inf
+    """Sum of squares."""
 
     @property
     def count(self) -> int:
@@ -159,25 +152,16 @@ class Way:
 
 @dataclass(frozen=True)
 class HalvesError:
-    """Records that two halves are fitted to by their simulation.
-
-    Parameters
-    ----------
-    records : tuple of Record
-    masks : tuple of ndarray of bool
-        Samples that count.
-    hold : {"zero-order", "linear", "band-limited"}
-    scale : float
-        Unit of s, in rad/s.
-    start : {"rest", "settled", "moving", "repeating"}
-        As of a transfer function's block.
-    """
+    """Records that two halves are fitted to by their simulation."""
 
     records: tuple[Record, ...]
     masks: tuple[Mask, ...]
+    """Samples that count."""
     hold: Hold
     scale: float
+    """Unit of s, in rad/s."""
     start: str = "rest"
+    """As of a transfer function's block."""
 
     @cached_property
     def ways(self) -> list[Way]:

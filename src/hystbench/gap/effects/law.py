@@ -12,77 +12,51 @@ from hystbench.blocks.store import Store
 
 @dataclass(frozen=True)
 class Moved:
-    """How a mechanism moves, the largest magnitudes over all records.
-
-    Parameters
-    ----------
-    reach : float
-        Of its position about the middle.
-    speed : float
-        Of its velocity.
-    force : float
-        Of the force that drives it, or that its motion takes.
-    turns : bool
-        Whether it turns: its position is an angle in rad.
-    anywhere : bool
-        Whether where it is does not matter, as of a mass without a spring: a force
-        that depends on the place has no meaning then.
-    stiffness : float
-        Of its linear spring; zero without one.
-    """
+    """How a mechanism moves, the largest magnitudes over all records."""
 
     reach: float
+    """Of its position about the middle."""
     speed: float
+    """Of its velocity."""
     force: float
+    """Of the force that drives it, or that its motion takes."""
     turns: bool = False
+    """Whether it turns: its position is an angle in rad."""
     anywhere: bool = False
+    """Whether where it is does not matter, as of a mass without a spring: a force that
+    depends on the place has no meaning then."""
     stiffness: float = 0.0
+    """Of its linear spring; zero without one."""
 
 
 class Passed(NamedTuple):
-    """What passes through a model: the largest of its input and of its output.
-
-    Parameters
-    ----------
-    given, shown : float
-    step : float
-        Shortest sampling interval, in seconds.
-    shortest : float
-        Time from which on a lag or a delay is an effect, in seconds. In a model that
-        was identified from the records, less than an interval is how input and output
-        were sampled.
-    """
+    """What passes through a model: the largest of its input and of its output."""
 
     given: float
     shown: float
     step: float
+    """Shortest sampling interval, in seconds."""
     shortest: float
+    """Time from which on a lag or a delay is an effect, in seconds. In a model that was
+    identified from the records, less than an interval is how input and output were
+    sampled."""
 
 
 @dataclass(frozen=True)
 class Law:
-    """A force inside a mechanism, or what is before or behind a host, as a fit starts.
-
-    Parameters
-    ----------
-    form : str
-        What tells it from other laws of the effect.
-    block : Block
-    free : tuple of str
-        Parameters that are fitted.
-    place : {"inside", "before", "behind"}
-    stands_for : float
-        Share of the linear spring that the force stands for: it goes out of the spring.
-    ranges : mapping of str to (float, float)
-        Of its numbers, where beyond them it would be another effect.
-    """
+    """A force inside a mechanism, or a block before or behind it, as a fit starts."""
 
     form: str
+    """What tells it from other laws of the effect."""
     block: Block
     free: tuple[str, ...]
+    """Parameters that are fitted."""
     place: Literal["inside", "before", "behind"] = "inside"
     stands_for: float = 0.0
+    """Share of the linear spring that the force stands for: it goes out of the
+    spring."""
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Of its numbers, where beyond them it would be another effect."""
 
 
 class Filled(NamedTuple):

@@ -29,90 +29,61 @@ Refused = Literal["", "either", "upper"]
 
 @dataclass(frozen=True)
 class Beside:
-    """A signal that the input does not explain, new in every record.
-
-    Parameters
-    ----------
-    effect : str
-    order : int
-        How many shapes of it there are: harmonics, or the degree of a path.
-    columns : callable
-        ``columns(record, values, order)`` gives the shapes, shape (n, k), and with a
-        fourth argument those at some samples alone; each record has amplitudes of its
-        own.
-    """
+    """A signal that the input does not explain, new in every record."""
 
     effect: str
     order: int
+    """How many shapes of it there are: harmonics, or the degree of a path."""
     columns: Callable[..., FloatArray]
+    """``columns(record, values, order)`` gives the shapes, shape (n, k), and with a
+    fourth argument those at some samples alone; each record has amplitudes of its
+    own."""
 
 
 @dataclass(frozen=True)
 class Variant:
-    """An effect at one place in one form.
-
-    Parameters
-    ----------
-    effect, place, form : str
-    start : int
-        The first block of the chain that changes.
-    build : callable
-        Blocks from ``start`` on, from values of all parameters.
-    positions : tuple of int
-        Where the effect's own blocks stand in what ``build`` gives.
-    grids : dict of str to ndarray
-        Values to search, by parameter.
-    limits : dict of str to (float, float)
-        Ends of the range of searched parameters, where they are not the grid's.
-    unit : dict of str to float
-        Parameters that are solved for, and a small step of each.
-    positive : tuple of str
-        Of these, the ones that may not be negative.
-    free : tuple of str
-        Parameters of the block that a refit may change.
-    beside : Beside, optional
-        Added to the output of the chain, which stays as it is.
-    charge : float, optional
-        Parameters to be charged, where it is not the number of those searched.
-    refused : dict of str to {"either", "upper"}
-        Searched parameters that at an end of their range make another thing of the
-        effect: there it is not accepted.
-    replaces : bool
-        Whether the effect's block takes the place of the chain's at ``start``.
-    neutral : bool
-        Whether the chain is as before where all parameters solved for are zero.
-    zero : dict of str to float, optional
-        Values at which the chain is as before, but simulated in another way: only the
-        difference to them is the effect's.
-    begun : bool
-        Whether a trial only begins it: the refit frees numbers that no trial has, so
-        that the score of its trial says little.
-    is_linear : bool
-        Whether its block is linear dynamics.
-    operates : str
-        How that starts, where it is not at rest.
-    """
+    """An effect at one place in one form."""
 
     effect: str
     place: str
     form: str
     start: int
+    """The first block of the chain that changes."""
     build: Callable[[Values], tuple[Block, ...]]
+    """Blocks from ``start`` on, from values of all parameters."""
     positions: tuple[int, ...]
+    """Where the effect's own blocks stand in what ``build`` gives."""
     grids: dict[str, FloatArray] = field(default_factory=dict)
+    """Values to search, by parameter."""
     unit: dict[str, float] = field(default_factory=dict)
+    """Parameters that are solved for, and a small step of each."""
     positive: tuple[str, ...] = ()
+    """Of these, the ones that may not be negative."""
     free: tuple[str, ...] = ()
+    """Parameters of the block that a refit may change."""
     beside: Beside | None = None
+    """Added to the output of the chain, which stays as it is."""
     charge: float | None = None
+    """Parameters to be charged, where it is not the number of those searched."""
     refused: dict[str, Refused] = field(default_factory=dict)
+    """Searched parameters that at an end of their range make another thing of the
+    effect: there it is not accepted."""
     replaces: bool = False
+    """Whether the effect's block takes the place of the chain's at ``start``."""
     limits: dict[str, tuple[float, float]] = field(default_factory=dict)
+    """Ends of the range of searched parameters, where they are not the grid's."""
     neutral: bool = True
+    """Whether the chain is as before where all parameters solved for are zero."""
     zero: dict[str, float] | None = None
+    """Values at which the chain is as before, but simulated in another way: only the
+    difference to them is the effect's."""
     begun: bool = False
+    """Whether a trial only begins it: the refit frees numbers that no trial has, so
+    that the score of its trial says little."""
     is_linear: bool = False
+    """Whether its block is linear dynamics."""
     operates: str = ""
+    """How that starts, where it is not at rest."""
 
     def ends(self, name: str) -> tuple[float, float]:
         """Give the ends of a searched parameter's range."""

@@ -34,28 +34,19 @@ Offer = tuple[str, FloatArray, Numbers]
 
 @dataclass(frozen=True)
 class Limits:
-    """What an experiment may ask of the actuator.
-
-    Parameters
-    ----------
-    low, high : float
-        Range of the input, in its unit.
-    rate : float
-        Largest rate of the input, in its unit per second.
-    bandwidth_hz : float
-        Highest frequency.
-    dt : float
-        Sampling interval in seconds.
-    duration_s : float
-        Longest record.
-    """
+    """What an experiment may ask of the actuator."""
 
     low: float
     high: float
+    """Range of the input, in its unit."""
     rate: float
+    """Largest rate of the input, in its unit per second."""
     bandwidth_hz: float
+    """Highest frequency."""
     dt: float
+    """Sampling interval in seconds."""
     duration_s: float
+    """Longest record."""
 
     def __post_init__(self) -> None:
         """Refuse limits that no excitation fits."""
@@ -119,22 +110,15 @@ class Limits:
 
 @dataclass(frozen=True, repr=False)
 class Excitation:
-    """An input that could be tried.
-
-    Parameters
-    ----------
-    kind : str
-    parameters : dict of str to (value, unit)
-        All that makes it.
-    dt : float
-        Sampling interval in seconds.
-    u : ndarray, shape (n,)
-    """
+    """An input that could be tried."""
 
     kind: str
     parameters: dict[str, tuple[float | list[float], str]]
+    """All that makes it."""
     dt: float
+    """Sampling interval in seconds."""
     u: FloatArray
+    """Shape (n,)."""
 
     @property
     def words(self) -> str:

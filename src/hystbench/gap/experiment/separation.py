@@ -28,17 +28,11 @@ class RivalRun(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Rival:
-    """A model that others are to be told from.
-
-    Parameters
-    ----------
-    model : Model
-    neighbours : tuple of Model
-        What a refit of it may move towards, besides another gain and offset.
-    """
+    """A model that others are to be told from."""
 
     model: Model
     neighbours: tuple[Model, ...] = ()
+    """What a refit of it may move towards, besides another gain and offset."""
 
     @classmethod
     def of(cls, model: Model, names: Sequence[str]) -> Rival:

@@ -37,26 +37,18 @@ ELSEWHERE = (
 
 @dataclass(frozen=True, repr=False)
 class Experiment:
-    """The excitation that separates rivals best, those of all sets at once.
-
-    Parameters
-    ----------
-    excitation : Excitation
-    pairs : dict of RivalPair to float
-        Separation of each pair of rivals, in noise floors.
-    existing : dict of RivalPair to float
-        The same for the existing record that is best for the pair.
-    largest : dict of RivalPair to float
-        The same for the excitation that is best for the pair.
-    left_out : tuple of (str, str)
-        Members of sets that no input brings out, each with the effect whose set it is.
-    """
+    """The excitation that separates rivals best, those of all sets at once."""
 
     excitation: Excitation
     pairs: dict[RivalPair, float]
+    """Separation of each pair of rivals, in noise floors."""
     existing: dict[RivalPair, float]
+    """The same for the existing record that is best for the pair."""
     largest: dict[RivalPair, float]
+    """The same for the excitation that is best for the pair."""
     left_out: tuple[tuple[str, str], ...] = ()
+    """Members of sets that no input brings out, each with the effect whose set it
+    is."""
 
     @property
     def sentence(self) -> str:

@@ -40,13 +40,7 @@ OUT = 1e3
 
 @dataclass(frozen=True)
 class Fitted:
-    """A model whose numbers were fitted.
-
-    Parameters
-    ----------
-    state : ModelState
-    score : float
-    """
+    """A model whose numbers were fitted."""
 
     state: ModelState
     score: float

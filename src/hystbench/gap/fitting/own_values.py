@@ -57,21 +57,14 @@ class Own(NamedTuple):
 
 @dataclass(frozen=True)
 class OwnValues:
-    """What some records have of their own.
-
-    Parameters
-    ----------
-    kinds : tuple of str
-        Of ``delay``, ``gain``, ``offset``: those in which they differ.
-    records : tuple of (str, Own)
-        By name, those that differ from the others.
-    share : float
-        Share of the gap's power above the noise floor that it takes away.
-    """
+    """What some records have of their own."""
 
     kinds: tuple[str, ...] = ()
+    """Of ``delay``, ``gain``, ``offset``: those in which they differ."""
     records: tuple[tuple[str, Own], ...] = ()
+    """By name, those that differ from the others."""
     share: float = 0.0
+    """Share of the gap's power above the noise floor that it takes away."""
 
     @property
     def charge(self) -> float:

@@ -46,38 +46,26 @@ class Amplitudes(NamedTuple):
 
 
 class Products(NamedTuple):
-    """Products of columns with each other and with the directions, as forms of them.
-
-    Parameters
-    ----------
-    charge : ndarray, shape (k, k)
-        Charge for amplitudes, as a quadratic form.
-    grams : ndarray, shape (parts, k, k)
-        With each other, of what is left beyond the directions, by record.
-    inside : ndarray, shape (d, k)
-        Amplitudes of the directions.
-    """
+    """Products of columns with each other and with the directions, as forms of them."""
 
     charge: FloatArray
+    """Shape (k, k). Charge for amplitudes, as a quadratic form."""
     grams: FloatArray
+    """Shape (parts, k, k). With each other, of what is left beyond the directions, by
+    record."""
     inside: FloatArray
+    """Shape (d, k). Amplitudes of the directions."""
 
 
 class Shared(NamedTuple):
-    """Columns that many calls solve for beside their own.
-
-    Parameters
-    ----------
-    own : Products
-    table : ndarray, shape (parts, n, d + k)
-        The directions and the columns, by record.
-    across : ndarray, shape (parts, d, k)
-        Products of the directions with what is left of the columns beyond them.
-    """
+    """Columns that many calls solve for beside their own."""
 
     own: Products
     table: FloatArray
+    """Shape (parts, n, d + k). The directions and the columns, by record."""
     across: FloatArray
+    """Shape (parts, d, k). Products of the directions with what is left of the columns
+    beyond them."""
 
 
 def record_weight(records: int) -> float:
@@ -87,23 +75,16 @@ def record_weight(records: int) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Score:
-    """What is held fixed while candidates are scored.
-
-    Parameters
-    ----------
-    sample : ScoredSamples
-    directions : ndarray, shape (scored samples, d)
-        Orthonormal: what a wrong shape of the hysteresis could do.
-    floor : float
-        Mean square of what no model explains, in squared output units.
-    used : tuple of ndarray of bool, optional
-        Of each record's scored samples, those that count; by default all.
-    """
+    """What is held fixed while candidates are scored."""
 
     sample: ScoredSamples
     directions: FloatArray
+    """Shape (scored samples, d). Orthonormal: what a wrong shape of the hysteresis
+    could do."""
     floor: float
+    """Mean square of what no model explains, in squared output units."""
     used: tuple[NDArray[np.bool_], ...] | None = None
+    """Of each record's scored samples, those that count; by default all."""
 
     @cached_property
     def parts(self) -> tuple[NDArray[np.intp], ...]:

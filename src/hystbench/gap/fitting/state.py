@@ -67,27 +67,7 @@ MANY = 4
 
 @dataclass(frozen=True, eq=False)
 class ModelState:
-    """A chain, the effects added to it, and what a refit may change.
-
-    Parameters
-    ----------
-    chain : tuple of Block
-    records : tuple of Record
-    sample : ScoredSamples
-    free : tuple of Free
-    added : tuple of Added
-    beside : tuple of (Beside, values)
-        Signals that the input does not explain.
-    hold : {"zero-order", "linear", "band-limited"}
-        How the input moves between samples.
-    correction : ndarray, shape (scored samples,), optional
-        By how much the exact simulation is above the quick one. It changes little
-        from candidate to candidate; :meth:`settled` measures it anew.
-    corrected_at : tuple of Block, optional
-        The chain at which the correction was measured.
-    offered : tuple of str, optional
-        Effects that may be added; all by default.
-    """
+    """A chain, the effects added to it, and what a refit may change."""
 
     chain: tuple[Block, ...]
     records: tuple[Record, ...]
@@ -95,10 +75,16 @@ class ModelState:
     free: tuple[Free, ...] = ()
     added: tuple[Added, ...] = ()
     beside: tuple[tuple[Beside, Values], ...] = ()
+    """Signals that the input does not explain."""
     hold: Hold = "band-limited"
+    """How the input moves between samples."""
     correction: FloatArray | None = None
+    """Shape (scored samples,). By how much the exact simulation is above the quick one.
+    It changes little from candidate to candidate; :meth:`settled` measures it anew."""
     corrected_at: tuple[Block, ...] | None = None
+    """The chain at which the correction was measured."""
     offered: tuple[str, ...] | None = None
+    """Effects that may be added; all by default."""
 
     @cached_property
     def simulation(self) -> Simulation:

@@ -56,22 +56,15 @@ Tried = tuple[Attempt, Trial]
 
 
 class Seen(NamedTuple):
-    """A variant of which a part of the records was looked at.
-
-    Parameters
-    ----------
-    attempt : Attempt
-        On all records.
-    points : tuple of Point
-        Of its grid, those that do best at a glance.
-    gain : float
-        By how much it lowers the score if the other records are like those looked at;
-        without a grid all that it may be, as nothing was looked at.
-    """
+    """A variant of which a part of the records was looked at."""
 
     attempt: Attempt
+    """On all records."""
     points: tuple[Point, ...]
+    """Of its grid, those that do best at a glance."""
     gain: float
+    """By how much it lowers the score if the other records are like those looked at;
+    without a grid all that it may be, as nothing was looked at."""
 
     @property
     def most(self) -> float:

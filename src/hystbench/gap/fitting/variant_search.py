@@ -41,20 +41,13 @@ Point = tuple[float, ...]
 
 @dataclass(frozen=True)
 class Trial:
-    """A variant with the values that score least.
-
-    Parameters
-    ----------
-    variant : Variant
-    values : dict of str to float
-    score : float
-        Of the model with the effect, what the model may re-tune re-tuned to first
-        order.
-    """
+    """A variant with the values that score least."""
 
     variant: Variant
     values: dict[str, float]
     score: float
+    """Of the model with the effect, what the model may re-tune re-tuned to first
+    order."""
 
 
 class LeastPoint(NamedTuple):

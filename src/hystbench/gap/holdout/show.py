@@ -31,22 +31,15 @@ from hystbench.record import FloatArray, Record
 
 @dataclass(frozen=True)
 class Outcome:
-    """What the hold-out records show.
-
-    Parameters
-    ----------
-    model : Model
-        The base with its effects; the base, where the records took the names back.
-    content : dict
-        Of gap.json: ``gap``, ``records``, ``ladder``, ``runs_away`` and ``black_box``,
-        then all of it.
-    outputs : list of (ndarray, ndarray)
-        Outputs before and after, of each record; NaN where the model runs away on it.
-    """
+    """What the hold-out records show."""
 
     model: Model
+    """The base with its effects; the base, where the records took the names back."""
     content: dict[str, Any]
+    """Of gap.json: ``gap``, ``records``, ``ladder``, ``runs_away`` and ``black_box``,
+    then all of it."""
     outputs: list[tuple[FloatArray, FloatArray]]
+    """Outputs before and after, of each record; NaN where the model runs away on it."""
 
 
 def score_hold_out(fitted: FitResult, records: tuple[Record, ...]) -> Outcome:

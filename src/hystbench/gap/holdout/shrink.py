@@ -31,27 +31,19 @@ Explained = float | list[float] | None
 
 @dataclass(frozen=True, repr=False)
 class RecordShrink:
-    """A hold-out record before and after, over the samples that are scored.
-
-    Parameters
-    ----------
-    name : str
-    before, after : float
-        RMS residual in output units; no ``after`` where the model runs away.
-    explained : float, list of float or None
-        Zero where the model runs away: nothing of the gap counts as gone.
-    scored : ndarray of bool, shape (n,)
-    residual_before, residual_after : ndarray, shape (n,)
-        What is new in the record is taken off.
-    """
+    """A hold-out record before and after, over the samples that are scored."""
 
     name: str
     before: float
     after: float | None
+    """RMS residual in output units; no ``after`` where the model runs away."""
     explained: Explained
+    """Zero where the model runs away: nothing of the gap counts as gone."""
     scored: Mask
+    """Shape (n,)."""
     residual_before: FloatArray
     residual_after: FloatArray | None
+    """Shape (n,). What is new in the record is taken off."""
 
     def mapping(self) -> dict[str, Any]:
         """Give what gap.json holds in a row of ``records``."""
@@ -61,31 +53,22 @@ class RecordShrink:
 
 @dataclass(frozen=True, repr=False)
 class Shrink:
-    """The gap over all hold-out records together.
-
-    Parameters
-    ----------
-    before, after, noise_floor : float
-        RMS in output units; no ``after`` where the model runs away on a record.
-    explained : float, list of float or None
-        Share of the power above the floor that is gone; zero where the model runs away
-        on a record.
-    before_interval, after_interval : list of float
-        95 % of the bootstrap's draws.
-    interval : list of float or None
-        Of ``explained``, of the same draws; where the floor is an upper bound, of the
-        whole range.
-    records : tuple of RecordShrink
-    """
+    """The gap over all hold-out records together."""
 
     before: float
     after: float | None
     noise_floor: float
+    """RMS in output units; no ``after`` where the model runs away on a record."""
     floor_method: str
     explained: Explained
+    """Share of the power above the floor that is gone; zero where the model runs away
+    on a record."""
     before_interval: list[float]
     after_interval: list[float] | None
+    """95 % of the bootstrap's draws."""
     interval: list[float] | None
+    """Of ``explained``, of the same draws; where the floor is an upper bound, of the
+    whole range."""
     records: tuple[RecordShrink, ...]
 
     def mapping(self) -> dict[str, Any]:

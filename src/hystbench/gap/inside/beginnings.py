@@ -29,20 +29,12 @@ PART = 0.25
 
 @dataclass(frozen=True)
 class Beginnings:
-    """Records that were cut, and what is scored of them.
-
-    Parameters
-    ----------
-    records : tuple of Record
-    sample : ScoredSamples
-    kept : ndarray of bool, shape (scored samples,)
-        Which of the whole records' scored samples are left.
-    score : Score
-    """
+    """Records that were cut, and what is scored of them."""
 
     records: tuple[Record, ...]
     sample: ScoredSamples
     kept: NDArray[np.bool_]
+    """Shape (scored samples,). Which of the whole records' scored samples are left."""
     score: Score
 
     @classmethod

@@ -72,21 +72,14 @@ def starting(chain: Sequence[Block], start: str) -> tuple[Block, ...]:
 
 @dataclass(frozen=True)
 class OnAll:
-    """Models that were found on fewer samples, on all of them.
-
-    Parameters
-    ----------
-    whole : ModelState
-        The base, with the records.
-    score : Score
-        Of all records.
-    start : str
-        How linear dynamics start on them.
-    """
+    """Models that were found on fewer samples, on all of them."""
 
     whole: ModelState
+    """The base, with the records."""
     score: Score
+    """Of all records."""
     start: str
+    """How linear dynamics start on them."""
 
     @classmethod
     def of(

@@ -53,28 +53,19 @@ TRIED = 2
 
 @dataclass(frozen=True)
 class Host:
-    """A linear model that forces may act inside of.
-
-    Parameters
-    ----------
-    alone : ModelState
-        What the gap is counted from.
-    fitted : Fitted
-        The same, its numbers fitted to the records: what forces are put in.
-    words : str
-        How it stands in place of the base.
-    other : ModelState, optional
-        What forces are put in instead: as good while linear, and not fitted, as a fit
-        would come back.
-    charge : float
-        For numbers of a given base that are fitted though nobody set them free.
-    """
+    """A linear model that forces may act inside of."""
 
     alone: ModelState
+    """What the gap is counted from."""
     fitted: Fitted
+    """The same, its numbers fitted to the records: what forces are put in."""
     words: str
+    """How it stands in place of the base."""
     other: ModelState | None = None
+    """What forces are put in instead: as good while linear, and not fitted, as a fit
+    would come back."""
     charge: float = 0.0
+    """For numbers of a given base that are fitted though nobody set them free."""
 
     @property
     def counts(self) -> int:

@@ -142,23 +142,15 @@ def split_modes(block: TransferFunction, output: str) -> list[tuple[Block, Block
 
 
 class ModeTakenOut(NamedTuple):
-    """A mode that was taken out of a transfer function.
-
-    Parameters
-    ----------
-    mode : Mechanism
-    rest : OtherModes or None
-        All other poles; None without any.
-    direct : float
-        What passes at once beside the mode.
-    through : float
-        What passes the mode at once.
-    """
+    """A mode that was taken out of a transfer function."""
 
     mode: Mechanism
     rest: OtherModes | None
+    """All other poles; None without any."""
     direct: float
+    """What passes at once beside the mode."""
     through: float
+    """What passes the mode at once."""
 
 
 def taken_out(block: TransferFunction, output: str) -> Iterator[ModeTakenOut]:

@@ -53,25 +53,16 @@ from hystbench.units import sized
 
 @dataclass(frozen=True)
 class Inside:
-    """Effects inside the dynamics, and the linear base that they were found beside.
-
-    Parameters
-    ----------
-    base : Model
-    start : ModelState
-        The same on the fit records.
-    named : Named
-    sentence : str
-        What it stands in place of.
-    counts : int
-        As how many effects more it counts: one if known numbers were fitted.
-    """
+    """Effects inside the dynamics, and the linear base that they were found beside."""
 
     base: Model
     start: ModelState
+    """The same on the fit records."""
     named: Named
     sentence: str
+    """What it stands in place of."""
     counts: int = 0
+    """As how many effects more it counts: one if known numbers were fitted."""
 
 
 def named_inside(

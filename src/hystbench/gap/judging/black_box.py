@@ -160,24 +160,6 @@ def black_box(compared: Sequence[Compared], floor_rms: float) -> BlackBox:
 class BoxInputs:
     """What the black box sees: past and present of input and simulated output.
 
-    Parameters
-    ----------
-    input, simulated : tuple of float
-        Middle and spread of each over the records that fit.
-    rates : tuple of float
-        RMS of the time derivatives of both, per second of the scaled signals.
-    excursion : float
-        Largest absolute value of the scaled input.
-    step, longest : float
-        Shortest sampling interval and longest record, in seconds.
-    landmarks : ndarray, shape (k, 5)
-        Points about which radial basis functions lie, of the few signals that
-        everything nonlinear is made of.
-    whitening : ndarray, shape (k, k), optional
-        Takes these functions to ones whose products give the kernel [1]_.
-    middles, spreads : ndarray, shape (m,)
-        Of the columns over the rows that fit.
-
     References
     ----------
     .. [1] C. K. I. Williams, M. Seeger, "Using the Nystroem method to speed up kernel
@@ -186,14 +168,23 @@ class BoxInputs:
 
     input: tuple[float, float]
     simulated: tuple[float, float]
+    """Middle and spread of each over the records that fit."""
     rates: tuple[float, float]
+    """RMS of the time derivatives of both, per second of the scaled signals."""
     excursion: float
+    """Largest absolute value of the scaled input."""
     step: float
     longest: float
+    """Shortest sampling interval and longest record, in seconds."""
     landmarks: FloatArray = field(default_factory=lambda: np.zeros((0, 5)))
+    """Shape (k, 5). Points about which radial basis functions lie, of the few signals
+    that everything nonlinear is made of."""
     whitening: FloatArray | None = None
+    """Shape (k, k). Takes these functions to ones whose products give the kernel
+    [1]_."""
     middles: FloatArray | float = 0.0
     spreads: FloatArray | float = 1.0
+    """Shape (m,). Of the columns over the rows that fit."""
 
     @classmethod
     def of(

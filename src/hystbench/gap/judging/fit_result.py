@@ -14,25 +14,15 @@ from hystbench.model import Model
 
 @dataclass(frozen=True)
 class FitResult:
-    """What the fit records fix; hold-out records are compared with it.
-
-    Parameters
-    ----------
-    base : Model
-    state : ModelState
-        The model with all effects that were added, on the fit records.
-    floor : Floor
-    black_box : BlackBox
-        Fitted to what the base leaves on the fit records.
-    rungs : tuple of Rung
-        The models on the way from the base to the last effect.
-    own : OwnValues
-        What some records have of their own: a hold-out record may have the same.
-    """
+    """What the fit records fix; hold-out records are compared with it."""
 
     base: Model
     state: ModelState
+    """The model with all effects that were added, on the fit records."""
     floor: Floor
     black_box: BlackBox
+    """Fitted to what the base leaves on the fit records."""
     rungs: tuple[Rung, ...]
+    """The models on the way from the base to the last effect."""
     own: OwnValues = NONE
+    """What some records have of their own: a hold-out record may have the same."""

@@ -25,50 +25,33 @@ NOTHING = 1e-12
 
 @dataclass(frozen=True)
 class Grouped:
-    """A signal explained by groups of columns.
-
-    Parameters
-    ----------
-    noise : float
-        Variance of what no group explains, freedom charged.
-    variances : ndarray, shape (groups,)
-        Of the amplitudes of each group's columns.
-    evidence : float
-        Logarithm of the probability density of the signal.
-    amplitudes : ndarray, shape (columns,)
-        The likeliest, of the columns in the order of the groups.
-    """
+    """A signal explained by groups of columns."""
 
     noise: float
+    """Variance of what no group explains, freedom charged."""
     variances: FloatArray
+    """Shape (groups,). Of the amplitudes of each group's columns."""
     evidence: float
+    """Logarithm of the probability density of the signal."""
     amplitudes: FloatArray
+    """Shape (columns,). The likeliest, of the columns in the order of the groups."""
 
 
 @dataclass(frozen=True, eq=False)
 class ColumnProducts:
-    """Products of all columns with each other and with a signal.
-
-    Parameters
-    ----------
-    gram : ndarray, shape (k, k)
-        Of columns of unit mean square, times their sizes; those that are zero stay
-        zero.
-    across : ndarray, shape (k,)
-        Of the columns with the signal.
-    power : float
-        Sum of squares of the signal.
-    rows : int
-        Samples of the signal.
-    sizes : ndarray, shape (k,)
-        By which the columns were divided.
-    """
+    """Products of all columns with each other and with a signal."""
 
     gram: FloatArray
+    """Shape (k, k). Of columns of unit mean square, times their sizes; those that are
+    zero stay zero."""
     across: FloatArray
+    """Shape (k,). Of the columns with the signal."""
     power: float
+    """Sum of squares of the signal."""
     rows: int
+    """Samples of the signal."""
     sizes: FloatArray
+    """Shape (k,). By which the columns were divided."""
 
     @classmethod
     def of(

@@ -22,31 +22,22 @@ from hystbench.sentences import finely
 
 @dataclass(frozen=True)
 class Left:
-    """What a model leaves, in mean squares over the records.
-
-    Parameters
-    ----------
-    before, after : float
-        Above the floor and beyond what a wrong shape of the hysteresis could leave,
-        of the base and of the model with its effects, in floors.
-    all_before, all_after : float
-        Above the floor, of the whole residual, in floors.
-    output : float
-        Mean square of the measured output about its mean, in floors.
-    lone : float
-        Share of the power of what is left that stands in samples far off.
-    unrepeated : float or None
-        Power of what is left that differs between periods of the same input, above the
-        floor and in floors; none where no record repeats.
-    """
+    """What a model leaves, in mean squares over the records."""
 
     before: float
     after: float
+    """Above the floor and beyond what a wrong shape of the hysteresis could leave, of
+    the base and of the model with its effects, in floors."""
     all_before: float
     all_after: float
+    """Above the floor, of the whole residual, in floors."""
     output: float = 0.0
+    """Mean square of the measured output about its mean, in floors."""
     lone: float = 0.0
+    """Share of the power of what is left that stands in samples far off."""
     unrepeated: float | None = None
+    """Power of what is left that differs between periods of the same input, above the
+    floor and in floors; none where no record repeats."""
 
     @property
     def slight(self) -> bool:

@@ -61,36 +61,26 @@ SORT_OF = {
 
 @dataclass(frozen=True)
 class Unnamed:
-    """What stays unnamed, as shares of the power of the gap above the floor.
-
-    Parameters
-    ----------
-    structured : float
-        What follows known signals and the named effects cannot own.
-    changing : float or None
-        What goes if the effects' strength and numbers may differ between the halves of
-        each run, a record or the windows that were cut from it; None where no effect
-        acts on the input. It is told and decides nothing: what changes in time is
-        structure too.
-    unrelated : float
-        What follows no known signal.
-    gains : mapping of str to float
-        By how much each group of known signals, alone, raises the evidence, in natural
-        logarithms; empty where so little stays that no sort is said.
-    factors : tuple of float
-        The effects' strength in each record, as a multiple of what it is in all of
-        them; empty where no effect acts on the input.
-    by_chance : float
-        What seems to follow known signals, but does so no more than when it is moved in
-        time against them; it counts as unrelated.
-    """
+    """What stays unnamed, as shares of the power of the gap above the floor."""
 
     structured: float
+    """What follows known signals and the named effects cannot own."""
     changing: float | None = None
+    """What goes if the effects' strength and numbers may differ between the halves of
+    each run, a record or the windows that were cut from it; None where no effect acts
+    on the input. It is told and decides nothing: what changes in time is structure
+    too."""
     unrelated: float = 0.0
+    """What follows no known signal."""
     gains: Mapping[str, float] = field(default_factory=dict)
+    """By how much each group of known signals, alone, raises the evidence, in natural
+    logarithms; empty where so little stays that no sort is said."""
     factors: tuple[float, ...] = ()
+    """The effects' strength in each record, as a multiple of what it is in all of them;
+    empty where no effect acts on the input."""
     by_chance: float = 0.0
+    """What seems to follow known signals, but does so no more than when it is moved in
+    time against them; it counts as unrelated."""
 
     @property
     def stays(self) -> float:

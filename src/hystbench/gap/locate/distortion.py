@@ -42,28 +42,20 @@ LINES = 100
 
 @dataclass(frozen=True)
 class RecordLines:
-    """The residual of one periodic record, averaged over periods, line by line.
-
-    Parameters
-    ----------
-    record : str
-    frequency, amplitude : ndarray, shape (m,)
-        In Hz and in the output's unit.
-    kind : ndarray of int, shape (m,)
-    sums : ndarray, shape (4, 5)
-        By kind: energy of the mean period and what differs from period to period (sums
-        of squares over the samples of the periods that were used), the number of lines,
-        and how many numbers the difference has.
-    samples : int
-        That were used.
-    """
+    """The residual of one periodic record, averaged over periods, line by line."""
 
     record: str
     frequency: FloatArray
     amplitude: FloatArray
+    """Shape (m,). In Hz and in the output's unit."""
     kind: IntArray
+    """Shape (m,)."""
     sums: FloatArray
+    """Shape (4, 5). By kind: energy of the mean period and what differs from period to
+    period (sums of squares over the samples of the periods that were used), the number
+    of lines, and how many numbers the difference has."""
     samples: int
+    """That were used."""
 
     def above(self, noise: float) -> FloatArray:
         """Give the energy above the noise of each kind, what does not repeat last."""
@@ -75,24 +67,17 @@ class RecordLines:
 
 @dataclass(frozen=True)
 class Distortion:
-    """Shares of the periodic records' gap above the noise, which add to one.
-
-    Parameters
-    ----------
-    shares : ndarray, shape (5,)
-        On the input's lines; on odd, on even harmonics beside them, and on those of an
-        input that has odd and even lines itself; and what does not repeat.
-    p_values : ndarray, shape (5,)
-        How often noise alone would leave as much; 1 where there is no such line.
-    records : tuple of RecordLines
-    noise : float
-        Variance of the floor.
-    """
+    """Shares of the periodic records' gap above the noise, which add to one."""
 
     shares: FloatArray
+    """Shape (5,). On the input's lines; on odd, on even harmonics beside them, and on
+    those of an input that has odd and even lines itself; and what does not repeat."""
     p_values: FloatArray
+    """Shape (5,). How often noise alone would leave as much; 1 where there is no such
+    line."""
     records: tuple[RecordLines, ...]
     noise: float
+    """Variance of the floor."""
 
     @property
     def told(self) -> str:

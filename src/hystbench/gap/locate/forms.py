@@ -28,39 +28,26 @@ DEPENDENT = 1e-5
 
 @dataclass(frozen=True)
 class FittedForm:
-    """A fitted form: some function of an axis, with its number of free parameters.
-
-    Parameters
-    ----------
-    words : str
-        What it is, behind "of the gap is".
-    fitted : ndarray, shape (n,)
-        What the form says of the residual, in its unit.
-    explained : float
-        Mean square that leaves the residual with it.
-    freedom : float
-    saved : float
-        Description length saved, in nats.
-    share : float
-        Of the gap's power, what noise buys taken off.
-    weights : ndarray, shape (columns,)
-        Of the last record, where each has its own.
-    added : tuple of ndarray
-        What a named effect adds to each record; none of a form of the view's own.
-    p_value : float
-        How often a residual without this structure, but of the same colour, would
-        look as much like it.
-    """
+    """A fitted form: some function of an axis, with its number of free parameters."""
 
     words: str
+    """What it is, behind "of the gap is"."""
     fitted: FloatArray
+    """Shape (n,). What the form says of the residual, in its unit."""
     explained: float
+    """Mean square that leaves the residual with it."""
     freedom: float
     saved: float
+    """Description length saved, in nats."""
     share: float
+    """Of the gap's power, what noise buys taken off."""
     weights: FloatArray
+    """Shape (columns,). Of the last record, where each has its own."""
     added: tuple[FloatArray, ...] = ()
+    """What a named effect adds to each record; none of a form of the view's own."""
     p_value: float = 1.0
+    """How often a residual without this structure, but of the same colour, would look
+    as much like it."""
 
     @property
     def named(self) -> bool:

@@ -165,23 +165,16 @@ EXCITED = 1e-5
 
 @dataclass(frozen=True)
 class BinSpectra:
-    """Spectra summed over the lines of all records in each bin.
-
-    Parameters
-    ----------
-    low, high : ndarray, shape (m,)
-        Edges in Hz of the bins that hold lines.
-    matrix : ndarray of complex, shape (3, 3, m)
-        Auto- and cross-spectra of input, residual and simulation: row times the
-        conjugate of column. Sums over bins are mean squares over all samples.
-    noise : ndarray, shape (m,)
-        Mean square that the noise floor gives a bin.
-    """
+    """Spectra summed over the lines of all records in each bin."""
 
     low: FloatArray
     high: FloatArray
+    """Shape (m,). Edges in Hz of the bins that hold lines."""
     matrix: ComplexArray
+    """Shape (3, 3, m). Auto- and cross-spectra of input, residual and simulation: row
+    times the conjugate of column. Sums over bins are mean squares over all samples."""
     noise: FloatArray
+    """Shape (m,). Mean square that the noise floor gives a bin."""
 
     @property
     def frequency(self) -> FloatArray:

@@ -82,23 +82,15 @@ of the motion: half of it of a cubic spring, next to all of it of a clearance.""
 
 @dataclass(frozen=True)
 class Moving:
-    """A mode at several levels of the input.
-
-    Parameters
-    ----------
-    inputs : ndarray, shape (levels,)
-        RMS of the input, rising.
-    modes : tuple of Mode
-    integrals : int
-        How often the output has to be integrated for a position.
-    levels : int
-        Levels that there are; at some of them the mode may have no peak.
-    """
+    """A mode at several levels of the input."""
 
     inputs: FloatArray
+    """Shape (levels,). RMS of the input, rising."""
     modes: tuple[Mode, ...]
     integrals: int
+    """How often the output has to be integrated for a position."""
     levels: int
+    """Levels that there are; at some of them the mode may have no peak."""
 
     @property
     def numbers(self) -> FloatArray:

@@ -31,24 +31,17 @@ ENOUGH = 2**15
 
 
 class LevelLines(NamedTuple):
-    """Spectral lines of one record.
-
-    Parameters
-    ----------
-    frequency : ndarray, shape (m,)
-        In Hz.
-    u, y, missed : ndarray of complex, shape (m,)
-        Input, output and what the simulation misses of it. The sum of ``|y|^2`` is the
-        mean square about the mean.
-    ends : bool
-        Whether the record's ends leave a transient in the lines.
-    """
+    """Spectral lines of one record."""
 
     frequency: FloatArray
+    """Shape (m,). In Hz."""
     u: ComplexArray
     y: ComplexArray
     missed: ComplexArray
+    """Shape (m,). Input, output and what the simulation misses of it. The sum of
+    ``|y|^2`` is the mean square about the mean."""
     ends: bool
+    """Whether the record's ends leave a transient in the lines."""
 
     def within(self, chosen: Mask) -> LevelLines:
         """Give some of the lines."""
@@ -97,40 +90,29 @@ EDGE = 1e-3
 
 @dataclass(frozen=True)
 class Mode:
-    """A mode at one level of the input.
-
-    Parameters
-    ----------
-    frequency : float
-        In Hz.
-    damping : float
-        Damping ratio of the fitted pole.
-    power_damping : float
-        Damping ratio by power: what the input puts in, over the mean square velocity.
-        A spring, however curved, takes no power: it may widen a peak, and does not
-        change this.
-    gain : float
-        Acceleration a unit of input, of the mode alone: one over its mass. It does
-        not depend on its stiffness.
-    errors : ndarray, shape (4,)
-        Standard errors of the four, relative to them. What follows the input but not
-        by a linear filter counts as noise.
-    reach : float
-        RMS of the output in the band.
-    held, missed, left : float
-        Mean square in the band of the output, of what the simulation misses of it, and
-        of what the mode as fitted here misses; summed over the level's records.
-    """
+    """A mode at one level of the input."""
 
     frequency: float
+    """In Hz."""
     damping: float
+    """Damping ratio of the fitted pole."""
     power_damping: float
+    """Damping ratio by power: what the input puts in, over the mean square velocity. A
+    spring, however curved, takes no power: it may widen a peak, and does not change
+    this."""
     gain: float
+    """Acceleration a unit of input, of the mode alone: one over its mass. It does not
+    depend on its stiffness."""
     errors: FloatArray
+    """Shape (4,). Standard errors of the four, relative to them. What follows the input
+    but not by a linear filter counts as noise."""
     reach: float
+    """RMS of the output in the band."""
     held: float
     missed: float
     left: float
+    """Mean square in the band of the output, of what the simulation misses of it, and
+    of what the mode as fitted here misses; summed over the level's records."""
 
 
 def fit_mode(

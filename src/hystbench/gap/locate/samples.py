@@ -25,23 +25,15 @@ TURNS = 0.01
 
 @dataclass(frozen=True)
 class Contribution:
-    """What a named effect adds to the output of the base on each record.
-
-    Parameters
-    ----------
-    effect : str
-    view : str, optional
-        Where it shows, what an engineer looks at first; None where that is not known.
-    added : tuple of ndarray, shape (n,)
-        In the unit of the output, a record each.
-    freedom : float
-        Numbers that were fitted for it.
-    """
+    """What a named effect adds to the output of the base on each record."""
 
     effect: str
     view: ViewKind | None
+    """Where it shows, what an engineer looks at first; None where that is not known."""
     added: tuple[FloatArray, ...]
+    """Shape (n,). In the unit of the output, a record each."""
     freedom: float = 1.0
+    """Numbers that were fitted for it."""
 
 
 @dataclass(frozen=True)
@@ -51,20 +43,13 @@ class ViewSamples:
     The stride is a prime: a periodic record is then seen at many phases, not at the
     same few again and again. Filters run on all samples and are thinned afterwards.
     Samples that were not measured are left out then.
-
-    Parameters
-    ----------
-    compared : tuple of Compared
-    floor : Floor
-    stride : int
-    contributions : tuple of Contribution
-        What named effects add.
     """
 
     compared: tuple[Compared, ...]
     floor: Floor
     stride: int
     contributions: tuple[Contribution, ...] = ()
+    """What named effects add."""
 
     def thinned(self, signals: Sequence[FloatArray]) -> FloatArray:
         """Keep every stride-th sample of a signal of each record."""

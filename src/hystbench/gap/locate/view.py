@@ -19,46 +19,31 @@ LEAST_SHARE = 0.01
 
 @dataclass(frozen=True)
 class View:
-    """Where the gap lies, in one kind of view.
-
-    Parameters
-    ----------
-    view : str
-    axis : str
-        What ``start`` and ``end`` are values of.
-    start, end : float or str
-        The narrowest range that holds four fifths of what this view explains, in
-        ``unit``; of branches and records, the names of the first and the last.
-    unit : str
-    share_of_gap_power : float
-        Power that this view explains over the power of the gap above the noise, from
-        0 to 1. The shares of several views may add to more than 1.
-    p_value : float
-        How often a residual without this structure, but of the same colour, would
-        look as much like it.
-    sentence : str
-        The same in words.
-    saved : float
-        Description length that it saves: see :func:`hystbench.gap.locate.locate`.
-    named : bool
-        Whether it shows what a named effect adds.
-    pictures : tuple of ViewPicture
-    kinds : tuple of str
-        Of the view by level: how modes move with it.
-    """
+    """Where the gap lies, in one kind of view."""
 
     view: ViewKind
     axis: str
+    """What ``start`` and ``end`` are values of."""
     start: float | str
     end: float | str
+    """The narrowest range that holds four fifths of what this view explains, in
+    ``unit``; of branches and records, the names of the first and the last."""
     unit: str
     share_of_gap_power: float
+    """Power that this view explains over the power of the gap above the noise, from 0
+    to 1. The shares of several views may add to more than 1."""
     p_value: float
+    """How often a residual without this structure, but of the same colour, would look
+    as much like it."""
     sentence: str
+    """The same in words."""
     saved: float
+    """Description length that it saves: see :func:`hystbench.gap.locate.locate`."""
     named: bool = False
+    """Whether it shows what a named effect adds."""
     pictures: tuple[ViewPicture, ...] = ()
     kinds: tuple[str, ...] = ()
+    """Of the view by level: how modes move with it."""
 
     def to_mapping(self) -> dict[str, Any]:
         """Give what gap.json holds under ``where``."""

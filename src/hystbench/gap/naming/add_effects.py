@@ -40,20 +40,13 @@ LITTLE = "what the effects leave of a slightly wrong shape is most of it"
 
 @dataclass(frozen=True)
 class Named:
-    """What naming found.
-
-    Parameters
-    ----------
-    state : ModelState
-        The model with all effects that were added.
-    rounds : tuple of Round
-    gone : tuple of TakenOut
-        Effects that were added and went out again.
-    """
+    """What naming found."""
 
     state: ModelState
+    """The model with all effects that were added."""
     rounds: tuple[Round, ...] = ()
     gone: tuple[TakenOut, ...] = ()
+    """Effects that were added and went out again."""
 
     @property
     def reasons(self) -> dict[str, tuple[Candidate, ...]]:
@@ -182,28 +175,18 @@ def _rivals_of_all(state: ModelState, rounds: Sequence[Round]) -> set[str]:
 
 @dataclass(frozen=True)
 class SoFar:
-    """How far adding effects one by one has come.
-
-    Parameters
-    ----------
-    state : ModelState
-    gap : float
-        Mean square of the base's gap above the floor.
-    share : float
-        Of it, that may stay unnamed.
-    rounds : tuple of Round
-    deferred : bool
-        Whether a shape that takes more of the gap was put off.
-    closed : bool
-        Whether nothing is left that an effect could gain.
-    """
+    """How far adding effects one by one has come."""
 
     state: ModelState
     gap: float
+    """Mean square of the base's gap above the floor."""
     share: float = UNNAMED_SHARE
+    """Of it, that may stay unnamed."""
     rounds: tuple[Round, ...] = ()
     deferred: bool = False
+    """Whether a shape that takes more of the gap was put off."""
     closed: bool = False
+    """Whether nothing is left that an effect could gain."""
 
     @classmethod
     def begun(

@@ -31,19 +31,13 @@ from hystbench.model import Model
 
 @dataclass(frozen=True)
 class BuiltIn:
-    """A simulator with effects that its user put in.
-
-    Parameters
-    ----------
-    alone : Model
-        The simulator without them.
-    effects : tuple of dict
-        Each with its ``name``, ``place``, ``form`` and ``parameters``, as fitted before
-        the search.
-    """
+    """A simulator with effects that its user put in."""
 
     alone: Model
+    """The simulator without them."""
     effects: tuple[dict[str, Any], ...]
+    """Each with its ``name``, ``place``, ``form`` and ``parameters``, as fitted before
+    the search."""
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -27,82 +27,54 @@ class TriedVariant(NamedTuple):
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect as it did in one round.
-
-    Parameters
-    ----------
-    effect, place, form : str
-    score : float
-        Of the model with it; raised by what folds take off its gain.
-    gain : float
-        By how much it lowers the score: of a finalist that pays the less of what all
-        records tell and what folds do.
-    state : ModelState, optional
-        With the effect, jointly refitted; finalists have it.
-    declined : str
-        Why it could not be judged, if so.
-    held_back : float, optional
-        What a finalist that pays gains on folds.
-    variants : tuple of TriedVariant
-        Every place and form of it that could be scored, best first.
-    """
+    """An effect as it did in one round."""
 
     effect: str
     place: str
     form: str = ""
     score: float = np.inf
+    """Of the model with it; raised by what folds take off its gain."""
     gain: float = 0.0
+    """By how much it lowers the score: of a finalist that pays the less of what all
+    records tell and what folds do."""
     state: ModelState | None = None
+    """With the effect, jointly refitted; finalists have it."""
     declined: str = ""
+    """Why it could not be judged, if so."""
     held_back: float | None = None
+    """What a finalist that pays gains on folds."""
     variants: tuple[TriedVariant, ...] = ()
+    """Every place and form of it that could be scored, best first."""
 
 
 @dataclass(frozen=True)
 class SecondLook:
-    """A second look: an effect and its rivals in its place, now that others are there.
-
-    Parameters
-    ----------
-    instead_of : str
-        The effect in whose place they were tried.
-    beside : tuple of str
-        The other effects, which stayed.
-    ranking : tuple of Candidate
-        Best first.
-    taken : str, optional
-        The effect that has the place by this ranking. None where the one that was
-        there could not be judged again: it stays by the ranking that took it before.
-    """
+    """An effect and its rivals in its place, now that others are there."""
 
     instead_of: str
+    """The effect in whose place they were tried."""
     beside: tuple[str, ...]
+    """The other effects, which stayed."""
     ranking: tuple[Candidate, ...]
+    """Best first."""
     taken: str | None
+    """The effect that has the place by this ranking. None where the one that was there
+    could not be judged again: it stays by the ranking that took it before."""
 
 
 @dataclass(frozen=True)
 class Round:
-    """One round: the model before, every effect beside it, what was added.
-
-    Parameters
-    ----------
-    before : ModelState
-    score : float
-        Of the model before.
-    ranking : tuple of Candidate
-        Best first.
-    taken : bool
-        Whether the first of the ranking was added.
-    looks : tuple of SecondLook
-        At the effects that were there when it was, in their order.
-    """
+    """One round: the model before, every effect beside it, what was added."""
 
     before: ModelState
     score: float
+    """Of the model before."""
     ranking: tuple[Candidate, ...]
+    """Best first."""
     taken: bool
+    """Whether the first of the ranking was added."""
     looks: tuple[SecondLook, ...] = ()
+    """At the effects that were there when it was, in their order."""
 
 
 def reasons(rounds: Iterable[Round]) -> dict[str, tuple[Candidate, ...]]:

@@ -22,42 +22,28 @@ from hystbench.units import check_same_unit
 
 @dataclass(frozen=True)
 class Evidence:
-    """Records of one device.
-
-    Parameters
-    ----------
-    name : str
-    fit : tuple of Record
-        What models are fitted to; folds of these decide what pays.
-    hold_out : tuple of Record
-        Checked with the others; compared with a model only after all is decided.
-    input_hold : {"zero-order", "linear", "band-limited"}
-        How the input moves between samples.
-    noise_rms : float, optional
-        As declared, in the output's unit.
-    identification : str, optional
-        Name of the fit record that a hysteretic base is identified from; by default
-        the slowest.
-    simulated_column : str, optional
-        Column of the output that a simulator gave elsewhere, if the records have one.
-    warnings : tuple of str
-        What of the records is hardly meant, one line each.
-    quantities : Quantities
-        What the device takes and gives.
-    device_kind : str, optional
-        Kind of the device, where dataset.yaml tells it.
-    """
+    """Records of one device."""
 
     name: str
     fit: tuple[Record, ...]
+    """What models are fitted to; folds of these decide what pays."""
     hold_out: tuple[Record, ...]
+    """Checked with the others; compared with a model only after all is decided."""
     input_hold: Hold = "band-limited"
+    """How the input moves between samples."""
     noise_rms: float | None = None
+    """As declared, in the output's unit."""
     identification: str | None = None
+    """Name of the fit record that a hysteretic base is identified from; by default the
+    slowest."""
     simulated_column: str | None = None
+    """Column of the output that a simulator gave elsewhere, if the records have one."""
     warnings: tuple[str, ...] = ()
+    """What of the records is hardly meant, one line each."""
     quantities: Quantities = NONE_KNOWN
+    """What the device takes and gives."""
     device_kind: DeviceKind | None = None
+    """Kind of the device, where dataset.yaml tells it."""
 
     @property
     def deciding(self) -> Evidence:

@@ -33,20 +33,14 @@ LEAST_BINS = 8
 
 @dataclass(frozen=True)
 class Floor:
-    """The noise that no model explains.
-
-    Parameters
-    ----------
-    rms : float
-        RMS of the white noise on the output, in the output's unit; above zero.
-    method : {"repeats", "declared", "upper-bound"}
-        Differences of periods; stated by the dataset; or the high, unexcited part of
-        the residual's spectrum. The last is a bound: what a gap leaves up there is
-        taken for noise.
-    """
+    """The noise that no model explains."""
 
     rms: float
+    """RMS of the white noise on the output, in the output's unit; above zero."""
     method: Method
+    """Differences of periods; stated by the dataset; or the high, unexcited part of the
+    residual's spectrum. The last is a bound: what a gap leaves up there is taken for
+    noise."""
 
 
 def noise_floor(compared: Sequence[Compared], declared: float | None = None) -> Floor:

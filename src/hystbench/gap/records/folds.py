@@ -27,17 +27,12 @@ LEAST = 25 * BLOCKS
 
 @dataclass(frozen=True)
 class Fold:
-    """What fits and what judges, a mask over the samples of each record.
-
-    Parameters
-    ----------
-    train, validation : tuple of ndarray of bool
-        One mask a record, in the records' order, shape (n,) each. No sample is in
-        both; the samples of a guard gap are in neither, nor are interpolated ones.
-    """
+    """What fits and what judges, a mask over the samples of each record."""
 
     train: tuple[Mask, ...]
     validation: tuple[Mask, ...]
+    """One mask a record, in the records' order, shape (n,) each. No sample is in both;
+    the samples of a guard gap are in neither, nor are interpolated ones."""
 
 
 def make_folds(

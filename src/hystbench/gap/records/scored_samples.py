@@ -27,23 +27,17 @@ Line = tuple[NDArray[np.intp], FloatArray]
 
 @dataclass(frozen=True)
 class ScoredSamples:
-    """Positions of the scored samples in each record.
-
-    Parameters
-    ----------
-    positions : tuple of ndarray of int
-        By record, increasing.
-    of_start : tuple of ndarray, shape (samples, 0 or 1) each, optional
-        What an unknown velocity at the first sample of each record does there; it is
-        taken off every signal. By default no record has one.
-    apart : tuple of int, optional
-        Of signals that are given at every so many samples alone, by record: they are
-        straight lines in between. By default they are given at all samples.
-    """
+    """Positions of the scored samples in each record."""
 
     positions: tuple[NDArray[np.intp], ...]
+    """By record, increasing."""
     of_start: tuple[FloatArray, ...] = ()
+    """Shape (samples, 0 or 1) each. What an unknown velocity at the first sample of
+    each record does there; it is taken off every signal. By default no record has
+    one."""
     apart: tuple[int, ...] = ()
+    """Of signals that are given at every so many samples alone, by record: they are
+    straight lines in between. By default they are given at all samples."""
 
     @classmethod
     def of(cls, records: Sequence[Record], count: int = SAMPLES) -> ScoredSamples:
@@ -158,17 +152,11 @@ def without(signal: FloatArray, column: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Compared:
-    """A record and what a model says of it, in free run from the input alone.
-
-    Parameters
-    ----------
-    record : Record
-    simulated : ndarray, shape (n,)
-        In the unit of the record's output.
-    """
+    """A record and what a model says of it, in free run from the input alone."""
 
     record: Record
     simulated: FloatArray
+    """Shape (n,). In the unit of the record's output."""
 
     @property
     def residual(self) -> FloatArray:

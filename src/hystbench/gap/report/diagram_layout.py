@@ -42,26 +42,18 @@ Point = tuple[float, float]
 
 
 class Box(NamedTuple):
-    """A box with words and numbers below each other, from its upper edge on.
-
-    Parameters
-    ----------
-    x, y : float
-        Its left lower corner.
-    width, height : float
-    words, numbers : tuple of str
-        Lines of text.
-    whose : {"simulator", "added", "put in"}, optional
-        None of what has no edge: a label.
-    """
+    """A box with words and numbers below each other, from its upper edge on."""
 
     x: float
     y: float
+    """Its left lower corner."""
     width: float
     height: float
     words: tuple[str, ...]
     numbers: tuple[str, ...] = ()
+    """Lines of text."""
     whose: Whose | None = None
+    """None of what has no edge: a label."""
 
 
 class Summation(NamedTuple):

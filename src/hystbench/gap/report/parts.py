@@ -31,51 +31,33 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 @dataclass(frozen=True)
 class Part:
-    """What stands in one box, and who put it there.
-
-    Parameters
-    ----------
-    words : str
-        Name of the block, or of the effect that it stands for.
-    numbers : tuple of str
-        The first numbers of an effect, with units.
-    whose : {"simulator", "added", "put in"}
-        Of the simulator as it was given, added by the search, or put in by the user.
-    """
+    """What stands in one box, and who put it there."""
 
     words: str
+    """Name of the block, or of the effect that it stands for."""
     numbers: tuple[str, ...] = ()
+    """The first numbers of an effect, with units."""
     whose: Whose = "simulator"
+    """Of the simulator as it was given, added by the search, or put in by the user."""
 
 
 @dataclass(frozen=True)
 class Stage:
-    """A block that the signal passes, with what is attached to it.
-
-    Parameters
-    ----------
-    core : Part
-    within : tuple of Part
-        Effects that are numbers of the block itself.
-    around : tuple of Part
-        What changes the block, from the inside out.
-    fed_back : tuple of Part
-        Forces that act against its motion.
-    beside : tuple of Stage
-        What has the same input, and is added to its output.
-    spilt : Part or None
-        What leaves it where it is full.
-    caught : bool
-        Whether a part of what is spilt goes on with its output.
-    """
+    """A block that the signal passes, with what is attached to it."""
 
     core: Part
     within: tuple[Part, ...] = ()
+    """Effects that are numbers of the block itself."""
     around: tuple[Part, ...] = ()
+    """What changes the block, from the inside out."""
     fed_back: tuple[Part, ...] = ()
+    """Forces that act against its motion."""
     beside: tuple[Stage, ...] = ()
+    """What has the same input, and is added to its output."""
     spilt: Part | None = None
+    """What leaves it where it is full."""
     caught: bool = False
+    """Whether a part of what is spilt goes on with its output."""
 
     @property
     def parts(self) -> tuple[Part, ...]:

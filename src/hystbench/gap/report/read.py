@@ -40,23 +40,15 @@ class HoldOut:
 
 @dataclass(frozen=True, repr=False)
 class Content:
-    """All that a folder holds.
-
-    Parameters
-    ----------
-    gap : mapping
-        Of gap.json, checked.
-    hold_out : tuple of HoldOut
-    curves : mapping or None
-        Of curves.json; None where there is none.
-    model : Model or None
-        Of model.yaml; None where there is none.
-    """
+    """All that a folder holds."""
 
     gap: dict[str, Any]
+    """Of gap.json, checked."""
     hold_out: tuple[HoldOut, ...]
     curves: dict[str, Any] | None
+    """Of curves.json; None where there is none."""
     model: Model | None = None
+    """Of model.yaml; None where there is none."""
 
 
 def read_content(folder: Path) -> Content:

@@ -29,28 +29,19 @@ Signals = tuple[FloatArray, ...]
 
 @dataclass(frozen=True, eq=False)
 class Simulation:
-    """A chain on records; what is computed once is kept.
-
-    Parameters
-    ----------
-    chain : tuple of Block
-    records : tuple of Record
-    hold : {"zero-order", "linear", "band-limited"}
-        How the input moves between samples.
-    quick : bool
-        Take straight lines where a block takes a band-limited signal: a tenth of the
-        time, and near enough to compare candidates by.
-    fine : bool
-        Take shorter steps through the hysteresis where the input is band-limited, so
-        that turning points between samples are met: what the chain says of physics,
-        without the error of its own steps.
-    """
+    """A chain on records; what is computed once is kept."""
 
     chain: tuple[Block, ...]
     records: tuple[Record, ...]
     hold: Hold = "band-limited"
+    """How the input moves between samples."""
     quick: bool = False
+    """Take straight lines where a block takes a band-limited signal: a tenth of the
+    time, and near enough to compare candidates by."""
     fine: bool = False
+    """Take shorter steps through the hysteresis where the input is band-limited, so
+    that turning points between samples are met: what the chain says of physics, without
+    the error of its own steps."""
 
     @cached_property
     def before(self) -> tuple[Signals, ...]:
