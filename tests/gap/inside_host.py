@@ -2,8 +2,8 @@
 
 from functools import partial
 
-from hystbench.gap.inside.hypotheses import singles, together
-from hystbench.gap.inside.laws import laws_for
+from hystbench.gap.inside.combine_forces import singles, together
+from hystbench.gap.inside.insert_law import laws_for
 
 
 def search(host, score, offered=None, turns=False, other=None):

@@ -13,14 +13,14 @@ from hystbench.blocks.other_modes import OtherModes
 from hystbench.gap.fitting.least_squares import fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
+from hystbench.gap.inside.combine_forces import may_gain
 from hystbench.gap.inside.further_modes import (
     further_words,
     in_further_modes,
     with_another_mode,
     with_modes,
 )
-from hystbench.gap.inside.hypotheses import may_gain
-from hystbench.gap.inside.laws import laws_for
+from hystbench.gap.inside.insert_law import laws_for
 from hystbench.gap.inside.modes import NUMBERS, frequency_of, sum_of
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.record import Channel, Record

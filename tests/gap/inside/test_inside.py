@@ -23,21 +23,29 @@ from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.beginnings import Beginnings
-from hystbench.gap.inside.hosts import best_host, hosts, is_seen_moving, same_as
-from hystbench.gap.inside.hypotheses import (
+from hystbench.gap.inside.choose import chosen
+from hystbench.gap.inside.combine_forces import (
     starts,
     with_one_fewer,
 )
-from hystbench.gap.inside.laws import Times, evened, how_it_moves, laws_for, with_law
+from hystbench.gap.inside.host import best_host
+from hystbench.gap.inside.hosts import hosts, is_seen_moving
+from hystbench.gap.inside.insert_law import (
+    Times,
+    evened,
+    how_it_moves,
+    laws_for,
+    with_law,
+)
 from hystbench.gap.inside.named_inside import (
     Inside,
     beats,
     betters,
-    chosen,
     named_inside,
     re_tuning,
 )
 from hystbench.gap.inside.one_coordinate import free_masses, one_coordinate
+from hystbench.gap.inside.same_as import same_as
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.records.free_mass import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
@@ -209,7 +217,7 @@ def test_what_a_given_base_is_the_same_as_is_sought_once(monkeypatch):
     offset = replace(measured, y=measured.y - 0.05)
     sought = []
     monkeypatch.setattr(
-        "hystbench.gap.inside.hosts.one_coordinate",
+        "hystbench.gap.inside.same_as.one_coordinate",
         lambda *given: sought.append(given) or one_coordinate(*given),
     )
     found = [
@@ -239,7 +247,7 @@ def test_what_no_mass_on_a_spring_does_is_seen_on_one_record(monkeypatch):
     )
     sought = []
     monkeypatch.setattr(
-        "hystbench.gap.inside.hosts.one_coordinate",
+        "hystbench.gap.inside.same_as.one_coordinate",
         lambda given, *more: sought.append(given) or one_coordinate(given, *more),
     )
     start = ModelState((base,), records, ScoredSamples.of(records), hold="linear")

@@ -11,8 +11,9 @@ from hystbench.gap.bases.load import load_base
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added
-from hystbench.gap.inside import hypotheses
-from hystbench.gap.inside.named_inside import Inside, _rounds, chosen
+from hystbench.gap.inside import combine_forces
+from hystbench.gap.inside.choose import as_rounds, chosen
+from hystbench.gap.inside.named_inside import Inside
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.free_mass import windows
@@ -43,7 +44,7 @@ def test_an_effect_that_does_little_alone_comes_behind_the_one_that_it_needs():
         tried(-250.0, "overflow", "stop"),
         tried(-30.0, "outflow", "stop"),
     ]
-    first, second = _rounds(found[0].state, best, found)
+    first, second = as_rounds(found[0].state, best, found)
     assert [x.effect for x in first.ranking] == ["overflow", "outflow"]
     assert [x.effect for x in second.ranking] == ["outflow", "stop"]
     assert [x.gain for x in second.ranking] == [300.0, 50.0]
@@ -64,13 +65,13 @@ def test_where_one_order_of_three_was_tried_it_is_the_one_that_is_told():
         tried(-300.0, "drag", "stop"),
         best,
     ]
-    told = _rounds(found[0].state, best, found)
+    told = as_rounds(found[0].state, best, found)
     assert [one.ranking[0].effect for one in told] == ["drag", "stop", "friction"]
 
 
 def test_without_an_effect_there_is_no_round():
     alone = tried(0.0)
-    assert _rounds(alone.state, alone, [alone]) == []
+    assert as_rounds(alone.state, alone, [alone]) == []
 
 
 class Told(SimpleNamespace):
@@ -133,11 +134,11 @@ def test_threes_are_tried_where_a_pair_pays_or_no_single_does(
         state = SimpleNamespace(chain=(), added=added(effects), freedom=0.0)
         return Fitted(state, score)
 
-    monkeypatch.setattr(hypotheses, "_one_more", one_more)
-    monkeypatch.setattr(hypotheses, "with_one_fewer", lambda *_: [])
+    monkeypatch.setattr(combine_forces, "_one_more", one_more)
+    monkeypatch.setattr(combine_forces, "with_one_fewer", lambda *_: [])
     score = SimpleNamespace(least=lambda freedom: -5000.0)
     found = [chained(0.0), chained(single, "friction")]
-    hypotheses.together(found, lambda _: {}, score)
+    combine_forces.together(found, lambda _: {}, score)
     assert tried_levels == [2, 3][:levels]
 
 

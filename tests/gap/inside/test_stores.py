@@ -14,13 +14,10 @@ from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import Fitted, judged
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.inside.hosts import (
-    all_are_seen_filling,
-    best_host,
-    hosts,
-    may_be_stores,
-)
-from hystbench.gap.inside.named_inside import chosen
+from hystbench.gap.inside.choose import chosen
+from hystbench.gap.inside.host import best_host
+from hystbench.gap.inside.hosts import hosts
+from hystbench.gap.inside.store_hosts import all_are_seen_filling, may_be_stores
 from hystbench.gap.inside.stores import how_it_fills, stores
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.quantities import Quantities

@@ -16,8 +16,8 @@ from hystbench.gap.fitting.least_squares import Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.beginnings import Beginnings
-from hystbench.gap.inside.hypotheses import fitted_likely, may_gain, starts
-from hystbench.gap.inside.laws import Offer, host_of
+from hystbench.gap.inside.combine_forces import fitted_likely, may_gain, starts
+from hystbench.gap.inside.insert_law import Offer, host_of
 from hystbench.gap.inside.modes import (
     NONE,
     NUMBERS,

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import pairwise
 
 import numpy as np
 
@@ -21,30 +20,23 @@ from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.choose import as_rounds, charged, chosen, way_to
+from hystbench.gap.inside.combine_forces import may_gain, singles, together
 from hystbench.gap.inside.fewer import OnAll, on_fewer
 from hystbench.gap.inside.further_modes import (
-    for_a_further,
     further_words,
     in_further_modes,
     with_modes,
 )
-from hystbench.gap.inside.hosts import ZEROS, Host, hosts
-from hystbench.gap.inside.hypotheses import may_gain, singles, together
-from hystbench.gap.inside.laws import Times, host_places, laws_for
+from hystbench.gap.inside.host import ZEROS, Host
+from hystbench.gap.inside.hosts import hosts
+from hystbench.gap.inside.insert_law import Times, host_places, laws_for
 from hystbench.gap.naming.add_effects import Named
-from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
 from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.memory import may_have_hysteresis
-from hystbench.gap.thresholds import (
-    ABOUT,
-    FURTHER,
-    PARAMETER,
-    PAYS,
-    SCALE,
-    UNNAMED_SHARE,
-)
+from hystbench.gap.thresholds import ABOUT, FURTHER, PARAMETER, PAYS
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.sentences import finely, percent
@@ -177,7 +169,7 @@ def named_inside(
     if not identified:
         sentence += re_tuning(alone, state)
     # The first rung is the host re-tuned, so that no effect has the credit of that.
-    rounds = _rounds(replace(re_tuned, offered=start.offered).settled(), best, found)
+    rounds = as_rounds(replace(re_tuned, offered=start.offered).settled(), best, found)
     model = Model(base.name, base.input, base.output, alone.chain)
     labels = [label for label, _ in model.labelled()]
     free = [f"{labels[item.block]}.{item.parameter}" for item in alone.free]
@@ -311,117 +303,6 @@ def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> 
     more = len(chain.added) - len(state.added) - inside.counts
     gain -= state.moved_charge - chain.moved_charge
     return gain + FURTHER * max(more, 0) >= PAYS
-
-
-def charged(
-    item: Fitted, found: Sequence[Fitted], floor: float, share: float = UNNAMED_SHARE
-) -> float:
-    """Give the score with what effects have to pay: the first, and each further one.
-
-    A further one must take a share of the gap that matters, or be beyond doubt: what is
-    left after the right force is also what its law, or the simulation, misses.
-    """
-    gap, value = max(found[0].state.power(floor), floor), item.score
-    for before, after in pairwise((found[0], *way_to(item, found))):
-        taken = after.state.share(before.state, floor, gap)
-        value += for_a_further(taken, share) if before.effects else PAYS
-    return value
-
-
-def way_to(item: Fitted, found: Sequence[Fitted]) -> list[Fitted]:
-    """Give hypotheses of one effect more each, up to one with all of them.
-
-    The effect that is missed least comes last, and so on.
-    """
-    way = [item] if item.effects else []
-    while way and len(way[0].effects) > 1:
-        fewer = [
-            other
-            for other in found
-            if {*other.effects} < {*way[0].effects}
-            and len(other.effects) == len(way[0].effects) - 1
-        ]
-        way.insert(0, min(fewer, key=lambda other: other.score))
-    return way
-
-
-def chosen(
-    found: Sequence[Fitted], floor: float, share: float = UNNAMED_SHARE
-) -> Fitted:
-    """Take the least score with what effects have to pay; of a tie the fewest numbers.
-
-    Bouc and Wen's hysteresis that yields at once is dry friction, which has one number.
-    As many numbers have a weight that turns a little and a spring that grows softer:
-    then it is the effect that is offered only where its cause can be.
-    """
-    values = [charged(item, found, floor, share) for item in found]
-    best = found[int(np.argmin(values))]
-    tied = [
-        item
-        for item, value in zip(found, values, strict=True)
-        if value < min(values) + SCALE and len(item.effects) == len(best.effects)
-    ]
-
-    def unlikely(item: Fitted) -> tuple[float, int, float]:
-        special = sum(effects()[name].special for name in item.effects)
-        return item.state.freedom, -special, item.score
-
-    return min(tied, key=unlikely)
-
-
-def _rounds(start: ModelState, best: Fitted, found: Sequence[Fitted]) -> list[Round]:
-    """Write how the effects were found as rounds: each beside those before it.
-
-    They come in the order of :func:`way_to`. What could stand in the place of an effect
-    that others came beside later is told by hypotheses with those others.
-    """
-    rounds: list[Round] = []
-    before, now, already = start, found[0].score, frozenset[str]()
-    for taken in way_to(best, found):
-        (effect,) = {*taken.effects} - already
-        ranking = _ranked(effect, already, found, now)
-        rounds.append(Round(before, now, ranking, True))
-        before, now = taken.state, taken.score
-        already = frozenset(taken.effects)
-    if len(rounds) > 1:
-        looks = tuple(
-            _look(one.ranking[0].effect, best, found, rounds[0].score)
-            for one in rounds[:-1]
-        )
-        rounds[-1] = replace(rounds[-1], looks=looks)
-    return rounds
-
-
-def _look(
-    effect: str, best: Fitted, found: Sequence[Fitted], alone: float
-) -> SecondLook:
-    """Rank what was tried in the place of an effect beside the others of a model."""
-    others = frozenset(best.effects) - {effect}
-    without = (x.score for x in found if frozenset(x.effects) == others)
-    now = next(without, alone)
-    beside = tuple(x for x in best.effects if x != effect)
-    return SecondLook(effect, beside, _ranked(effect, others, found, now), effect)
-
-
-def _ranked(
-    effect: str, already: frozenset[str], found: Sequence[Fitted], now: float
-) -> tuple[Candidate, ...]:
-    """Rank hypotheses of one effect more than others; that with ``effect`` leads."""
-    candidates = (
-        _candidate(item, already, now)
-        for item in found
-        if already < {*item.effects} and len(item.effects) == len(already) + 1
-    )
-    return tuple(sorted(candidates, key=lambda x: (x.effect != effect, x.score)))
-
-
-def _candidate(item: Fitted, already: frozenset[str], now: float) -> Candidate:
-    """Give the effect that a hypothesis has beyond those of the rounds before."""
-    state = item.state
-    last = next(x for x in state.added if x.effect not in already)
-    return Candidate(
-        last.effect, last.place, last.form, item.score, now - item.score, state
-    )
 
 
 def quantities_if_linear(base: Model, evidence: Evidence) -> Quantities | None:
