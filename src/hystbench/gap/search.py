@@ -36,7 +36,7 @@ from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence, own_offsets
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.thresholds import FURTHER, LOOSE, PARAMETER, PAYS
+from hystbench.gap.thresholds import FURTHER, LOOSE, PARAMETER, PAYS, SHAPE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Record
@@ -139,8 +139,11 @@ class _Searched:
     def score_of_both(self) -> Score:
         """Give the score that this answer and another one are compared by.
 
-        Neither is better for what a wrong shape of the base's hysteresis leaves.
+        Neither is better for what a wrong shape of the base's hysteresis leaves, unless
+        another shape is what this one names.
         """
+        if any(item.effect == SHAPE for item in self.named.state.added):
+            return Score.plain(self.start.sample, self.floor.rms**2)
         return make_score(self.start, self.floor.rms, forms=False)
 
     def value(self, score: Score) -> float:

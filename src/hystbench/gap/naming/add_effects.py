@@ -104,8 +104,11 @@ def settled(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Name
         if names(state) == before:
             break
     if state.added:
-        # Its own numbers are found without what other forms of it could do.
+        # Its own numbers are found without what other forms of it could do, and those
+        # of another shape of the hysteresis without sparing what a shape could do.
         score = make_score(state, floor_rms, forms=False)
+        if SHAPE in names(state):
+            score = Score.plain(state.sample, floor_rms**2)
         state = finished_to_the_end(state, score)
     return Named(state, rounds, gone)
 
