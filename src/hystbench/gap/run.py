@@ -28,7 +28,7 @@ from hystbench.gap.judge_and_tell import Decision
 from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.naming.built_in import BuiltIn, build_in
-from hystbench.gap.naming.forecast_calls import keep_back
+from hystbench.gap.naming.forecast_calls import reserve_calls
 from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence, check_units
@@ -126,7 +126,7 @@ def closed_gap(
     check_units(evidence, base, place)
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.input_hold)
-    keep_back(evidence)
+    reserve_calls(evidence)
     decision, decided = decide(evidence, base, asked)
     evidence, result = show(evidence, decided, asked.say)
     decision = replace(decision, model=result.model, content=result.content)

@@ -50,8 +50,8 @@ further is looked for.
 AS_GOOD = UNNAMED_SHARE
 """By no more two models differ that do the same, whatever a user allows.
 
-So are compared: a host and the base that it stands for, a law and one of fewer numbers,
-the base and a model that leaves more on hold-out records.
+It compares a host with the base that it stands for, a law with one of fewer numbers,
+and the base with a model that leaves more on hold-out records.
 """
 WORTH_A_WORD = 0.1
 """What is told beside the verdict: a third of the rms."""
@@ -76,7 +76,8 @@ ABOVE_NOISE = MOST
 SLIGHT = 0.015
 """RMS of what is left, over that of the output, that a fitted hysteresis may leave."""
 WIDE = 3.0
-"""Times as much in all, where most of it is what reshaping could do."""
+"""Most of the whole residual, in multiples of `SLIGHT`, where reshaping could do most
+of it. No noise of unknown colour is larger."""
 FOREIGN = 0.05
 """Share that no effect does: of the gap in samples far off, of what is left in what
 differs between periods."""

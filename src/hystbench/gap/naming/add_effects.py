@@ -23,7 +23,7 @@ from hystbench.gap.naming.removal import (
     without_unknown,
     without_what_goes,
 )
-from hystbench.gap.naming.rounds import MOST, Candidate, Round, reasons
+from hystbench.gap.naming.rounds import MOST_EFFECTS, Candidate, Round, reasons
 from hystbench.gap.naming.second_looks import reconsidered
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import (
@@ -205,7 +205,7 @@ class SoFar:
     def done(self) -> bool:
         """Whether nothing more is to be added."""
         stopped = bool(self.rounds) and not self.rounds[-1].taken
-        return stopped or self.closed or len(self.state.added) >= MOST
+        return stopped or self.closed or len(self.state.added) >= MOST_EFFECTS
 
     def little_left(self, floor: float) -> bool:
         """Tell whether no more is left than may stay unnamed, of whatever sort it is.

@@ -15,7 +15,7 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.tried import records_at_a_glance
 from hystbench.gap.fitting.variant_search import MANY
 from hystbench.gap.naming.rank import FINALISTS
-from hystbench.gap.naming.rounds import MOST
+from hystbench.gap.naming.rounds import MOST_EFFECTS
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence
 
@@ -65,7 +65,7 @@ def calls_of_a_round(state: ModelState) -> int:
     return grids + count * (AROUND * before + REFITS * finalists + LOOKS)
 
 
-def keep_back(evidence: Evidence) -> None:
+def reserve_calls(evidence: Evidence) -> None:
     """Keep back, of the calls that a user allows, those that come after the search.
 
     That is what errors of numbers need on the fit records, and each stage from the
@@ -79,7 +79,9 @@ def keep_back(evidence: Evidence) -> None:
     calls = current()
     if calls.bound is None or not calls.made:
         return
-    calls.reserve = ERRORS * len(evidence.fit) + (MOST + 1) * len(evidence.hold_out)
+    calls.reserve = ERRORS * len(evidence.fit) + (MOST_EFFECTS + 1) * len(
+        evidence.hold_out
+    )
     least = calls.made + calls.reserve
     if calls.bound <= least:
         raise InputError(
@@ -102,7 +104,7 @@ def foretell(state: ModelState, say: Say) -> None:
     if not calls.made:
         return
     one = calls_of_a_round(state)
-    calls.expected = calls.asked + MOST * one
+    calls.expected = calls.asked + MOST_EFFECTS * one
     took = calls.expected * calls.mean_seconds
     if took < PATIENCE:
         return
@@ -126,7 +128,7 @@ def foretell_rest(state: ModelState, rounds: int) -> None:
     """
     calls = current()
     if calls.made:
-        left = max(MOST - rounds, 0)
+        left = max(MOST_EFFECTS - rounds, 0)
         calls.expected = calls.asked + left * calls_of_a_round(state)
 
 

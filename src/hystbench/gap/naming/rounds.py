@@ -11,7 +11,7 @@ import numpy as np
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.thresholds import SCALE, SHAPE
 
-MOST = 4
+MOST_EFFECTS = 4
 """Effects that are looked for, at most."""
 
 
