@@ -10,6 +10,7 @@ from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.store import Store
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.effects import effects
+from hystbench.gap.effects.law import Filled
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import Fitted, judged
 from hystbench.gap.fitting.score import Score
@@ -316,6 +317,14 @@ def test_a_store_that_fills_within_a_sample_is_no_host(fast, seen):
     record = tanks(root=False, height=np.inf)
     state = ModelState((slow, other), (record,), ScoredSamples.of((record,)))
     assert all_are_seen_filling(state) == seen
+
+
+def test_another_rate_is_no_other_law_of_a_tank_with_a_free_outlet():
+    tank = Store(gain=1.0, rate=0.9, exponent=0.5, start_level=20.0)
+    filled = Filled(((0, tank, 30.0),), known=True)
+    changed = list(effects()["outflow"].stored(filled))
+    assert [item.form for item in changed] == ["power"]
+    assert changed[0].free == ((0, "exponent"),)
 
 
 def _ends(value):

@@ -27,13 +27,15 @@ class Outflow(StoreEffect):
             rate = store.rate * (top / 2) ** (store.exponent - ROOT)
             values[place] = {"exponent": ROOT, "rate": float(rate)}
             level = -store.bias / store.rate if store.rate else 0.0
-            if filled.known and store.exponent == 1.0 and level > 0.0:
+            if filled.known and store.exponent == 1.0 and 0.0 < level <= top:
                 rate = store.rate * level ** (1.0 - ROOT) / ROOT
                 values[place] = {"exponent": ROOT, "rate": float(rate), "bias": 0.0}
-        rates, powers = (
-            tuple((place, name) for place in values) for name in ("rate", "exponent")
-        )
-        yield Changed("root", values, rates)
+        # Where the law is the root already another rate is no other law.
+        changed = [x for x, store, _ in filled.tops if store.exponent != ROOT]
+        rates = tuple((place, "rate") for place in changed)
+        powers = tuple((place, "exponent") for place in values)
+        if changed:
+            yield Changed("root", {place: values[place] for place in changed}, rates)
         yield Changed("power", values, (*rates, *powers))
 
 

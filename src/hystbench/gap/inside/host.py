@@ -11,7 +11,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.thresholds import ABOUT
 
-ZEROS = ("bias", "offset", "delay_s")
+ZEROS = ("bias", "offset", "delay_s", "blend")
 """Numbers that are counted from a zero: a share of them says nothing."""
 
 
@@ -40,6 +40,8 @@ class Host:
 def about_what_is_given(state: ModelState, free: Free) -> Free:
     """Give a number with what it may be off; one that is counted from a zero as is."""
     value = state.value(free)
+    if free.given is not None:  # its tolerance is stated
+        return free
     if free.parameter in ZEROS or value == 0.0:
         return free
     return free._replace(tolerance=ABOUT * abs(value), given=value)

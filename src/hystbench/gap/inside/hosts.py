@@ -97,7 +97,8 @@ def hosts(
             )
             same = same_as(start, quantities, score.floor)
         if same is not None:
-            yield from _as_given(same, score, words, start.free, exact)
+            about = _about(same)
+            yield from _as_given(same, about, score, words, start.free, exact)
     if quantities.causality not in ("force to motion", "unknown"):
         return
     known = quantities.output in MOTIONS
@@ -113,29 +114,42 @@ def hosts(
             best = fitted(mode, score)
             yield Host(best.state, best, words)
         else:
-            yield from _as_given(mode, score, words, start.free, exact)
+            yield from _as_given(mode, mode, score, words, start.free, exact)
 
 
 def _as_given(
-    state: ModelState, score: Score, words: str, free: tuple[Free, ...], exact: bool
+    state: ModelState,
+    about: ModelState,
+    score: Score,
+    words: str,
+    free: tuple[Free, ...],
+    exact: bool,
 ) -> Iterator[Host]:
     """Give a host that does what a given base does, then the same fitted to records.
 
     The numbers of a given base are known, unless it says that some are free. That known
     ones are wrong all the same has to pay as a further effect does. What is only known
-    about of the base, is only known about of the host.
+    about of the base, is only known about of the host: ``about`` holds its numbers by
+    that. A mode is no number of a base, and its damping is seldom known.
     """
-    numbers = tuple(about_what_is_given(state, item) for item in state.free)
-    about = replace(state, free=numbers)
     if free:
         known = all(item.given is not None for item in free)
-        yield Host(state, fitted_to_the_end(about if known else state, score), words)
+        own = fitted_to_the_end(about, score) if known else fitted(state, score)
+        yield Host(state, own, words)
         return
     held = replace(state, free=())
     yield Host(held, fitted(held, score), f"{words}, its numbers as they are")
     if not exact:
         words = f"{words}, its numbers fitted to the records"
-        yield Host(state, fitted_to_the_end(about, score), words, charge=FURTHER)
+        held_by = about is not state
+        own = fitted_to_the_end(about, score) if held_by else fitted(state, score)
+        yield Host(state, own, words, charge=FURTHER)
+
+
+def _about(state: ModelState) -> ModelState:
+    """Give a host whose numbers are held by what they may be off."""
+    numbers = tuple(about_what_is_given(state, item) for item in state.free)
+    return replace(state, free=numbers)
 
 
 def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
