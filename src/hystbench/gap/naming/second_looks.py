@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.gap.effects import among
+from hystbench.gap.effects import among, effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import last_to, removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
@@ -98,6 +98,9 @@ def reconsidered(
 
 def _is_itself(state: ModelState, item: Added, floor_rms: float) -> bool:
     """Tell whether an effect has not lost what makes it that to a later one."""
+    of_effect = effects()[item.effect]
+    if not any(of_effect.without_itself(state.chain[k]) for k in item.blocks):
+        return True  # most have nothing that they could lose, and need no score
     score = make_score(state, floor_rms)
     return not does_without_itself(state, item, score_of(state, score), score)
 
