@@ -7,9 +7,9 @@ from hystbench.blocks.parameter import number
 class Gravity(Force, name="gravity", law="gravity"):
     """A pendulum's moment on an angle q in rad.
 
-    ``F = amplitude (sin(q + angle) - carried sin(angle))``: what the spring carries of
-    the weight at ``q = 0`` is no force beside it. All of it, if the angle is counted
-    from where the weight is at rest; none, if from where the spring is.
+    ``F = amplitude (sin(q + angle) - carried sin(angle))``. The spring carries a share
+    of the moment that the weight has at ``q = 0``: all of it, if q is counted from
+    where the weight rests; none, if q is counted from where the spring is slack.
 
     References
     ----------

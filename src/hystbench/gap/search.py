@@ -86,7 +86,7 @@ def search(
     if about is not None and found.may_be_simpler(asked.unnamed_share):
         asked.say("the base's numbers or timing may be off: naming beside that")
         again = _beside(about, evidence, asked, quantities)
-        score = found.score_of_both
+        score = found.score_beside(again)
         alike = len(again.start.sample) == len(found.start.sample)
         if alike and again.value(score) + FURTHER < found.value(score):
             found = again
@@ -136,13 +136,17 @@ class _Searched:
         return self.inside is not None and self.inside.counts > 0
 
     @property
-    def score_of_both(self) -> Score:
+    def names_shape(self) -> bool:
+        """Whether a wrong shape of the base's hysteresis is what it names."""
+        return any(item.effect == SHAPE for item in self.named.state.added)
+
+    def score_beside(self, other: _Searched) -> Score:
         """Give the score that this answer and another one are compared by.
 
         Neither is better for what a wrong shape of the base's hysteresis leaves, unless
-        another shape is what this one names.
+        one of them names it.
         """
-        if any(item.effect == SHAPE for item in self.named.state.added):
+        if self.names_shape or other.names_shape:
             return Score.plain(self.start.sample, self.floor.rms**2)
         return make_score(self.start, self.floor.rms, forms=False)
 
@@ -156,7 +160,7 @@ class _Searched:
         for free in state.free:
             if free.block not in own:
                 cost += PARAMETER
-        return cost + state.moved_charge + score_of(state, score)
+        return cost + score_of(state, score)
 
     def may_be_simpler(self, share: float) -> bool:
         """Tell whether there may be a better answer beside a re-tuned base.
@@ -171,7 +175,7 @@ class _Searched:
         most = max(square, share * self.start.power(square))
         if state.power(square) <= most:
             return False
-        return could_gain(state, self.score_of_both) > FURTHER
+        return could_gain(state, self.score_beside(self)) > FURTHER
 
 
 def _beside(

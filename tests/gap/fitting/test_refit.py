@@ -133,13 +133,28 @@ def test_a_tolerance_holds_a_number_of_the_base_back():
         state = state_of(
             (block("gain", value=11.0),),
             given_records,
-            free=(Free(0, "value", None, tolerance),),
+            free=(Free(0, "value", None, tolerance, given=11.0),),
         )
         after, _ = refit(state, plain_score(state))
         found[tolerance] = after.chain[0].value
     assert found[None] == pytest.approx(12.0, rel=1e-3)
     assert found[None] >= found[1.0] - 1e-6
     assert 11.0 <= found[1e-3] < 11.5
+
+
+def test_a_held_number_stays_where_it_was_fitted_first():
+    # Each refit would else begin where the last one ended, and pay nothing for it.
+    loop, lag = hysteresis(), block("drive-lag", time_constant_s=4e-3)
+    found = measured((lag, loop, block("gain", value=1.3)), NOISE)
+    free = (Free(1, "value", None, 0.02, given=1.0),)
+    state = state_of((loop, block("gain", value=1.0)), found, free=free)
+    score = plain_score(state)
+    once, least = finished(state, score)
+    again, value = finished(once, score)
+    assert again.chain[1].value == pytest.approx(once.chain[1].value, abs=2e-3)
+    moved = (once.chain[1].value - 1.0) / 0.02
+    assert least == pytest.approx(score.of(once.residual) + moved**2)
+    assert value == pytest.approx(least, abs=0.1)
 
 
 def attempt(state, score, name):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy import optimize
 
 from hystbench.gap.fitting import score as scores
-from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.score import Held, Score
 from hystbench.gap.records.scored_samples import ScoredSamples
 from tests.gap.made import record
 
@@ -150,13 +150,30 @@ def test_amplitudes_never_score_worse_than_none(seed):
     lengths, basis, _, _, residual = problem(seed)
     score = Score(sample_of(lengths), basis, 1e-6)
     terms = rng.standard_normal((len(residual), 3))
-    stiffness = rng.uniform(0, 10, 3)
-    found = score.amplitudes(residual, terms, 1.0, stiffness)
-    assert found.score <= score.of(residual, 1.0) + 1e-9
+    stiffness, moved = rng.uniform(0, 10, 3), rng.standard_normal(3)
+    found = score.amplitudes(residual, terms, 1.0, Held(stiffness, moved))
+    nothing = score.of(residual, 1.0) + stiffness @ moved**2
+    assert found.score <= nothing + 1e-9
     assert found.score == pytest.approx(
         formula(residual - terms @ found.values, lengths, basis, 1e-6, 1.0)
-        + stiffness @ found.values**2
+        + stiffness @ (moved + found.values) ** 2
     )
+
+
+@given(SEEDS)
+@settings(max_examples=40)
+def test_columns_that_many_calls_share_are_held_as_those_of_one(seed):
+    rng = np.random.default_rng(seed)
+    lengths, basis, _, _, residual = problem(seed)
+    score = Score(sample_of(lengths), basis, 1e-6)
+    terms = rng.standard_normal((len(residual), 4))
+    held = Held(rng.uniform(0, 10, 4), rng.standard_normal(4))
+    own, theirs = (Held(*(x[part] for x in held)) for part in (slice(2), slice(2, 4)))
+    whole = score.amplitudes(residual, terms, 1.0, held)
+    beside = score.shared(terms[:, 2:], theirs)
+    found = score.amplitudes(residual, terms[:, :2], 1.0, own, beside=beside)
+    assert found.score == pytest.approx(whole.score)
+    assert found.values == pytest.approx(whole.values[:2], rel=1e-4, abs=1e-7)
 
 
 @given(SEEDS)
@@ -201,7 +218,9 @@ def test_a_tolerance_holds_an_amplitude_back(seed, stiffness):
     column = rng.standard_normal(50)
     residual = column + 0.3 * rng.standard_normal(50)
     score = Score(sample_of([50]), np.zeros((50, 0)), 1e-9)
-    found = score.amplitudes(residual, column[:, None], stiffness=np.array([stiffness]))
+    found = score.amplitudes(
+        residual, column[:, None], held=Held.here(np.array([stiffness]))
+    )
 
     def value(x):
         return formula(residual - x * column, [50], np.zeros((50, 0)), 1e-9, 0.0) + (

@@ -14,6 +14,7 @@ from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
+from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.fitting.variant_search import Attempt
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.model import load_model
@@ -33,6 +34,19 @@ def tiny(tmp_path_factory):
     return model, *start_state(
         evidence.fit, model, evidence.input_hold, evidence.noise_rms
     )
+
+
+def test_what_is_known_of_a_number_comes_back_from_its_file(tiny):
+    model, state, _ = tiny
+    place = len(state.chain) - 1
+    name = next(iter(state.chain[place].to_mapping()))
+    free = (Free(place, name, None, 0.1, given=1.5, refused="low"),)
+    item = Added("outflow", "inside", "root", (place,), {}, 1.0, was_free=free)
+    known = replace(state, free=free, added=(item,))
+    kept = json.loads(json.dumps(state_mapping(known), allow_nan=False))
+    restored = Restorer(state.records, model.chain).state(kept)
+    assert restored.free == free
+    assert restored.added == (item,)
 
 
 CHAINED = sorted(name for name, item in effects().items() if item.place != "inside")

@@ -70,10 +70,15 @@ def test_a_friction_takes_no_more_than_there_is():
     assert 0.0 < begun.chain[0].damping < 0.1 * MACHINE.damping
 
 
-def test_a_host_that_is_known_stays_as_it_is():
+KNOWN_ABOUT = (Free(0, "stiffness", tolerance=80.0, given=800.0), Free(0, "blend"))
+
+
+@pytest.mark.parametrize("numbers", [(), KNOWN_ABOUT])
+def test_a_host_that_is_known_stays_as_it_is(numbers):
     record = periodic("rest", 1)
     law = Law("cubic", Stiffness(quadratic=0.0, cubic=1e5), ("cubic",))
-    begun = evened(with_law(state(record), "stiffness-hardening", law))
+    host = replace(state(record), free=numbers)
+    begun = evened(with_law(host, "stiffness-hardening", law))
     assert begun.chain[0] == MACHINE
 
 

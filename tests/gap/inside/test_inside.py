@@ -548,7 +548,8 @@ def test_a_force_beside_next_to_no_motion_leaves_the_host_as_it_is():
     u = 1e-27 * np.sin(2 * np.pi * 1.3 * TIME)
     given = (record("run", u, u, ("N", "mm")),)
     mass = Mechanism(mass=1.0, damping=0.1, stiffness=0.0, hold="linear")
-    state = ModelState((mass,), given, ScoredSamples.of(given), hold="linear")
+    free = (Free(0, "damping"),)
+    state = ModelState((mass,), given, ScoredSamples.of(given), free, hold="linear")
     dry = FrictionForce(coulomb=1e4, presliding_distance=1e-30)
     begun = with_law(state, "friction", Law("dry", dry, ("coulomb",)))
     assert evened(begun).chain == begun.chain

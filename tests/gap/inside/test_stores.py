@@ -15,10 +15,15 @@ from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import Fitted, judged
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.inside import store_hosts as of_stores
 from hystbench.gap.inside.choose import chosen
 from hystbench.gap.inside.host import best_host
 from hystbench.gap.inside.hosts import hosts
-from hystbench.gap.inside.store_hosts import all_are_seen_filling, may_be_stores
+from hystbench.gap.inside.store_hosts import (
+    all_are_seen_filling,
+    may_be_stores,
+    store_hosts,
+)
 from hystbench.gap.inside.stores import how_it_fills, stores
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.quantities import Quantities
@@ -308,6 +313,9 @@ def test_a_base_that_is_the_tangent_of_the_outflow_lacks_its_root(about):
     assert store.rate == pytest.approx(rate, rel=0.02)
     assert store.exponent == pytest.approx(0.5, abs=0.02)
     assert np.sqrt(np.mean(best.state.residual**2)) < 1.1 * NOISE
+    # Without the root its rate is known as well as before.
+    short = without_effect(best.state, 0)
+    assert sorted(short.free) == sorted(host.fitted.state.free)
 
 
 @pytest.mark.parametrize(("fast", "seen"), [(0.7, True), (0.9, False)])
@@ -317,6 +325,16 @@ def test_a_store_that_fills_within_a_sample_is_no_host(fast, seen):
     record = tanks(root=False, height=np.inf)
     state = ModelState((slow, other), (record,), ScoredSamples.of((record,)))
     assert all_are_seen_filling(state) == seen
+
+
+def test_stores_that_are_not_seen_filling_are_no_hosts(monkeypatch):
+    record = tanks(root=False, height=np.inf)
+    base = TransferFunction(numerator=(1.0,), denominator=(50.0, 1.0))
+    start = ModelState((base,), (record,), ScoredSamples.of((record,)))
+    score = Score.plain(start.sample, NOISE**2)
+    assert next(store_hosts(start, True, score), None) is not None
+    monkeypatch.setattr(of_stores, "all_are_seen_filling", lambda state: False)
+    assert next(store_hosts(start, True, score), None) is None
 
 
 def test_another_rate_is_no_other_law_of_a_tank_with_a_free_outlet():

@@ -63,7 +63,7 @@ class Filled(NamedTuple):
     """How high stores are filled: place, block and highest level of each.
 
     Of the last one, where its level is the output, also the highest that was measured.
-    They are known if a given base states their numbers.
+    And whether a given base states their numbers.
     """
 
     tops: tuple[tuple[int, Store, float], ...]

@@ -88,16 +88,15 @@ def without_effect(state: ModelState, number: int) -> ModelState:
 def _with_old_numbers(
     state: ModelState, gone: Added, rest: tuple[Added, ...]
 ) -> ModelState:
-    """Give blocks the numbers back that an effect changed; they are fixed then."""
-    chain, free = list(state.chain), state.free
+    """Give blocks the numbers back that an effect changed, free as they were before."""
+    chain, changed = list(state.chain), set()
     for key, value in gone.values.items():
         place, _, parameter = key.partition(".")
         k, own = int(place), {parameter: value}
         chain[k] = replace(chain[k], **own)
-        if parameter in effects()[gone.effect].numbers:
-            free = tuple(
-                item for item in free if (item.block, item.parameter) != (k, parameter)
-            )
+        changed.add((k, parameter))
+    stays = (item for item in state.free if (item.block, item.parameter) not in changed)
+    free = (*stays, *gone.was_free)
     return replace(state, chain=tuple(chain), free=free, added=rest)
 
 

@@ -85,16 +85,11 @@ def fitted(
     sizes = np.where(logs, values, _sizes(state, values, tangents))
     weights = record_weights(state)
     most = OUT * weights * float(np.max(np.abs(state.measured)))
-    known = [
-        k
-        for k, free in enumerate(state.free)
-        if free.given is not None and free.tolerance is not None
-    ]
-    given = np.array([state.free[k].given for k in known], dtype=float)
-    tolerances = np.array([state.free[k].tolerance for k in known], dtype=float)
+    known = np.flatnonzero(state.held.stiffness)
+    given = (values - state.held.moved)[known]
     # What is lowered is, near its least, the score times samples by what they weigh.
     samples = len(weights) / len(state.sample.slices)
-    per_tolerance = np.sqrt(samples / score.weight) / tolerances
+    per_unit = np.sqrt(samples / score.weight * state.held.stiffness[known])
 
     def values_at(point: FloatArray) -> FloatArray:
         times = np.exp(np.clip(point, -100, 100))
@@ -109,7 +104,7 @@ def fitted(
         except InputError:
             rest = most  # out of what the blocks accept
         rest = np.where(np.isfinite(rest), np.clip(rest, -most, most), most)
-        return np.append(rest, (values_at(point)[known] - given) * per_tolerance)
+        return np.append(rest, (values_at(point)[known] - given) * per_unit)
 
     def slopes(point: FloatArray) -> FloatArray:
         # MINPACK's wrapper asks for the first ones once more, to see their shape.
@@ -118,7 +113,7 @@ def fitted(
             scale = np.where(logs, values_at(point), sizes)
             own = _tangents(moved(point), STEP * scale)
         held = np.zeros((len(known), len(scale)))
-        held[np.arange(len(known)), known] = scale[known] * per_tolerance
+        held[np.arange(len(known)), known] = scale[known] * per_unit
         return np.vstack([-weights[:, None] * own * scale, held])
 
     point, *_ = leastsq(

@@ -44,7 +44,10 @@ def directions_of(wrong_shape: FloatArray, state: ModelState) -> FloatArray:
 
 
 def score_of(state: ModelState, score: Score) -> float:
-    """Score a model as it is; amplitudes of what lies beside are solved for."""
+    """Score a model as it is, with what its moved numbers cost.
+
+    Amplitudes of what lies beside are solved for.
+    """
     return score_beside(state, score, beside_of(state, score))
 
 
@@ -60,13 +63,14 @@ def _products(given: Same, score: Score) -> Shared:
     """Give them for all chains that the same lies beside."""
     beside, records, sample = given.objects
     columns = ModelState((), records, sample, beside=beside).beside_columns
-    return score.shared(columns, np.zeros(columns.shape[1]))
+    return score.shared(columns)
 
 
 def score_beside(state: ModelState, score: Score, beside: Shared | None) -> float:
     """Score a model where the products of what lies beside it are known."""
-    nothing = np.zeros((len(state.sample), 0))
-    return score.amplitudes(state.residual, nothing, state.freedom, beside=beside).score
+    nothing, residual = np.zeros((len(state.sample), 0)), state.residual
+    found = score.amplitudes(residual, nothing, state.freedom, beside=beside)
+    return found.score + state.moved_charge
 
 
 def step_error(state: ModelState) -> float | None:

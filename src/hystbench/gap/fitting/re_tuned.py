@@ -27,13 +27,12 @@ def could_gain(state: ModelState, score: Score) -> float:
         A model of a given base with effects.
     score : Score
     """
-    now = score.of(state.residual, state.freedom)
     loose = _loosened(state)
-    columns, charges = loose.tangents, loose.change_charge
+    columns = loose.tangents
     if not np.isfinite(columns).all():
         return np.inf
-    given = loose.residual, columns, state.freedom, charges
-    return now - score.amplitudes(*given).score
+    found = score.amplitudes(loose.residual, columns, state.freedom, loose.held)
+    return score.of(state.residual, state.freedom) + state.moved_charge - found.score
 
 
 def _loosened(state: ModelState) -> ModelState:
@@ -44,7 +43,7 @@ def _loosened(state: ModelState) -> ModelState:
     most = LATE * min(record.dt for record in state.records)
     chain = in_time(state.chain, most)
     state = state.rearranged(chain, {k: k + 1 for k in range(len(state.chain))})
-    timing = Free(0, "delay_s", None, most, 0.0, 2 * most)
+    timing = Free(0, "delay_s", None, most, 0.0, 2 * most, given=most)
     state = replace(state, free=(*state.free, timing))
     return state.settled()
 

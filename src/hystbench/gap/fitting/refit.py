@@ -68,7 +68,7 @@ def refit(
                 state.residual,
                 state.tangents,
                 state.freedom,
-                state.change_charge + damping / size**2,
+                state.held.in_steps(damping / size**2),
                 beside=beside,
             )
             change = dict(enumerate(found.values.tolist()))
@@ -176,8 +176,8 @@ def tuned(state: ModelState, score: Score) -> ModelState:
             own = state.by_signal(state.beside_amplitudes)[number].ravel()
             slope = beside_slope(state.records, state.sample, beside, values, key, own)
             columns = np.column_stack([state.tangents, state.beside_columns, slope])
-            stiffness = state.change_charges(columns.shape[1])
-            step = score.amplitudes(state.residual, columns, 0.0, stiffness).values[-1]
+            held = state.held.padded(columns.shape[1])
+            step = score.amplitudes(state.residual, columns, 0.0, held).values[-1]
             items = list(state.beside)
             items[number] = (beside, {**values, key: values[key] + float(step)})
             moved = replace(state, beside=tuple(items))

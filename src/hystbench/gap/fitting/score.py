@@ -45,11 +45,50 @@ class Amplitudes(NamedTuple):
     score: float
 
 
+class Held(NamedTuple):
+    """What holds amplitudes: how far each is from its place is charged, squared."""
+
+    stiffness: FloatArray
+    """Shape (k,). Charge for the square, a tolerance's inverse square; none for what is
+    not held."""
+    moved: FloatArray
+    """Shape (k,). How far from their places those are whose change is solved for."""
+
+    @classmethod
+    def here(cls, stiffness: FloatArray) -> Held:
+        """Hold amplitudes where they are."""
+        return cls(stiffness, np.zeros(len(stiffness)))
+
+    def padded(self, count: int) -> Held:
+        """Give the same for so many amplitudes, those further ones not held."""
+        more = count - len(self.stiffness)
+        return Held(np.pad(self.stiffness, (0, more)), np.pad(self.moved, (0, more)))
+
+    def in_steps(self, stiffness: FloatArray) -> Held:
+        """Give the same where a step from here is charged as well."""
+        both = self.stiffness + stiffness
+        pull = self.stiffness * self.moved
+        return Held(both, np.divide(pull, both, np.zeros(len(both)), where=both > 0))
+
+    def form(self, turned: FloatArray) -> FloatArray:
+        """Give the charge as a quadratic form of (1, -b), the amplitudes being T b.
+
+        Parameters
+        ----------
+        turned : ndarray, shape (k, m)
+            T.
+
+        Returns
+        -------
+        ndarray, shape (1 + m, 1 + m)
+        """
+        rows = np.column_stack([self.moved, -turned])
+        return np.asarray(rows.T @ (self.stiffness[:, None] * rows))
+
+
 class Products(NamedTuple):
     """Products of columns with each other and with the directions, as forms of them."""
 
-    charge: FloatArray
-    """Shape (k, k). Charge for amplitudes, as a quadratic form."""
     grams: FloatArray
     """Shape (parts, k, k). With each other, of what is left beyond the directions, by
     record."""
@@ -61,6 +100,8 @@ class Shared(NamedTuple):
     """Columns that many calls solve for beside their own."""
 
     own: Products
+    charge: FloatArray
+    """Shape (1 + k, 1 + k). See :meth:`Held.form`."""
     table: FloatArray
     """Shape (parts, n, d + k). The directions and the columns, by record."""
     across: FloatArray
@@ -143,7 +184,7 @@ class Score:
         residual: FloatArray,
         columns: FloatArray,
         freedom: float = 0.0,
-        stiffness: FloatArray | None = None,
+        held: Held | None = None,
         positive: Sequence[int] = (),
         beside: Shared | None = None,
     ) -> Amplitudes:
@@ -158,11 +199,11 @@ class Score:
         columns : ndarray, shape (scored samples, k)
         freedom : float
             Fitted parameters to be charged.
-        stiffness : ndarray, shape (k,), optional
-            Charge for the square of each amplitude (a tolerance's inverse square).
+        held : Held, optional
+            What holds the amplitudes of the columns; by default nothing.
         positive : sequence of int
             Columns whose amplitude may not be negative.
-        beside : Products, optional
+        beside : Shared, optional
             Of further columns, which many calls share: see :meth:`shared`. Their
             amplitudes are not given.
         """
@@ -170,16 +211,21 @@ class Score:
         whole = np.column_stack([residual, columns])
         if not np.isfinite(whole).all():
             return Amplitudes(np.zeros(own), np.inf)  # a model that runs away
-        k = own + (0 if beside is None else len(beside.own.charge))
+        k = own + (0 if beside is None else len(beside.charge) - 1)
         if k == 0:
             return Amplitudes(np.zeros(0), self.of(residual, freedom))
         scale = _sizes(columns)
         whole[:, 1:] /= scale
-        charge = np.zeros(own) if stiffness is None else stiffness / scale**2
-        found = self._products(whole, np.diag(np.concatenate([[0.0], charge])), beside)
+        charge = np.zeros((k + 1, k + 1))
+        if held is not None:
+            charge[: own + 1, : own + 1] = held.form(np.diag(1 / scale))
+        if beside is not None:
+            theirs = np.r_[0, own + 1 : k + 1]
+            charge[np.ix_(theirs, theirs)] += beside.charge
+        found = self._products(whole, beside)
         # Of each record, of the directions and of the charge: one quadratic form each.
         within = found.inside.T @ found.inside
-        forms = np.concatenate([found.grams, [within, found.charge]])
+        forms = np.concatenate([found.grams, [within, charge]])
         forms = forms.reshape(len(forms), -1)
         d = max(self.directions.shape[1], 1)
         full, last = np.eye(1, k + 1)[0], np.inf
@@ -206,7 +252,7 @@ class Score:
             full = np.concatenate([[1.0], -beta])
         return Amplitudes(-best[1][1 : own + 1] / scale, best[0])
 
-    def shared(self, columns: FloatArray, stiffness: FloatArray) -> Shared:
+    def shared(self, columns: FloatArray, held: Held | None = None) -> Shared:
         """Prepare columns that many calls solve for beside their own.
 
         They are replaced by combinations that are at right angles, those that the
@@ -215,11 +261,12 @@ class Score:
         Parameters
         ----------
         columns : ndarray, shape (scored samples, k)
-        stiffness : ndarray, shape (k,)
-            Charge for the square of each amplitude.
+        held : Held, optional
+            What holds the amplitudes of the columns; by default nothing.
         """
         scale = _sizes(columns)
-        columns, charge = columns / scale, np.diag(stiffness / scale**2)
+        held = Held.here(np.zeros(len(scale))) if held is None else held
+        columns, charge = columns / scale, np.diag(held.stiffness / scale**2)
         power = columns.T @ columns / len(columns)
         if not np.isfinite(power).all():
             raise InputError("a number that may be re-tuned makes the model diverge")
@@ -227,15 +274,13 @@ class Score:
         kept = values > APART * values.max(initial=0.0)
         turned = vectors[:, kept] / np.sqrt(values[kept])
         columns = columns @ turned
-        own = self._products(columns, turned.T @ charge @ turned)
+        own = self._products(columns)
         rows = self._by_record(columns)
         across = self._directions.mT @ rows - self._spread @ own.inside
         table = np.concatenate([self._directions, rows], axis=2)
-        return Shared(own, table, across)
+        return Shared(own, held.form(turned / scale[:, None]), table, across)
 
-    def _products(
-        self, columns: FloatArray, charge: FloatArray, beside: Shared | None = None
-    ) -> Products:
+    def _products(self, columns: FloatArray, beside: Shared | None = None) -> Products:
         """Give products of columns with each other and with those beside, by record.
 
         Notes
@@ -253,12 +298,10 @@ class Score:
         half = across @ inside
         grams = rows.mT @ rows - half - half.mT + inside.T @ self._spread @ inside
         if beside is None:
-            return Products(charge, grams, inside)
+            return Products(grams, inside)
         other = beside.own
         mixed = every[:, :, d:] - across @ other.inside - inside.T @ beside.across
-        apart = np.zeros((len(charge), len(other.charge)))
         return Products(
-            _square(charge, apart, other.charge),
             _square(grams, mixed, other.grams),
             np.hstack([inside, other.inside]),
         )

@@ -36,13 +36,13 @@ def state_mapping(state: ModelState) -> Mapped:
     return {
         "hold": state.hold,
         "chain": _chain_mapping(state.chain),
-        "free": [
-            item._asdict() | {"low": _number(item.low), "high": _number(item.high)}
-            for item in state.free
-        ],
+        "free": [_free_mapping(item) for item in state.free],
         "added": [
             item._asdict()
-            | {"replaced": item.replaced and _block_mapping(item.replaced)}
+            | {
+                "replaced": item.replaced and _block_mapping(item.replaced),
+                "was_free": [_free_mapping(free) for free in item.was_free],
+            }
             for item in state.added
         ],
         "beside": [
@@ -146,13 +146,7 @@ class Restorer:
             self.chain(content["chain"]),
             self.records,
             self.sample,
-            tuple(
-                Free(
-                    **item
-                    | {"low": _limit(item["low"], -1), "high": _limit(item["high"])}
-                )
-                for item in content["free"]
-            ),
+            tuple(map(_free, content["free"])),
             tuple(self._added(item) for item in content["added"]),
             hold=hold,
         )
@@ -192,8 +186,18 @@ class Restorer:
             | {
                 "blocks": tuple(content["blocks"]),
                 "replaced": None if old is None else self._block(old),
+                "was_free": tuple(map(_free, content["was_free"])),
             }
         )
+
+
+def _free_mapping(item: Free) -> Mapped:
+    return item._asdict() | {"low": _number(item.low), "high": _number(item.high)}
+
+
+def _free(content: Mapped) -> Free:
+    ends = {"low": _limit(content["low"], -1), "high": _limit(content["high"])}
+    return Free(**content | ends)
 
 
 def _number(value: float) -> float | None:

@@ -17,6 +17,7 @@ from hystbench.blocks.transfer_function import stable
 from hystbench.errors import InputError
 from hystbench.gap.effects.variant import Beside, Refused, Values
 from hystbench.gap.fitting.beside import beside_columns
+from hystbench.gap.fitting.score import Held
 from hystbench.gap.records.scored_samples import ScoredSamples, rms
 from hystbench.gap.simulation.reshape import orthonormal, reshapings
 from hystbench.gap.simulation.shared import shared
@@ -31,13 +32,13 @@ class Free(NamedTuple):
     parameter: str
     element: int | None = None
     tolerance: float | None = None
-    """Expected size of the change; None where nothing is known."""
+    """Expected size of a change from ``given``; None where nothing is known."""
     low: float = -np.inf
     high: float = np.inf
     refused: Refused = ""
     """Which ends of its range make another thing of its effect."""
     given: float | None = None
-    """What a tolerance counts from."""
+    """What it was given as."""
 
 
 class Added(NamedTuple):
@@ -54,6 +55,8 @@ class Added(NamedTuple):
     """The chain's own block that it stands for."""
     smooths: bool = False
     """Whether blocks behind it took a staircase before it came."""
+    was_free: tuple[Free, ...] = ()
+    """Of the numbers of other blocks that it changed, those that were free before."""
 
 
 ROUNDING = 16 * float(np.finfo(float).eps)
@@ -190,27 +193,20 @@ class ModelState:
         return orthonormal(self.reshapings)
 
     @cached_property
-    def change_charge(self) -> FloatArray:
-        """Charge for the square of a change of each free number."""
-        return np.array(
-            [0.0 if f.tolerance is None else f.tolerance**-2.0 for f in self.free]
-        )
-
-    @property
-    def moved_charge(self) -> float:
-        """Charge for how far numbers are from what they were given as.
+    def held(self) -> Held:
+        """What holds free numbers of a tolerance: they are known to be as given, about.
 
         A number that is off by its tolerance costs one, as by one standard error.
         """
-        return sum(
-            ((self.value(free) - free.given) / free.tolerance) ** 2
-            for free in self.free
-            if free.given is not None and free.tolerance is not None
-        )
+        known = [(f.tolerance, f.given) for f in self.free]
+        stiffness = [0.0 if t is None or g is None else t**-2.0 for t, g in known]
+        moved = [0.0 if x.given is None else self.value(x) - x.given for x in self.free]
+        return Held(np.array(stiffness), np.array(moved))
 
-    def change_charges(self, columns: int) -> FloatArray:
-        """Give the charge of so many columns: the free numbers', then none."""
-        return np.pad(self.change_charge, (0, columns - len(self.free)))
+    @cached_property
+    def moved_charge(self) -> float:
+        """Charge for how far numbers are from what they were given as."""
+        return float(self.held.stiffness @ self.held.moved**2)
 
     @cached_property
     def beside_columns(self) -> FloatArray:
@@ -379,7 +375,12 @@ def _moved_effect(item: Added, moved: Mapping[int, int]) -> Added:
         elif not dot:
             values[key] = value
     blocks = tuple(moved[k] for k in item.blocks if k in moved)
-    return item._replace(blocks=blocks, values=values)
+    was_free = tuple(
+        free._replace(block=moved[free.block])
+        for free in item.was_free
+        if free.block in moved
+    )
+    return item._replace(blocks=blocks, values=values, was_free=was_free)
 
 
 def _stack(columns: Sequence[FloatArray], rows: int) -> FloatArray:

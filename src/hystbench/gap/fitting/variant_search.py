@@ -16,7 +16,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects.effect import Declined
 from hystbench.gap.effects.variant import Values, Variant
 from hystbench.gap.fitting.beside import beside_columns
-from hystbench.gap.fitting.score import Amplitudes, Score, Shared
+from hystbench.gap.fitting.score import Amplitudes, Held, Score, Shared
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
 from hystbench.record import FloatArray
@@ -146,7 +146,7 @@ class Attempt:
             residual,
             columns,
             self.freedom,
-            charge,
+            Held.here(charge),
             positive,
             _retuned(self.state, self.score),
         )
@@ -210,7 +210,7 @@ class Attempt:
 def _retuned(state: ModelState, score: Score) -> Shared:
     """Prepare what a model may re-tune, which all its attempts share."""
     columns = np.hstack([state.tangents, state.beside_columns])
-    return score.shared(columns, state.change_charges(columns.shape[1]))
+    return score.shared(columns, state.held.padded(columns.shape[1]))
 
 
 def best_points(look: Attempt) -> list[tuple[float, Point]]:

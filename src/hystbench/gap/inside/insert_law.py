@@ -137,7 +137,7 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
     if law.place == "inside":
         host = host_of(state)
         place = host + 1
-        if law.stands_for and _is_free(state, host):
+        if law.stands_for and _are_free(state, host, "stiffness"):
             left = (1.0 - law.stands_for) * base[host].stiffness
             spring = _in_range(state, host, "stiffness", left)
             base[host] = replace(base[host], stiffness=spring)
@@ -170,12 +170,15 @@ def evened(state: ModelState) -> ModelState:
     law, chain = state.chain[place], list(state.chain)
     number = host_of(state)
     host = chain[number]
-    if not _is_free(state, number):
+    if not isinstance(host, Mechanism):
         return state
-    if isinstance(host, Mechanism) and place < number:
+    if place < number:
         known = any(np.isfinite(x.low) for x in state.free if x.block == number)
+        known = known or not _are_free(state, number, "gain", "stiffness", "damping")
         return state if known else _as_strong(state, place)
-    if not (isinstance(law, Force) and isinstance(host, Mechanism)):
+    if not (
+        isinstance(law, Force) and _are_free(state, number, "stiffness", "damping")
+    ):
         return state
     own = chain[number + 1 :]
     others = tuple(x for x in own if isinstance(x, Force) and x is not law)
@@ -231,9 +234,12 @@ def _in_range(state: ModelState, place: int, name: str, value: float) -> float:
     return value
 
 
-def _is_free(state: ModelState, place: int) -> bool:
-    """Tell whether numbers of a block may be anything, as of one that nobody knows."""
-    return any(free.block == place and free.given is None for free in state.free)
+def _are_free(state: ModelState, place: int, *names: str) -> bool:
+    """Tell whether some of a block's numbers may be anything, as nobody knows them."""
+    return any(
+        free.block == place and free.parameter in names and free.given is None
+        for free in state.free
+    )
 
 
 def host_of(state: ModelState) -> int:

@@ -158,16 +158,14 @@ def with_changed(state: ModelState, effect: str, changed: Changed) -> ModelState
     for place, values in changed.values.items():
         chain[place] = replace(chain[place], **values)
     places = tuple(changed.values)
+    was_free = tuple(x for x in state.free if f"{x.block}.{x.parameter}" in old)
     free = tuple(
-        Free(x.block, x.parameter)
-        if x.given is not None and x.parameter in changed.values.get(x.block, {})
-        else x
+        Free(x.block, x.parameter) if x in was_free and x.given is not None else x
         for x in state.free
     )
     more = tuple(x for x in (Free(*own) for own in changed.free) if x not in free)
-    item = Added(
-        effect, "inside", changed.form, places, old, max(float(len(more)), 1.0)
-    )
+    charge = max(float(len(more)), 1.0)
+    item = Added(effect, "inside", changed.form, places, old, charge, was_free=was_free)
     return replace(
         state, chain=tuple(chain), free=(*free, *more), added=(*state.added, item)
     )
