@@ -178,6 +178,9 @@ DRY = ("friction-force", {"coulomb": 1.0, "presliding_distance": 1.0})
             "presliding_distance",
             "V s",
         ),
+        # With 12 N/A this is a newton, and no ampere.
+        (("mechanism", MASS | {"gain": 12.0}), ("A", "mm"), "coulomb", "gain*A"),
+        (("mechanism", MASS | {"gain": 1.05}), ("N", "mm"), "coulomb", "N"),
         (("impedance", MASS), ("mm", "N"), "coulomb", "N"),
         (("impedance", MASS), ("mm", "N"), "presliding_distance", "mm"),
         (
@@ -201,6 +204,8 @@ def test_numbers_of_a_host_are_in_units_of_its_coordinate():
     velocity = block("mechanism", **MASS, output="velocity")
     stiffness = velocity.parameters()["stiffness"].unit
     assert unit_at(stiffness, (velocity,), 0, "V", "V") == "V/(V s)"
+    driven = block("mechanism", **MASS, gain=12.0)
+    assert unit_at(stiffness, (driven,), 0, "A", "mm") == "gain*A/mm"
     impedance = block("impedance", **MASS)
     stiffness = impedance.parameters()["stiffness"].unit
     assert unit_at(stiffness, (impedance,), 0, "mm", "N") == "N/mm"

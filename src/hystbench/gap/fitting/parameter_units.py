@@ -11,6 +11,7 @@ from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.store import Store
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.thresholds import ABOUT
 
 ORDERS = {"position": 0, "velocity": 1, "acceleration": 2}
 """Derivatives of the coordinate."""
@@ -26,8 +27,9 @@ def unit_at(
 ) -> str:
     """Write the unit of a number of a block in a chain.
 
-    A force inside a mechanism is measured in the unit of what drives it; inside an
-    impedance, in that of the output. Q is the unit of the coordinate.
+    A force inside a mechanism is measured in the unit of what drives it, the input
+    times a gain; inside an impedance, in that of the output. Q is the unit of the
+    coordinate.
 
     Parameters
     ----------
@@ -49,6 +51,9 @@ def unit_at(
         units["U"] = of_output if inside else of_input
     elif isinstance(host, Mechanism) and host.output in ORDERS:
         order, way = ORDERS[host.output], of_output
+        # A gain of one that a fit has re-tuned is one still.
+        if abs(host.gain - 1.0) > ABOUT:
+            units["U"] = f"gain*{of_input}"
     elif isinstance(host, Store):
         order, way = (0, of_output) if host.output == "level" else (1, of_input)
     else:
