@@ -24,6 +24,7 @@ from hystbench.gap.thresholds import (
     LOOSE,
     SCALE,
     SLIGHT,
+    UNNAMED_SHARE,
     WIDE,
 )
 from hystbench.record import Channel, Record
@@ -89,13 +90,14 @@ def test_names_that_leave_most_of_a_slightly_wrong_shape_are_to_be_taken_back():
 
 
 @given(SIZES, SIZES, SIZES, SIZES, st.floats(0, 1e6), st.booleans())
-def test_an_upper_bound_of_the_noise_never_shows_that_there_is_no_gap(
+def test_beside_an_upper_bound_of_the_noise_what_follows_signals_may_be_a_gap(
     before, after, one, other, output, retuned
 ):
     """A floor that may hold the whole gap: all else is judged as with a known one."""
     found = Left(before, after, one, other, output)
-    known = judge(found, False, 0.0, retuned)
-    bound = judge(found, False, 0.0, retuned, floor_is_upper_bound=True)
+    some = Unnamed(1.1 * UNNAMED_SHARE)
+    known = judge(found, False, 0.0, retuned, unnamed=some)
+    bound = judge(found, False, 0.0, retuned, unnamed=some, floor_is_upper_bound=True)
     if known[0] != "no-gap":
         assert bound == known
         return
@@ -103,6 +105,19 @@ def test_an_upper_bound_of_the_noise_never_shows_that_there_is_no_gap(
     assert "only an upper bound" in bound[1]
     for key in ("period_samples", "noise_rms"):
         assert key in bound[1]
+
+
+@pytest.mark.parametrize(
+    ("share", "structured", "word"),
+    [(0.04, 0.0, "no-gap"), (0.05, 0.0, "unnamed"), (0.04, 0.02, "unnamed")],
+)
+def test_noise_whose_size_nobody_told_is_no_gap_if_it_is_little_and_follows_nothing(
+    share, structured, word
+):
+    """Else white noise would be a gap, and noise of another colour none."""
+    found = Left(0.0, 0.0, 0.0, 0.0, 1.0 / share**2)
+    told = Unnamed(structured)
+    assert judge(found, False, unnamed=told, floor_is_upper_bound=True)[0] == word
 
 
 def test_a_reason_tells_harm_and_the_unknown_of_the_black_box_as_they_are():

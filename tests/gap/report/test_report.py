@@ -707,7 +707,8 @@ def test_text_from_outside_is_text(tmp_path):
         (0.0412, 0.0013, "0.0412 ± 0.0013"),
         (-3.0, None, "\u22123"),
         ("slab", None, "slab"),
-        ([1.0, 2.0], [0.1, 0.2], "1 ± 0.1, 2 ± 0.2"),
+        ([1.0, 2.0], [0.1, 2.0], "1 ± 0.1, 2 ± 2"),
+        (0.0018, 0.016, "0.0018 ± 0.016 (not known)"),
     ],
 )
 def test_values_are_rounded_to_their_errors(value, error, shown):

@@ -56,8 +56,11 @@ class Left:
 
     @property
     def may_be_noise(self) -> bool:
-        """Whether what is left may be noise of any colour: as little as that in all."""
-        return self.all_after < (WIDE * SLIGHT) ** 2 * self.output
+        """Whether what is left may be noise of any colour: as little as that in all.
+
+        With the floor, as one that is only an upper bound may hold a gap.
+        """
+        return 1.0 + self.all_after < (WIDE * SLIGHT) ** 2 * self.output
 
     def _slight(self, beyond: float, whole: float) -> bool:
         if whole <= ABOVE_NOISE:

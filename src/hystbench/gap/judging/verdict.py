@@ -23,6 +23,7 @@ from hystbench.gap.thresholds import (
 )
 from hystbench.periods import find_period
 from hystbench.record import Record
+from hystbench.sentences import finely
 
 Verdict = Literal["named", "parameters", "no-gap", "unnamed"]
 
@@ -71,8 +72,8 @@ def judge(
     retuned : bool
         Whether the base had numbers of its own to re-tune.
     floor_is_upper_bound : bool
-        Whether the noise floor is only an upper bound: it may hold the whole gap, so
-        that there is none cannot be claimed from it.
+        Whether the noise floor is only an upper bound: it may hold the whole gap. There
+        is none then only if little is left with it, and that follows no known signal.
     size_follows : bool
         Whether what is left is larger where signals are: it is no noise then.
     unnamed : Unnamed
@@ -104,6 +105,13 @@ def judge(
                 "record"
             )
         if left.slight and floor_is_upper_bound:
+            if left.may_be_noise and not unnamed.too_much(unnamed_share):
+                rms = finely(float(np.sqrt((1.0 + left.all_after) / left.output)))
+                return "no-gap", (
+                    f"no effect pays, and what is left, {rms} of the output's rms, "
+                    "follows no known signal: it is noise, or a slightly wrong shape "
+                    "of the base"
+                )
             return "unnamed", (
                 "no effect pays; the floor is only an upper bound, so that there is "
                 f"no gap cannot be claimed: {mends}"
