@@ -134,6 +134,8 @@ def beside_forces(
     """
     floor = floor_rms**2
     state, gone = without_unknown(named.state, floor_rms, say)
+    if gone:  # what went was judged beside other forms of those that stay
+        state = finished_to_the_end(state, make_score(state, floor_rms, forms=False))
     named = replace(named, state=state, gone=(*named.gone, *gone))
     known = [item for item in among(state.offered).values() if item.name == TONE]
     if not known or TONE in names(state):
