@@ -21,6 +21,7 @@ from hystbench.gap.judging.known_signals import (
 from hystbench.gap.judging.unnamed import (
     SORTS,
     Unnamed,
+    means_differ_by_chance,
     what_is_unnamed,
     winding,
 )
@@ -436,3 +437,17 @@ def test_a_zero_of_each_record_is_no_chance():
     found = what_is_unnamed(start, start, NOISE)
     assert found.too_much()
     assert found.structured > 0.5
+
+
+@pytest.mark.parametrize(("apart", "by_chance"), [(0.0, True), (1.0, False)])
+def test_means_of_slow_noise_are_no_structure(apart, by_chance):
+    """Of noise that decays in twenty samples; and with an offset of each record."""
+    rng = np.random.default_rng(4)
+    given = []
+    for k, one in enumerate(inputs()):
+        slow = rng.standard_normal(len(one)).cumsum()
+        slow -= low_pass(slow, one.dt, 20 * one.dt)
+        y = 12.0 * one.u + slow + apart * (k % 2) * slow.std()
+        given.append(record(one.u, y, name=one.name, dt=one.dt))
+    state = state_of((GAIN,), tuple(given))
+    assert means_differ_by_chance(state) == by_chance

@@ -120,6 +120,13 @@ def test_noise_whose_size_nobody_told_is_no_gap_if_it_is_little_and_follows_noth
     assert judge(found, False, unnamed=told, floor_is_upper_bound=True)[0] == word
 
 
+@pytest.mark.parametrize(("share", "word"), [(0.2, "named"), (0.3, "unnamed")])
+def test_a_name_that_leaves_more_than_a_quarter_does_not_stand(share, word):
+    """Windows of a free mass own paths: nearly all of it counted as owned."""
+    found = Left(1000.0, 1000.0 * share, 1000.0, 1000.0 * share, 1e4)
+    assert judge(found, True, unnamed=Unnamed(0.001, unrelated=0.001))[0] == word
+
+
 def test_a_reason_tells_harm_and_the_unknown_of_the_black_box_as_they_are():
     reasons = [judge(left(90.0), False, box)[1] for box in (-0.3, None, 0.3, 0.0)]
     assert "a black box makes it worse on folds of the fit records" in reasons[0]

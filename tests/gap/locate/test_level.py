@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +26,15 @@ from hystbench.gap.schema import VIEW
 from hystbench.model import load_model
 from hystbench.record import Channel, Record
 from hystbench.schema import check_against_schema
-from tests.gap.oscillators import DAMPING, DT, HERTZ, LEVELS, PERIOD, simulate
+from tests.gap.oscillators import (
+    DAMPING,
+    DT,
+    HERTZ,
+    LEVELS,
+    PERIOD,
+    multisine,
+    simulate,
+)
 
 AIRCRAFT = Path(__file__).parents[3].parent / "shared" / "data" / "f16-ground-vibration"
 CLASSES = {
@@ -77,6 +85,19 @@ def test_what_moves_tells_the_class(oscillators, kind, unit):
     (mode,) = moving(records(oscillators[kind], unit))
     assert mode.kind == CLASSES[kind]
     assert WORDS[mode.kind] in mode.sentence
+
+
+def test_levels_are_in_the_order_of_what_they_move(oscillators):
+    """An input that is strong beside the mode moves it no farther."""
+    compared = records(oscillators["hardening"])
+    first = compared[0].record
+    strong = 3 * LEVELS[0] * np.tile(multisine(low=30.0, high=60.0), 3)
+    compared[0] = replace(compared[0], record=replace(first, u=first.u + strong))
+    (mode,) = moving(compared)
+    assert mode.inputs[0] > mode.inputs[1]
+    assert len(mode.modes) == len(LEVELS)
+    assert mode.kind == "hardening"
+    assert "rises" in mode.sentence
 
 
 @pytest.mark.parametrize("kind", ["linear", "hysteresis"])

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import ClassVar
 
+import numpy as np
+
 from hystbench.blocks import block_class
 from hystbench.blocks.base import Block
 from hystbench.blocks.exponential_curve import ExponentialCurve
-from hystbench.gap.effects.effect import Effect
+from hystbench.gap.effects.effect import Effect, never_at_rest
 from hystbench.gap.effects.law import Law, Passed
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.effects.variant import Values, Variant, logarithmic
@@ -20,7 +22,7 @@ EXPONENTIAL = "exponential-curve"
 class Asymmetry(Effect):
     """An even term behind the hysteresis, before it or beside it, or a field bias.
 
-    Or an exponential curve before a base that holds no hysteresis.
+    Before a base that holds no hysteresis a square or an exponential curve.
     """
 
     name = "asymmetry"
@@ -36,12 +38,12 @@ class Asymmetry(Effect):
         a constant bias, or the square of it that lags (a butterfly).
         """
         for place in (simulation.behind_hysteresis, *places_between_halves(simulation)):
-            yield self._square(simulation, place, "square")
+            yield from self._squares(simulation, place, "square")
         known, loop = simulation.hysteresis, simulation.loop
         start = loop if known is None else known
         if start is not None:
             yield self._bias(simulation, start)
-            yield self._square(simulation, start, "square of the field")
+            yield from self._squares(simulation, start, "square of the field")
         if known is not None:
             yield self._butterfly(simulation, known)
         if loop is None:
@@ -58,9 +60,25 @@ class Asymmetry(Effect):
             block = ExponentialCurve(curvature=size / passed.given)
             yield Law("exponential", block, ("curvature",), "before")
 
-    def _square(self, simulation: Simulation, place: int, form: str) -> Variant:
+    def _squares(
+        self, simulation: Simulation, place: int, form: str
+    ) -> Iterator[Variant]:
+        """Offer the square, and of a signal with a bias one about a point of its range.
+
+        About zero it would change the gain and the offset at the bias.
+        """
+        middle, half = simulation.middle_and_half(place)
         unit = {"coefficient": 1e-3 / simulation.largest(place)}
-        return self.inserted(simulation, place, form=form, unit=unit)
+        yield self.inserted(simulation, place, form=form, unit=unit)
+        if never_at_rest(simulation.at(place)):
+            yield self.inserted(
+                simulation,
+                place,
+                form=f"{form} about a bias",
+                grids={"about": np.array([middle])},
+                unit=unit,
+                limits={"about": (middle - half, middle + half)},
+            )
 
     def _exponential(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer a curve that grows steeper, and one that grows flatter."""

@@ -12,6 +12,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.wrapping import PlayBlock
 from hystbench.envelope import Envelope
 from hystbench.gap.effects.effect import Declined, Effect
+from hystbench.gap.effects.places import has_dynamics, only_lags
 from hystbench.gap.effects.variant import Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
@@ -31,7 +32,9 @@ DAHL, ELASTIC = 0.01, 1.0
 
 
 class Hysteresis(Effect):
-    """Play operators or a loop of Bouc and Wen before everything else.
+    """Play operators or a loop of Bouc and Wen before everything else, or behind it.
+
+    What is heated through a lag has its loop behind that.
 
     Plain plays lie beside a linear path: the chain has its gain already. Their weights
     may have any sign, as may that of the loop. Generalized plays have envelopes, from
@@ -51,9 +54,13 @@ class Hysteresis(Effect):
             raise Declined("the simulator has a hysteresis already")
         if simulation.middle_and_half(0)[1] == 0.0:
             raise Declined("the input does not move")
-        yield self._generalized(simulation)
-        yield self._plays(simulation)
-        yield self._bouc_wen(simulation)
+        places = [0]
+        if has_dynamics(simulation) and only_lags(simulation):
+            places.append(len(simulation.chain))
+        for place in places:
+            yield self._generalized(simulation, place)
+            yield self._plays(simulation, place)
+            yield self._bouc_wen(simulation, place)
 
     def without_itself(self, block: Block) -> Block | None:
         """Let all plays be that of the least threshold: a curve, without a loop."""
@@ -63,12 +70,12 @@ class Hysteresis(Effect):
         together = (sum(plays.weights), *(0.0 for _ in plays.weights[1:]))
         return cast(Block, replace(plays, weights=together))
 
-    def _plays(self, simulation: Simulation) -> Variant:
+    def _plays(self, simulation: Simulation, place: int) -> Variant:
         """Plays beside a linear path.
 
         The law's cubes stay zero: with them a search takes five times as long.
         """
-        _, half = simulation.middle_and_half(0)
+        _, half = simulation.middle_and_half(place)
         thresholds = [float(x) for x in half * np.arange(OPERATORS) / OPERATORS]
         names = [f"weight {k}" for k in range(OPERATORS)]
 
@@ -78,22 +85,22 @@ class Hysteresis(Effect):
 
         return self.inserted(
             simulation,
-            0,
+            place,
             values,
             law=PLAYS,
-            form=FORM,
+            form=f"{FORM} behind" if place else FORM,
             unit=dict.fromkeys(names, 1e-3),
             free=("weights",),
         )
 
-    def _bouc_wen(self, simulation: Simulation) -> Variant:
+    def _bouc_wen(self, simulation: Simulation, place: int) -> Variant:
         """Bouc and Wen's loop beside a linear path: no few plays are one."""
-        _, half = simulation.middle_and_half(0)
+        _, half = simulation.middle_and_half(place)
         return self.inserted(
             simulation,
-            0,
+            place,
             law=BOUC_WEN,
-            form="Bouc-Wen",
+            form="Bouc-Wen behind" if place else "Bouc-Wen",
             grids={
                 "yield_distance": half * logarithmic(0.1, 3.0),
                 "sharing": SHARINGS,
@@ -106,8 +113,8 @@ class Hysteresis(Effect):
             refused={"sharing": "upper"},
         )
 
-    def _generalized(self, simulation: Simulation) -> Variant:
-        middle, half = simulation.middle_and_half(0)
+    def _generalized(self, simulation: Simulation, place: int) -> Variant:
+        middle, half = simulation.middle_and_half(place)
         thresholds = [float(x) for x in half * np.arange(OPERATORS) / OPERATORS]
         slope = BEND / half
         curve = 1 / slope, slope, -slope * middle, middle  # of slope one in the middle
@@ -125,9 +132,9 @@ class Hysteresis(Effect):
 
         found = self.inserted(
             simulation,
-            0,
+            place,
             values,
-            form="generalized plays",
+            form="generalized plays behind" if place else "generalized plays",
             unit=dict.fromkeys(names, 1e-3),
             positive=tuple(names),
             free=("weights", "envelope"),

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import LinearBlock
+from hystbench.blocks.state_space import StateSpace
 from hystbench.gap.simulation.simulation import Simulation
 
 TRANSFER_FUNCTION = "transfer-function"
 INSIDE = "inside the base"
 """Place of an effect between two transfer functions."""
+REAL, TIMES = 1e-6, 40
+"""What a pole's imaginary part, or an overshoot, may be; and when it is looked for."""
 
 
 def places_between_halves(simulation: Simulation) -> list[int]:
@@ -21,6 +26,39 @@ def places_between_halves(simulation: Simulation) -> list[int]:
         k for k, item in enumerate(simulation.chain) if item.name == TRANSFER_FUNCTION
     ]
     return linear[1:]
+
+
+def has_dynamics(simulation: Simulation) -> bool:
+    """Tell whether a chain holds linear dynamics, so that its order counts."""
+    return any(isinstance(block, LinearBlock) for block in simulation.chain)
+
+
+def only_lags(simulation: Simulation) -> bool:
+    """Tell whether all linear dynamics of a chain come to rest without overshoot.
+
+    So heat and current do. What has a loop may stand behind them; behind the motion of
+    a mass, or the force of a damper, it is another effect.
+    """
+    if any(record.decay_s is not None for record in simulation.records):
+        return False  # windows of a free mass
+    linear = (x for x in simulation.chain if isinstance(x, LinearBlock))
+    return all(_comes_to_rest(block.continuous()) for block in linear)
+
+
+def _comes_to_rest(system: StateSpace) -> bool:
+    """Tell whether a step response only grows, or only falls, to where it ends."""
+    from scipy.linalg import expm  # late: few chains are looked at
+
+    poles = np.linalg.eigvals(system.a)
+    if not len(poles):
+        return True
+    if np.any(np.abs(poles.imag) > REAL * np.abs(poles.real)) or poles.real.max() >= 0:
+        return False
+    rates = -poles.real
+    times = np.geomspace(0.01 / rates.max(), 10 / rates.min(), TIMES)
+    impulse = [system.c @ expm(system.a * t) @ system.b for t in times]
+    way = np.sign(system.static_gain) * np.array([system.d, *impulse])
+    return bool(np.all(way >= -REAL * np.abs(way).max()))
 
 
 def places_in_drive(simulation: Simulation, linear: bool = False) -> list[int]:

@@ -18,6 +18,9 @@ from hystbench.gap.simulation.shared import Same
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray
 
+LEAST = 1e-300
+"""Of a floor: the score has its logarithm."""
+
 
 def make_score(state: ModelState, floor_rms: float, forms: bool = True) -> Score:
     """Give the score for a model: what could be wrong in its shape is spanned anew.
@@ -33,6 +36,26 @@ def make_score(state: ModelState, floor_rms: float, forms: bool = True) -> Score
     shape = state.wrong_shape
     directions = directions_of(shape, state) if forms else shape
     return Score(state.sample, directions, floor_rms**2)
+
+
+def score_of_numbers(state: ModelState, floor_rms: float, shape: bool) -> Score:
+    """Give the score by which the numbers of a model are found in the end.
+
+    It is flat below its floor. Noise that is an upper bound may lie above what the
+    model leaves, so the floor is at most half of what it leaves of any record: no few
+    numbers take more of noise away.
+
+    Parameters
+    ----------
+    state : ModelState
+        With all that was named.
+    floor_rms : float
+    shape : bool
+        Whether what a wrong shape could do is spared.
+    """
+    directions = state.wrong_shape if shape else state.wrong_shape[:, :0]
+    floor = min(floor_rms**2, float(np.min(state.squares)) / 2)
+    return Score(state.sample, directions, max(floor, LEAST))
 
 
 def directions_of(wrong_shape: FloatArray, state: ModelState) -> FloatArray:

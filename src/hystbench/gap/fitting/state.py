@@ -249,13 +249,17 @@ class ModelState:
         """
         return (other.power(floor) - self.power(floor)) / gap
 
-    def power(self, floor: float) -> float:
-        """Mean square of the residual above the floor, of the records alike."""
+    @cached_property
+    def squares(self) -> FloatArray:
+        """Mean squares of what it leaves, by record, with what lies beside it."""
         rest = self.residual
         if self.beside:
             rest = rest - self.beside_columns @ self.beside_amplitudes
-        squares = [float(np.mean(rest[part] ** 2)) for part in self.sample.slices]
-        return float(np.mean(squares)) - floor
+        return np.array([np.mean(rest[part] ** 2) for part in self.sample.slices])
+
+    def power(self, floor: float) -> float:
+        """Mean square of the residual above the floor, of the records alike."""
+        return float(np.mean(self.squares)) - floor
 
     @cached_property
     def steps(self) -> tuple[float, ...]:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+from scipy.special import fdtrc
 
 from hystbench.gap.effects.drift import FORMS, WINDING, degree
 from hystbench.gap.fitting.state import ModelState
@@ -37,6 +38,9 @@ from hystbench.record import FloatArray, Record
 
 SURROGATES = round(1 / BY_CHANCE) - 1
 """What follows nothing explains more than all of them by chance alone."""
+
+STRETCHES = 10
+"""Of a record, whose means tell how much that of the whole may differ by chance."""
 
 SORTS = {
     "strength": "its strength changes with time or between records, perhaps with level",
@@ -207,6 +211,8 @@ def what_is_unnamed(
     if not drifts:
         every = [at[name] for name in own], [at[name] for name in (*own, *generic)]
         chance = min(_by_chance(state, table, columns, *every) / power, structured)
+        if chance > 0 and means_differ_by_chance(state):
+            chance = structured
         found = replace(
             found,
             structured=structured - chance,
@@ -269,6 +275,30 @@ def _by_chance(
         stays = table.of_another(columns, output).explained(every).noise
         return max(structured, 0.0) if stays > MOST * np.mean(output**2) else 0.0
     return 0.0
+
+
+def means_differ_by_chance(state: ModelState) -> bool:
+    """Tell whether the means of records differ no more than those of their stretches.
+
+    Of noise that is slow the mean of a record is not zero, and no surrogate moves it.
+    An F test at 5 % holds the variance between records against that between the
+    stretches of each: batch means [1]_.
+
+    References
+    ----------
+    .. [1] A. M. Law, Simulation Modeling and Analysis, 5th edition, McGraw-Hill, 2015,
+       chapter 9.
+    """
+    records = [state.residual[part] for part in state.sample.slices]
+    if len(records) < 2:
+        return True  # one constant for all is not counted
+    each = np.array(
+        [[np.mean(x) for x in np.array_split(own, STRETCHES)] for own in records]
+    )
+    between = STRETCHES * float(np.var(each.mean(axis=1), ddof=1))
+    within = float(np.mean(np.var(each, axis=1, ddof=1)))
+    freedom = len(records) - 1, len(records) * (STRETCHES - 1)
+    return within == 0.0 or float(fdtrc(*freedom, between / within)) > BY_CHANCE
 
 
 def _moved(state: ModelState, signal: FloatArray, k: int) -> FloatArray:

@@ -140,6 +140,8 @@ def judge(
         return "unnamed", why
     if much and unnamed.trust(unnamed_share, of_base=True) < MOST:
         return "unnamed", unnamed.reason(unnamed_share)  # likelier wrong than right
+    if left.share > LOOSE and not left.slight:
+        return "unnamed", f"too much stays for a name: {left.sentence}"
     if unnamed.stays > LOOSE:
         return "unnamed", (
             f"too much stays for a name: {left.sentence}, and most of it follows no "

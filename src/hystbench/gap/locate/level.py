@@ -82,10 +82,13 @@ of the motion: half of it of a cubic spring, next to all of it of a clearance.""
 
 @dataclass(frozen=True)
 class Moving:
-    """A mode at several levels of the input."""
+    """A mode at several levels of the input, by the largest output, the least first.
+
+    A sweep moves a mode farther than noise of the same rms does.
+    """
 
     inputs: FloatArray
-    """Shape (levels,). RMS of the input, rising."""
+    """Shape (levels,). RMS of the input."""
     modes: tuple[Mode, ...]
     integrals: int
     """How often the output has to be integrated for a position."""
@@ -117,15 +120,18 @@ class Moving:
 
     @property
     def moved(self) -> tuple[int, int, int]:
-        """Whether frequency, damping and gain grow (1), fall (-1) or stay (0)."""
+        """Whether frequency, damping and gain grow (1), fall (-1) or stay (0).
+
+        What is above the first level's at one level and below it at another does
+        neither.
+        """
         values, errors = self.told
         # A value that noise made negative is next to nothing.
         size = np.log(np.maximum(values, 1e-3 * np.max(np.abs(values), axis=0)))
         away = (size - size[0]) / np.hypot(errors, errors[0])
         away[0] = 0.0
-        most = away[np.argmax(np.abs(away), axis=0), range(3)]
-        ways = np.where(np.abs(most) > SURE, np.sign(most), 0.0).astype(int)
-        frequency, damping, gain = ways.tolist()
+        grows, falls = np.any(away > SURE, axis=0), np.any(away < -SURE, axis=0)
+        frequency, damping, gain = (grows.astype(int) - falls.astype(int)).tolist()
         return frequency, damping, gain
 
     @property
@@ -168,11 +174,13 @@ class Moving:
         first, last = self.numbers[0], self.numbers[-1]
         errors = np.hypot(self.errors[0], self.errors[-1])
         frequency, damping, gain = self.moved
-        change = 100 * (last[0] / first[0] - 1)
-        by = _with_error(abs(change), 100 * float(errors[0]))
+        changes = self.numbers[:, 0] / first[0] - 1
+        most = int(np.argmax(np.abs(changes)))
+        change = 100 * float(changes[most])
+        by = _with_error(abs(change), 100 * float(np.hypot(*self.errors[[0, most], 0])))
         moved = f"stays (it moves by {by} %)"
         if frequency:
-            moved = f"{'rises' if change > 0 else 'falls'} by {by} %"
+            moved = f"{'rises' if frequency > 0 else 'falls'} by {by} %"
         low, *_, high = (
             _with_error(100 * mode.power_damping, 100 * mode.power_damping * error)
             for mode, error in zip(self.modes, self.errors[:, 2], strict=True)
@@ -227,6 +235,7 @@ def take_levels(samples: ViewSamples) -> tuple[Moving, ...]:
         return ()
     lines = [[lines_of(item) for item in level] for level in levels]
     inputs = np.array([np.mean([_rms(one) for one in level]) for level in levels])
+    peaks = [max(float(np.ptp(one.record.y)) for one in level) for level in levels]
     measured = quantity_of("output", samples.units[1])
     integrals = INTEGRALS.get(measured, 1)
     moving: list[Moving] = []
@@ -236,7 +245,7 @@ def take_levels(samples: ViewSamples) -> tuple[Moving, ...]:
     for mode, end in sorted(ends, key=lambda item: item[0].left / item[0].held):
         fits = dict(_followed(lines, end, mode, integrals))
         if len(fits) >= FEWEST:
-            places = sorted(fits)
+            places = sorted(fits, key=peaks.__getitem__)
             modes = tuple(fits[place] for place in places)
             one = Moving(inputs[places], modes, integrals, len(levels))
             if not any(_same(one, other) for other in moving):
@@ -259,7 +268,7 @@ def level(samples: ViewSamples) -> View | None:
     moving = take_levels(samples)
     if not moving:
         return None
-    inputs = moving[0].inputs
+    inputs = np.sort(moving[0].inputs)
     total = len(samples.compared)
     explained = sum(m.missed - m.left for each in moving for m in each.modes) / total
     freedom = NUMBERS * sum(len(each.modes) for each in moving)
@@ -321,10 +330,12 @@ def picture_of(moving: Sequence[Moving], unit: str) -> ViewPicture:
     """Draw how modes move with the input's level: frequency, damping, gain."""
     frequency, damping, gain = [], [], []
     for (role, by_width), mode in zip(ROLES, moving, strict=False):
-        values, errors = mode.numbers, mode.errors * mode.numbers
-        first, label = values[0], f"{values[0, 0]:.3g} Hz: {mode.kind}"
+        first, label = mode.numbers[0], f"{mode.numbers[0, 0]:.3g} Hz: {mode.kind}"
+        order = np.argsort(mode.inputs)
+        values = mode.numbers[order]
+        errors = mode.errors[order] * values
         change, size = 100 * (values[:, 0] / first[0] - 1), 100 / first[0]
-        x = mode.inputs
+        x = mode.inputs[order]
         frequency.append(series(role, x, change, label, size * errors[:, 0]))
         damping += [
             series(role, x, 100 * values[:, 2], "", 100 * errors[:, 2]),
@@ -380,6 +391,6 @@ def _followed(
 
 def _same(one: Moving, other: Moving) -> bool:
     """Tell whether two starts led to one mode: they lie within its width anywhere."""
-    place = np.searchsorted(other.inputs, one.inputs).clip(max=len(other.inputs) - 1)
+    place = np.argmin(np.abs(other.inputs[:, None] - one.inputs), axis=0)
     frequency, damping = other.numbers[place, :2].T
     return bool(np.any(np.abs(one.numbers[:, 0] - frequency) < damping * frequency))

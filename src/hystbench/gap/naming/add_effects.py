@@ -10,11 +10,16 @@ from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.effects import among
 from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
-from hystbench.gap.fitting.model_score import above_floor, make_score, score_of
+from hystbench.gap.fitting.model_score import (
+    above_floor,
+    make_score,
+    score_of,
+    score_of_numbers,
+)
 from hystbench.gap.fitting.refit import finished, finished_to_the_end, ready
 from hystbench.gap.fitting.scan import scanned
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.state import MANY, ModelState
 from hystbench.gap.naming.forecast_calls import foretell, foretell_rest
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.naming.removal import (
@@ -33,8 +38,8 @@ from hystbench.gap.thresholds import (
     UNNAMED_SHARE,
 )
 
-TONE = "mains-pickup"
-"""The effect that is a tone beside all others."""
+BESIDE = ("mains-pickup", "drift")
+"""Effects that the input does not explain: they are beside all others."""
 LITTLE = "what the effects leave of a slightly wrong shape is most of it"
 
 
@@ -91,6 +96,8 @@ def settled(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Name
     ):
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
         found = _path(start, floor_rms, say, found.share, shape_first=True)
+    if not cut_short:
+        found = _of_few_numbers(found, start, floor_rms, say)
     state, gone = without_what_goes(found.state, floor_rms, found.gap, say)
     rounds = found.rounds
     while not cut_short and len(state.added) > 1:
@@ -106,11 +113,36 @@ def settled(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Name
     if state.added:
         # Its own numbers are found without what other forms of it could do, and those
         # of another shape of the hysteresis without sparing what a shape could do.
-        score = make_score(state, floor_rms, forms=False)
-        if SHAPE in names(state):
-            score = Score.plain(state.sample, floor_rms**2)
+        score = score_of_numbers(state, floor_rms, SHAPE not in names(state))
         state = finished_to_the_end(state, score)
     return Named(state, rounds, gone)
+
+
+def _of_few_numbers(
+    found: SoFar, start: ModelState, floor_rms: float, say: Say
+) -> SoFar:
+    """Give another path where one effect of many numbers leaves more than noise.
+
+    So many numbers do much of what several laws of few do together. These are named if
+    they score better, each charged as a further effect is.
+    """
+    score = make_score(start, floor_rms, forms=False)
+    many = [item for item in found.state.added if item.charge > MANY]
+    alone = many and len(found.state.added) == 1
+    if not alone or above_floor(found.state, score) < FURTHER:
+        return found
+    (name,) = names(found.state)
+    say(f"{name} has many numbers and leaves more than noise: naming without it")
+    others = tuple(x for x in among(start.offered) if x != name)
+    other = _path(replace(start, offered=others), floor_rms, say, found.share)
+    other = replace(other, state=replace(other.state, offered=start.offered))
+    # A path ends with numbers beside which other forms were allowed for.
+    state, value = finished(other.state, score)
+    value += FURTHER * max(len(state.added) - 1, 0)
+    if value < finished(found.state, score)[1]:
+        return replace(other, state=state)
+    say(f"that scores no better: {name} stays")
+    return found
 
 
 def beside_forces(
@@ -137,8 +169,12 @@ def beside_forces(
     if gone:  # what went was judged beside other forms of those that stay
         state = finished_to_the_end(state, make_score(state, floor_rms, forms=False))
     named = replace(named, state=state, gone=(*named.gone, *gone))
-    known = [item for item in among(state.offered).values() if item.name == TONE]
-    if not known or TONE in names(state):
+    known = [
+        item
+        for item in among(state.offered).values()
+        if item.name in BESIDE and item.name not in names(state)
+    ]
+    if not known:
         return named
     score = make_score(state, floor_rms)
     ranking = rank(state, score, known, needs=FURTHER)
@@ -151,7 +187,7 @@ def beside_forces(
     without = replace(first.state, beside=()).power(floor)
     if without - first.state.power(floor) <= share * gap:
         return named
-    say(f"inside: beside it {TONE}: gain {first.gain:.1f}")
+    say(f"inside: beside it {first.effect}: gain {first.gain:.1f}")
     one = Round(state, first.score + first.gain, ranking, True)
     # Forces were fitted with the tone in what is left.
     state, _ = finished(first.state, make_score(first.state, floor_rms, forms=False))
