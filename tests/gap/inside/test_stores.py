@@ -9,6 +9,7 @@ import pytest
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.store import Store
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.bases.load import load_base
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Filled
 from hystbench.gap.fitting.edit_chain import without_effect
@@ -25,10 +26,12 @@ from hystbench.gap.inside.store_hosts import (
     store_hosts,
 )
 from hystbench.gap.inside.stores import how_it_fills, stores
+from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 from tests.gap.inside_host import search
+from tests.gap.searched import search as decided
 
 DT, COUNT, FINE = 4.0, 800, 80
 NOISE = 0.02
@@ -349,3 +352,26 @@ def _ends(value):
     """Give the tolerance of a number, and the ends of its range."""
     size = 0.1 * abs(value)
     return size, value - size, value + size
+
+
+def test_a_drift_is_told_beside_the_outflow_of_a_tank():
+    """A level sensor that drifts by a few percent had made the outflow unnamed."""
+    rng = np.random.default_rng(5)
+    made = []
+    for k in range(3):
+        u = np.repeat(rng.uniform(1.0, 4.0, COUNT // 40), 40)
+        level, now = np.empty(COUNT), 5.0
+        for i, volts in enumerate(u):
+            level[i] = now
+            for _ in range(20):
+                now += 0.05 * (0.5 * volts - 0.5 * np.sqrt(now))
+        way = np.linspace(-1.0, 1.0, COUNT)
+        drift = 0.06 * level.std() * ((-1) ** k * way + 0.5 * way**2)
+        y = level + drift + 0.01 * level.std() * rng.standard_normal(COUNT)
+        made.append(Record(f"run-{k}", 1.0, u, y, *CHANNELS, "measured", "fit"))
+    evidence = Evidence("tank", tuple(made), (), "zero-order")
+    base, _ = load_base("linear", evidence)
+    level = Quantities(output="level")
+    content = decided("tank", made, base, "zero-order", quantities=level).content
+    assert content["verdict"] == "named"
+    assert {x["name"] for x in content["effects"]} == {"outflow", "drift"}

@@ -214,7 +214,7 @@ def withdrawal(content: Mapping[str, Any]) -> dict[str, Any] | None:
             for item in content["records"]
         ],
         "why": f"the hold-out records take {what} back: {shown}, so that the model "
-        "stays the base as it was given",
+        "stays the base",
     }
 
 

@@ -127,7 +127,7 @@ def _of_few_numbers(
     they score better, each charged as a further effect is.
     """
     score = make_score(start, floor_rms, forms=False)
-    many = [item for item in found.state.added if item.charge > MANY]
+    many = [x for x in found.state.added if x.blocks and x.charge > MANY]
     alone = many and len(found.state.added) == 1
     if not alone or above_floor(found.state, score) < FURTHER:
         return found
