@@ -186,14 +186,15 @@ def _judged(
     state = named.state
     box = black_box(before, floor.rms)
     unnamed = what_is_unnamed(start, state, floor.rms, share)
-    seems_new = left.is_new or unnamed.follows_nothing(share)
+    bound = floor.method == "upper-bound"
+    may_be_noise = bound or left.is_new or unnamed.follows_nothing(share)
     verdict, why = judge(
         left,
         bool(state.added),
         box.explained_on_folds,
         bool(start.free),
-        floor.method == "upper-bound",
-        not state.added and seems_new and size_follows(state),
+        bound,
+        not state.added and may_be_noise and size_follows(state),
         unnamed,
         share,
         what_mends(start.records),

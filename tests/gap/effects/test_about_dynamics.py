@@ -73,11 +73,15 @@ def test_a_play_before_the_dynamics_is_a_backlash():
 
 
 @pytest.mark.parametrize(
-    "made", [lambda u: delayed(loop(u)), lambda u: loop(delayed(u))]
+    ("made", "position"),
+    [(lambda u: delayed(loop(u)), 0), (lambda u: loop(delayed(u)), 1)],
 )
-def test_a_loop_is_found_before_the_dynamics_and_behind(made):
+def test_a_loop_is_found_before_the_dynamics_and_behind(made, position):
     content = named(made)
     assert [effect["name"] for effect in content["effects"]] == ["hysteresis"]
+    variants = content["ranking"][0]["variants"]
+    best = min(variants, key=lambda variant: variant["score"])
+    assert best["position"] == position
     assert content["fit"]["explained"] > 0.99
 
 

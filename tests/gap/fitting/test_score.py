@@ -166,7 +166,10 @@ def test_columns_that_many_calls_share_are_held_as_those_of_one(seed):
     rng = np.random.default_rng(seed)
     lengths, basis, _, _, residual = problem(seed)
     score = Score(sample_of(lengths), basis, 1e-6)
-    terms = rng.standard_normal((len(residual), 4))
+    # In metres a micrometre is little: no unit may change what is told apart.
+    unit = 10.0 ** rng.uniform(-8, 3)
+    terms, residual = unit * rng.standard_normal((len(residual), 4)), unit * residual
+    score = Score(sample_of(lengths), basis, 1e-6 * unit**2)
     held = Held(rng.uniform(0, 10, 4), rng.standard_normal(4))
     own, theirs = (Held(*(x[part] for x in held)) for part in (slice(2), slice(2, 4)))
     whole = score.amplitudes(residual, terms, 1.0, held)
@@ -174,6 +177,15 @@ def test_columns_that_many_calls_share_are_held_as_those_of_one(seed):
     found = score.amplitudes(residual, terms[:, :2], 1.0, own, beside=beside)
     assert found.score == pytest.approx(whole.score)
     assert found.values == pytest.approx(whole.values[:2], rel=1e-4, abs=1e-7)
+
+
+def test_a_step_from_here_is_charged_beside_the_distance_from_a_place():
+    """s (x + m)^2 + d x^2, less what it is at best."""
+    s, m, d, x = 3.0, 0.7, 2.0, np.linspace(-2, 2, 9)
+    both = Held(np.array([s]), np.array([m])).in_steps(np.array([d]))
+    charge = both.stiffness * (both.moved + x) ** 2
+    whole = s * (x + m) ** 2 + d * x**2
+    np.testing.assert_allclose(charge - charge[0], whole - whole[0])
 
 
 @given(SEEDS)

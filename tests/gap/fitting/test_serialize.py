@@ -40,7 +40,7 @@ def test_what_is_known_of_a_number_comes_back_from_its_file(tiny):
     model, state, _ = tiny
     place = len(state.chain) - 1
     name = next(iter(state.chain[place].to_mapping()))
-    free = (Free(place, name, None, 0.1, given=1.5, refused="low"),)
+    free = (Free(place, name, None, 0.1, given=1.5, refused="upper"),)
     item = Added("outflow", "inside", "root", (place,), {}, 1.0, was_free=free)
     known = replace(state, free=free, added=(item,))
     kept = json.loads(json.dumps(state_mapping(known), allow_nan=False))

@@ -63,6 +63,13 @@ def test_a_cubic_spring_on_a_sine_begins_as_its_describing_function():
     assert begun.chain[0].damping == pytest.approx(20.0, rel=0.05)
 
 
+def test_only_a_number_that_is_free_is_evened():
+    law = Law("cubic", Stiffness(quadratic=0.0, cubic=1e5), ("cubic",))
+    host = replace(state(periodic("rest", 1)), free=(Free(0, "damping"),))
+    begun = evened(with_law(host, "stiffness-hardening", law)).chain[0]
+    assert begun.stiffness == MACHINE.stiffness
+
+
 def test_a_friction_takes_no_more_than_there_is():
     record = periodic("rest", 1)
     law = Law("dry", FrictionForce(coulomb=1e5, presliding_distance=1e-6), ("coulomb",))

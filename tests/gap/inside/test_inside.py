@@ -534,7 +534,7 @@ def test_a_curve_before_a_mass_leaves_what_drives_all_as_strong():
     beside = OtherModes(numerator=(0.5,), denominator=(1.0, 1.0, 400.0), hold="linear")
     records = (record("run", u, np.zeros(1600), ("N", "m")),)
     state = ModelState((host, force, beside), records, ScoredSamples.of(records))
-    state = replace(state, free=(Free(0, "stiffness"),))
+    state = replace(state, free=(Free(0, "mass"), Free(0, "stiffness")))
     strong = ExponentialCurve(curvature=0.8)
     law = Law("exponential", strong, ("curvature",), "before")
     before = state.residual.std()

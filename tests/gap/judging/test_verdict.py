@@ -116,15 +116,21 @@ def test_noise_whose_size_nobody_told_is_no_gap_if_it_is_little_and_follows_noth
 ):
     """Else white noise would be a gap, and noise of another colour none."""
     found = Left(0.0, 0.0, 0.0, 0.0, 1.0 / share**2)
-    told = Unnamed(structured)
-    assert judge(found, False, unnamed=told, floor_is_upper_bound=True)[0] == word
+    given = {"unnamed": Unnamed(structured), "floor_is_upper_bound": True}
+    assert judge(found, False, **given)[0] == word
+    # Noise of a sensor has one size.
+    assert judge(found, False, size_follows=True, **given)[0] == "unnamed"
 
 
 @pytest.mark.parametrize(("share", "word"), [(0.2, "named"), (0.3, "unnamed")])
 def test_a_name_that_leaves_more_than_a_quarter_does_not_stand(share, word):
     """Windows of a free mass own paths: nearly all of it counted as owned."""
+    some = Unnamed(0.001, unrelated=0.001)
     found = Left(1000.0, 1000.0 * share, 1000.0, 1000.0 * share, 1e4)
-    assert judge(found, True, unnamed=Unnamed(0.001, unrelated=0.001))[0] == word
+    assert judge(found, True, unnamed=some)[0] == word
+    # A wrong base leaves much of the whole; of the part beyond it little stays.
+    beyond = Left(1000.0, 100.0, 5000.0, 5000.0 * share, 1e4)
+    assert judge(beyond, True, unnamed=some)[0] == "named"
 
 
 def test_a_reason_tells_harm_and_the_unknown_of_the_black_box_as_they_are():

@@ -708,7 +708,7 @@ def test_text_from_outside_is_text(tmp_path):
         (-3.0, None, "\u22123"),
         ("slab", None, "slab"),
         ([1.0, 2.0], [0.1, 2.0], "1 ± 0.1, 2 ± 2"),
-        (0.0018, 0.016, "0.0018 ± 0.016 (not known)"),
+        (0.0018, 0.016, "0.0018 ± 0.016 (may be zero)"),
     ],
 )
 def test_values_are_rounded_to_their_errors(value, error, shown):

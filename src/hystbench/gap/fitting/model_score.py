@@ -11,15 +11,15 @@ from functools import lru_cache
 import numpy as np
 
 from hystbench.gap.fitting.score import Score, Shared
-from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.state import ROUNDING, ModelState
 from hystbench.gap.records.scored_samples import rms
 from hystbench.gap.simulation.reshape import orthonormal
 from hystbench.gap.simulation.shared import Same
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray
 
-LEAST = 1e-300
-"""Of a floor: the score has its logarithm."""
+LEAST = float(np.finfo(float).tiny)
+"""Of a floor, where the output is zero: the score has its logarithm."""
 
 
 def make_score(state: ModelState, floor_rms: float, forms: bool = True) -> Score:
@@ -55,7 +55,8 @@ def score_of_numbers(state: ModelState, floor_rms: float, shape: bool) -> Score:
     """
     directions = state.wrong_shape if shape else state.wrong_shape[:, :0]
     floor = min(floor_rms**2, float(np.min(state.squares)) / 2)
-    return Score(state.sample, directions, max(floor, LEAST))
+    rounded = (ROUNDING * rms(state.measured)) ** 2
+    return Score(state.sample, directions, max(floor, rounded, LEAST))
 
 
 def directions_of(wrong_shape: FloatArray, state: ModelState) -> FloatArray:

@@ -270,9 +270,12 @@ class Score:
         power = columns.T @ columns / len(columns)
         if not np.isfinite(power).all():
             raise InputError("a number that may be re-tuned makes the model diverge")
-        values, vectors = np.linalg.eigh(power + charge)
+        whole = power + charge
+        # A number that is held fast must not make those beside it look like nothing.
+        size = np.sqrt(np.maximum(whole.diagonal(), APART))
+        values, vectors = np.linalg.eigh(whole / np.outer(size, size))
         kept = values > APART * values.max(initial=0.0)
-        turned = vectors[:, kept] / np.sqrt(values[kept])
+        turned = vectors[:, kept] / np.sqrt(values[kept]) / size[:, None]
         columns = columns @ turned
         own = self._products(columns)
         rows = self._by_record(columns)

@@ -137,7 +137,7 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
     if law.place == "inside":
         host = host_of(state)
         place = host + 1
-        if law.stands_for and _are_free(state, host, "stiffness"):
+        if law.stands_for and _is_free(state, host, "stiffness"):
             left = (1.0 - law.stands_for) * base[host].stiffness
             spring = _in_range(state, host, "stiffness", left)
             base[host] = replace(base[host], stiffness=spring)
@@ -174,11 +174,11 @@ def evened(state: ModelState) -> ModelState:
         return state
     if place < number:
         known = any(np.isfinite(x.low) for x in state.free if x.block == number)
-        known = known or not _are_free(state, number, "gain", "stiffness", "damping")
+        # A gain does what a mass, a damper and a spring do together.
+        known = known or not any(_is_free(state, number, x) for x in ("gain", "mass"))
         return state if known else _as_strong(state, place)
-    if not (
-        isinstance(law, Force) and _are_free(state, number, "stiffness", "damping")
-    ):
+    names = [x for x in ("stiffness", "damping") if _is_free(state, number, x)]
+    if not (isinstance(law, Force) and names):
         return state
     own = chain[number + 1 :]
     others = tuple(x for x in own if isinstance(x, Force) and x is not law)
@@ -200,11 +200,13 @@ def evened(state: ModelState) -> ModelState:
         return state  # the host all but runs away
     stiffness = max(host.stiffness - spring, REMAINS * host.stiffness)
     damping = max(host.damping - damper, REMAINS * host.damping)
-    chain[number] = replace(
-        host,
-        stiffness=_in_range(state, number, "stiffness", stiffness),
-        damping=_in_range(state, number, "damping", damping),
-    )
+    if "stiffness" in names:
+        spring = _in_range(state, number, "stiffness", stiffness)
+        host = replace(host, stiffness=spring)
+    if "damping" in names:
+        damper = _in_range(state, number, "damping", damping)
+        host = replace(host, damping=damper)
+    chain[number] = host
     return state.with_chain(tuple(chain))
 
 
@@ -234,10 +236,10 @@ def _in_range(state: ModelState, place: int, name: str, value: float) -> float:
     return value
 
 
-def _are_free(state: ModelState, place: int, *names: str) -> bool:
-    """Tell whether some of a block's numbers may be anything, as nobody knows them."""
+def _is_free(state: ModelState, place: int, name: str) -> bool:
+    """Tell whether a number of a block may be anything, as nobody knows it."""
     return any(
-        free.block == place and free.parameter in names and free.given is None
+        (free.block, free.parameter) == (place, name) and free.given is None
         for free in state.free
     )
 

@@ -40,7 +40,8 @@ SURROGATES = round(1 / BY_CHANCE) - 1
 """What follows nothing explains more than all of them by chance alone."""
 
 STRETCHES = 10
-"""Of a record, whose means tell how much that of the whole may differ by chance."""
+"""Of a record, whose means tell how much that of the whole may differ by chance: as few
+as are needed to know a variance, so that each is as long as it may be."""
 
 SORTS = {
     "strength": "its strength changes with time or between records, perhaps with level",
@@ -211,7 +212,7 @@ def what_is_unnamed(
     if not drifts:
         every = [at[name] for name in own], [at[name] for name in (*own, *generic)]
         chance = min(_by_chance(state, table, columns, *every) / power, structured)
-        if chance > 0 and means_differ_by_chance(state):
+        if chance > 0 and means_may_differ_by_chance(state):
             chance = structured
         found = replace(
             found,
@@ -277,7 +278,7 @@ def _by_chance(
     return 0.0
 
 
-def means_differ_by_chance(state: ModelState) -> bool:
+def means_may_differ_by_chance(state: ModelState) -> bool:
     """Tell whether the means of records differ no more than those of their stretches.
 
     Of noise that is slow the mean of a record is not zero, and no surrogate moves it.
@@ -290,15 +291,17 @@ def means_differ_by_chance(state: ModelState) -> bool:
        chapter 9.
     """
     records = [state.residual[part] for part in state.sample.slices]
-    if len(records) < 2:
-        return True  # one constant for all is not counted
+    count = min(STRETCHES, *map(len, records))
+    if len(records) < 2 or count < 2:
+        return len(records) < 2  # one constant for all is not counted
     each = np.array(
-        [[np.mean(x) for x in np.array_split(own, STRETCHES)] for own in records]
+        [[np.mean(x) for x in np.array_split(own, count)] for own in records]
     )
-    between = STRETCHES * float(np.var(each.mean(axis=1), ddof=1))
+    between = count * float(np.var(each.mean(axis=1), ddof=1))
     within = float(np.mean(np.var(each, axis=1, ddof=1)))
-    freedom = len(records) - 1, len(records) * (STRETCHES - 1)
-    return within == 0.0 or float(fdtrc(*freedom, between / within)) > BY_CHANCE
+    freedom = len(records) - 1, len(records) * (count - 1)
+    chance = fdtrc(*freedom, between / within) if within > 0 else float(between == 0)
+    return float(chance) > BY_CHANCE
 
 
 def _moved(state: ModelState, signal: FloatArray, k: int) -> FloatArray:

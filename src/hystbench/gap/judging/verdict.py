@@ -105,7 +105,8 @@ def judge(
                 "record"
             )
         if left.slight and floor_is_upper_bound:
-            if left.may_be_noise and not unnamed.too_much(unnamed_share):
+            follows = unnamed.too_much(unnamed_share) or size_follows
+            if left.may_be_noise and not follows:
                 rms = finely(float(np.sqrt((1.0 + left.all_after) / left.output)))
                 return "no-gap", (
                     f"no effect pays, and what is left, {rms} of the output's rms, "

@@ -122,16 +122,16 @@ class Moving:
     def moved(self) -> tuple[int, int, int]:
         """Whether frequency, damping and gain grow (1), fall (-1) or stay (0).
 
-        What is above the first level's at one level and below it at another does
-        neither.
+        By the level where each is farthest from the first, in standard errors.
         """
         values, errors = self.told
         # A value that noise made negative is next to nothing.
         size = np.log(np.maximum(values, 1e-3 * np.max(np.abs(values), axis=0)))
         away = (size - size[0]) / np.hypot(errors, errors[0])
         away[0] = 0.0
-        grows, falls = np.any(away > SURE, axis=0), np.any(away < -SURE, axis=0)
-        frequency, damping, gain = (grows.astype(int) - falls.astype(int)).tolist()
+        most = away[np.argmax(np.abs(away), axis=0), range(3)]
+        ways = np.where(np.abs(most) > SURE, np.sign(most), 0.0).astype(int)
+        frequency, damping, gain = ways.tolist()
         return frequency, damping, gain
 
     @property
@@ -175,7 +175,7 @@ class Moving:
         errors = np.hypot(self.errors[0], self.errors[-1])
         frequency, damping, gain = self.moved
         changes = self.numbers[:, 0] / first[0] - 1
-        most = int(np.argmax(np.abs(changes)))
+        most = int(np.argmax(changes * frequency if frequency else np.abs(changes)))
         change = 100 * float(changes[most])
         by = _with_error(abs(change), 100 * float(np.hypot(*self.errors[[0, most], 0])))
         moved = f"stays (it moves by {by} %)"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
@@ -34,11 +34,12 @@ from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import (
     FURTHER,
     PAYS,
+    SCALE,
     SHAPE,
     UNNAMED_SHARE,
 )
 
-BESIDE = ("mains-pickup", "drift")
+NOT_OF_THE_INPUT = ("mains-pickup", "drift")
 """Effects that the input does not explain: they are beside all others."""
 LITTLE = "what the effects leave of a slightly wrong shape is most of it"
 
@@ -101,7 +102,7 @@ def settled(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Name
     state, gone = without_what_goes(found.state, floor_rms, found.gap, say)
     rounds = found.rounds
     while not cut_short and len(state.added) > 1:
-        rivals = _rivals_of_all(state, rounds)
+        rivals = _rivals_of_all(state, rounds) | set(found.in_place_of)
         if not rivals:
             break
         before = names(state)
@@ -127,7 +128,11 @@ def _of_few_numbers(
     they score better, each charged as a further effect is.
     """
     score = make_score(start, floor_rms, forms=False)
-    many = [x for x in found.state.added if x.blocks and x.charge > MANY]
+    many = [
+        item
+        for item in found.state.added
+        if item.blocks and item.effect != SHAPE and item.charge > MANY
+    ]
     alone = many and len(found.state.added) == 1
     if not alone or above_floor(found.state, score) < FURTHER:
         return found
@@ -139,8 +144,13 @@ def _of_few_numbers(
     # A path ends with numbers beside which other forms were allowed for.
     state, value = finished(other.state, score)
     value += FURTHER * max(len(state.added) - 1, 0)
-    if value < finished(found.state, score)[1]:
-        return replace(other, state=state)
+    if value < finished(found.state, score)[1] - SCALE:
+        say(f"they score better: {name} goes")
+        rounds = tuple(
+            replace(one, before=replace(one.before, offered=start.offered))
+            for one in other.rounds
+        )
+        return replace(other, state=state, rounds=rounds, in_place_of={name})
     say(f"that scores no better: {name} stays")
     return found
 
@@ -148,7 +158,7 @@ def _of_few_numbers(
 def beside_forces(
     named: Named, start: ModelState, floor_rms: float, share: float, say: Say
 ) -> Named:
-    """Take out forces of unknown size, and add the tone that no force does.
+    """Take out forces of unknown size, and add signals that no force makes.
 
     Where forces were named in the dynamics no chain is tried behind them; but what the
     input does not explain is beside any of them, if it pays and matters.
@@ -169,27 +179,37 @@ def beside_forces(
     if gone:  # what went was judged beside other forms of those that stay
         state = finished_to_the_end(state, make_score(state, floor_rms, forms=False))
     named = replace(named, state=state, gone=(*named.gone, *gone))
+    gap = max(start.power(floor), floor)
+    while (more := _with_one_beside(named, floor_rms, gap, share)) is not None:
+        named = more
+        first = named.rounds[-1].ranking[0]
+        say(f"inside: beside it {first.effect}: gain {first.gain:.1f}")
+    return named
+
+
+def _with_one_beside(
+    named: Named, floor_rms: float, gap: float, share: float
+) -> Named | None:
+    """Add the signal that the input does not explain and that does best, if it pays."""
+    floor, state = floor_rms**2, named.state
     known = [
         item
         for item in among(state.offered).values()
-        if item.name in BESIDE and item.name not in names(state)
+        if item.name in NOT_OF_THE_INPUT and item.name not in names(state)
     ]
     if not known:
-        return named
-    score = make_score(state, floor_rms)
-    ranking = rank(state, score, known, needs=FURTHER)
+        return None
+    ranking = rank(state, make_score(state, floor_rms), known, needs=FURTHER)
     first = ranking[0]
-    gap = max(start.power(floor), floor)
     if not _pays(first, state, floor, SoFar(state, gap, share)):
-        return named
+        return None
     assert first.state is not None  # noqa: S101  (for the type checker)
-    # The forces were fitted anew beside the tone: what it takes itself has to matter.
-    without = replace(first.state, beside=()).power(floor)
+    # The forces were fitted anew beside it: what it takes itself has to matter.
+    without = replace(first.state, beside=first.state.beside[:-1]).power(floor)
     if without - first.state.power(floor) <= share * gap:
-        return named
-    say(f"inside: beside it {first.effect}: gain {first.gain:.1f}")
+        return None
     one = Round(state, first.score + first.gain, ranking, True)
-    # Forces were fitted with the tone in what is left.
+    # Forces were fitted with the signal in what is left.
     state, _ = finished(first.state, make_score(first.state, floor_rms, forms=False))
     return replace(named, state=state, rounds=(*named.rounds, one))
 
@@ -228,6 +248,8 @@ class SoFar:
     """Whether a shape that takes more of the gap was put off."""
     closed: bool = False
     """Whether nothing is left that an effect could gain."""
+    in_place_of: Collection[str] = ()
+    """Effects that these have replaced together; each may still do better than one."""
 
     @classmethod
     def begun(

@@ -211,7 +211,7 @@ def size(value: float | None, ends: list[float] | None = None) -> Markup:
 def with_error(value: Any, error: Any) -> Markup:
     """Print a value and its standard error, rounded to two digits of the error.
 
-    A single value is not known if its error is as large as itself.
+    A single value may be zero if its error is larger than itself.
     """
     if isinstance(value, str):
         return Markup("{}").format(value)
@@ -219,8 +219,8 @@ def with_error(value: Any, error: Any) -> Markup:
         errors = error if isinstance(error, list) else [None] * len(value)
         pairs = zip(value, errors, strict=True)
         return Markup(", ").join(_with_error(*pair) for pair in pairs)
-    known = error is None or error < abs(value)
-    return _with_error(value, error) + ("" if known else " (not known)")
+    known = error is None or error <= abs(value)
+    return _with_error(value, error) + ("" if known else " (may be zero)")
 
 
 def _with_error(value: float, error: float | None) -> Markup:
