@@ -15,7 +15,7 @@ from tests.gap.small import block, records
         # Four equal lags: their poles are hardly told as real.
         ((1.0,), (1.0, 4.0, 6.0, 4.0, 1.0), True),
         ((1.0, 1.5), (1.0, 3.0, 2.0), True),
-        # A lead overshoots, a damper's force falls to nothing, a mass swings or goes on.
+        # A lead overshoots, a damper's force ends at zero, a mass swings or goes on.
         ((3.0, 1.0), (1.0, 1.0), False),
         ((1.0, 0.0), (1.0, 1.0), False),
         ((1.0,), (1.0, 0.2, 1.0), False),
