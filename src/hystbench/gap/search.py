@@ -31,7 +31,8 @@ from hystbench.gap.inside.named_inside import (
     named_inside,
 )
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
-from hystbench.gap.naming.add_effects import Named, add_effects, beside_forces
+from hystbench.gap.naming.add_effects import Named, add_effects
+from hystbench.gap.naming.beside_forces import beside_forces
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence, own_offsets

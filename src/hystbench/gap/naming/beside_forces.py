@@ -1,0 +1,78 @@
+"""What the input does not explain, beside forces inside the dynamics."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from hystbench.gap.effects import among
+from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.refit import finished, finished_to_the_end
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.naming.add_effects import Named, SoFar, names, pays
+from hystbench.gap.naming.rank import rank
+from hystbench.gap.naming.removal import without_unknown
+from hystbench.gap.naming.rounds import Round
+from hystbench.gap.progress import Say
+from hystbench.gap.thresholds import FURTHER
+
+NOT_OF_THE_INPUT = ("mains-pickup", "drift")
+"""Effects that the input does not explain: they are beside all others."""
+
+
+def beside_forces(
+    named: Named, start: ModelState, floor_rms: float, share: float, say: Say
+) -> Named:
+    """Take out forces of unknown size, and add signals that no force makes.
+
+    Where forces were named in the dynamics no chain is tried behind them; but what the
+    input does not explain is beside any of them, if it pays and matters.
+
+    Parameters
+    ----------
+    named : Named
+        Forces inside, by rounds.
+    start : ModelState
+        What stands for the base, without them.
+    floor_rms : float
+    share : float
+        Of the gap, that may stay unnamed.
+    say : callable
+    """
+    floor = floor_rms**2
+    state, gone = without_unknown(named.state, floor_rms, say)
+    if gone:  # what went was judged beside other forms of those that stay
+        state = finished_to_the_end(state, make_score(state, floor_rms, forms=False))
+    named = replace(named, state=state, gone=(*named.gone, *gone))
+    gap = max(start.power(floor), floor)
+    while (more := _with_one_beside(named, floor_rms, gap, share)) is not None:
+        named = more
+        first = named.rounds[-1].ranking[0]
+        say(f"inside: beside it {first.effect}: gain {first.gain:.1f}")
+    return named
+
+
+def _with_one_beside(
+    named: Named, floor_rms: float, gap: float, share: float
+) -> Named | None:
+    """Add the signal that the input does not explain and that does best, if it pays."""
+    floor, state = floor_rms**2, named.state
+    known = [
+        item
+        for item in among(state.offered).values()
+        if item.name in NOT_OF_THE_INPUT and item.name not in names(state)
+    ]
+    if not known:
+        return None
+    ranking = rank(state, make_score(state, floor_rms), known, needs=FURTHER)
+    first = ranking[0]
+    if not pays(first, state, floor, SoFar(state, gap, share)):
+        return None
+    assert first.state is not None  # noqa: S101  (for the type checker)
+    # The forces were fitted anew beside it: what it takes itself has to matter.
+    without = replace(first.state, beside=first.state.beside[:-1]).power(floor)
+    if without - first.state.power(floor) <= share * gap:
+        return None
+    one = Round(state, first.score + first.gain, ranking, True)
+    # Forces were fitted with the signal in what is left.
+    state, _ = finished(first.state, make_score(first.state, floor_rms, forms=False))
+    return replace(named, state=state, rounds=(*named.rounds, one))
