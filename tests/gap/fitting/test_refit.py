@@ -12,7 +12,11 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import with_effect
-from hystbench.gap.fitting.model_score import make_score, score_of
+from hystbench.gap.fitting.model_score import (
+    make_score,
+    score_of,
+    score_of_numbers,
+)
 from hystbench.gap.fitting.refit import (
     FAR,
     added,
@@ -155,6 +159,21 @@ def test_a_held_number_stays_where_it_was_fitted_first():
     moved = (once.chain[1].value - 1.0) / 0.02
     assert least == pytest.approx(score.of(once.residual) + moved**2)
     assert value == pytest.approx(least, abs=0.1)
+
+
+def test_numbers_are_found_below_a_floor_that_is_too_high():
+    """Where the noise is only bounded the score is flat over a range of values."""
+    found = measured((block("gain", value=12.0),), NOISE)
+    free = (Free(0, "value"),)
+    # What is left is above the noise, and below the floor.
+    state = state_of((block("gain", value=12.02),), found, free=free)
+    floor = 3 * float(np.sqrt(state.power(0.0)))
+    flat, _ = finished(state, plain_score(state, floor**2))
+    best, _ = finished(state, score_of_numbers(state, floor, shape=True))
+    least = float(np.mean(state.squares))
+    assert np.mean(best.squares) <= np.mean(flat.squares) <= least * 1.001
+    truth = [r.u @ r.y / (r.u @ r.u) for r in found]
+    assert min(truth) <= best.chain[0].value <= max(truth)
 
 
 def attempt(state, score, name):
