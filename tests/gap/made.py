@@ -92,3 +92,11 @@ def write_folder(folder, records, **about):
         header["simulated"] = {"column": "simulated_um", "unit": "um"}
     (folder / "dataset.yaml").write_text(yaml.safe_dump(header | about))
     return folder
+
+
+def play(u, half_width):
+    """One play operator, by its definition."""
+    now, out = 0.0, np.empty(len(u))
+    for k, value in enumerate(u):
+        now = out[k] = min(max(now, value - half_width), value + half_width)
+    return out

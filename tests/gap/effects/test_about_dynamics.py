@@ -1,4 +1,4 @@
-"""Curves and loops before and behind linear dynamics, all written here by hand."""
+"""Curves and loops, written by hand, before and behind linear dynamics."""
 
 import numpy as np
 import pytest
@@ -6,19 +6,12 @@ import pytest
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.model import Model
 from hystbench.record import Channel, Record
+from tests.gap.made import play
 from tests.gap.searched import search
 
 DT, COUNT, NOISE = 0.1, 800, 0.003
 POWER, WAY = Channel("power", "W"), Channel("way", "mm")
 LAG = TransferFunction(numerator=(1.0,), denominator=(1.5, 1.0), hold="zero-order")
-
-
-def play(x, half_width):
-    out, now = np.empty(len(x)), 0.0
-    for k, value in enumerate(x):
-        now = min(max(now, value - half_width), value + half_width)
-        out[k] = now
-    return out
 
 
 def loop(x):

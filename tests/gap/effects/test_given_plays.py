@@ -4,6 +4,7 @@ import numpy as np
 
 from hystbench.model import Model
 from hystbench.record import Channel, Record
+from tests.gap.made import play
 from tests.gap.searched import search
 from tests.gap.small import block
 
@@ -11,14 +12,6 @@ VOLTAGE, STROKE = Channel("voltage", "V"), Channel("stroke", "um")
 NOISE = 0.01
 THRESHOLDS = np.arange(12) / 10
 WEIGHTS = 0.5 * np.exp(-2.0 * THRESHOLDS)
-
-
-def play(u, r):
-    """One play operator, by its definition."""
-    state, y = 0.0, np.empty(len(u))
-    for k, value in enumerate(u):
-        state = y[k] = min(max(state, value - r), value + r)
-    return y
 
 
 def device(u):

@@ -10,7 +10,7 @@ from hystbench.blocks.gain import Gain
 from hystbench.gap.records.evidence import check_units, load_evidence
 from hystbench.model import Model
 from hystbench.record import Channel
-from tests.gap.made import record, sine, write_folder
+from tests.gap.made import play, record, sine, write_folder
 from tests.messages import message
 
 U = sine(2.0, count=1000)
@@ -125,14 +125,6 @@ def test_an_output_that_holds_to_the_end_is_named(tmp_path):
 
 def triangle(periods):
     return 2 / np.pi * np.arcsin(np.sin(2 * np.pi * periods))
-
-
-def play(u, half_width):
-    y, out = 0.0, np.empty_like(u)
-    for k, value in enumerate(u):
-        y = min(max(y, value - half_width), value + half_width)
-        out[k] = y
-    return out
 
 
 def saturated(coarse=0.05):
