@@ -187,14 +187,14 @@ def _judged(
     box = black_box(before, floor.rms)
     unnamed = what_is_unnamed(start, state, floor.rms, share)
     bound = floor.method == "upper-bound"
-    may_be_noise = bound or left.is_new or unnamed.follows_nothing(share)
+    size_tells = bound or left.is_new or unnamed.follows_nothing(share)
     verdict, why = judge(
         left,
         bool(state.added),
         box.explained_on_folds,
         bool(start.free),
         bound,
-        not state.added and may_be_noise and size_follows(state),
+        not state.added and size_tells and size_follows(state),
         unnamed,
         share,
         what_mends(start.records),

@@ -37,7 +37,7 @@ from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence, own_offsets
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.thresholds import FURTHER, LOOSE, PARAMETER, PAYS, SHAPE
+from hystbench.gap.thresholds import FURTHER, LOOSE, PARAMETER, PAYS
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Record
@@ -136,18 +136,13 @@ class _Searched:
         """Whether numbers were fitted that nobody set free."""
         return self.inside is not None and self.inside.counts > 0
 
-    @property
-    def names_shape(self) -> bool:
-        """Whether a wrong shape of the base's hysteresis is what it names."""
-        return any(item.effect == SHAPE for item in self.named.state.added)
-
     def score_beside(self, other: _Searched) -> Score:
         """Give the score that this answer and another one are compared by.
 
         Neither is better for what a wrong shape of the base's hysteresis leaves, unless
         one of them names it.
         """
-        if self.names_shape or other.names_shape:
+        if self.named.state.has_shape or other.named.state.has_shape:
             return Score.plain(self.start.sample, self.floor.rms**2)
         return make_score(self.start, self.floor.rms, forms=False)
 

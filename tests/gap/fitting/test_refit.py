@@ -169,7 +169,7 @@ def test_numbers_are_found_below_a_floor_that_is_too_high():
     state = state_of((block("gain", value=12.02),), found, free=free)
     floor = 3 * float(np.sqrt(state.power(0.0)))
     flat, _ = finished(state, plain_score(state, floor**2))
-    best, _ = finished(state, score_of_numbers(state, floor, shape=True))
+    best, _ = finished(state, score_of_numbers(state, floor))
     least = float(np.mean(state.squares))
     assert np.mean(best.squares) <= np.mean(flat.squares) <= least * 1.001
     truth = [r.u @ r.y / (r.u @ r.u) for r in found]

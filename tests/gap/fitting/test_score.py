@@ -165,7 +165,6 @@ def test_amplitudes_never_score_worse_than_none(seed):
 def test_columns_that_many_calls_share_are_held_as_those_of_one(seed):
     rng = np.random.default_rng(seed)
     lengths, basis, _, _, residual = problem(seed)
-    score = Score(sample_of(lengths), basis, 1e-6)
     # In metres a micrometre is little: no unit may change what is told apart.
     unit = 10.0 ** rng.uniform(-8, 3)
     terms, residual = unit * rng.standard_normal((len(residual), 4)), unit * residual

@@ -88,7 +88,7 @@ class Hysteresis(Effect):
             place,
             values,
             law=PLAYS,
-            form=f"{FORM} behind" if place else FORM,
+            form=_standing(FORM, place),
             unit=dict.fromkeys(names, 1e-3),
             free=("weights",),
         )
@@ -100,7 +100,7 @@ class Hysteresis(Effect):
             simulation,
             place,
             law=BOUC_WEN,
-            form="Bouc-Wen behind" if place else "Bouc-Wen",
+            form=_standing("Bouc-Wen", place),
             grids={
                 "yield_distance": half * logarithmic(0.1, 3.0),
                 "sharing": SHARINGS,
@@ -134,10 +134,15 @@ class Hysteresis(Effect):
             simulation,
             place,
             values,
-            form="generalized plays behind" if place else "generalized plays",
+            form=_standing("generalized plays", place),
             unit=dict.fromkeys(names, 1e-3),
             positive=tuple(names),
             free=("weights", "envelope"),
             neutral=False,
         )
         return replace(found, charge=float(OPERATORS + len(envelope)), begun=True)
+
+
+def _standing(form: str, place: int) -> str:
+    """Name a form with where it stands, if not before everything else."""
+    return f"{form} behind" if place else form

@@ -56,8 +56,9 @@ def _comes_to_rest(system: StateSpace) -> bool:
         return False
     way = np.sign(system.static_gain)
     times = np.geomspace(0.01 / rates.max(), 10 / rates.min(), TIMES)
-    impulse = [way * (system.c @ expm(system.a * t) @ system.b) for t in times]
-    return bool(way * system.d >= 0.0 and min(impulse) >= -ROUNDED * max(impulse))
+    impulse = way * (expm(times[:, None, None] * system.a) @ system.b @ system.c)
+    rises = impulse.min() >= -ROUNDED * impulse.max()
+    return bool(way * system.d >= 0.0 and rises)
 
 
 def places_in_drive(simulation: Simulation, linear: bool = False) -> list[int]:

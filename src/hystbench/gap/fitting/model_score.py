@@ -38,25 +38,26 @@ def make_score(state: ModelState, floor_rms: float, forms: bool = True) -> Score
     return Score(state.sample, directions, floor_rms**2)
 
 
-def score_of_numbers(state: ModelState, floor_rms: float, shape: bool) -> Score:
+def score_of_numbers(state: ModelState, floor_rms: float) -> Score:
     """Give the score by which the numbers of a model are found in the end.
 
     It is flat below its floor. Noise that is an upper bound may lie above what the
     model leaves, so the floor is at most half of what it leaves of any record: no few
-    numbers take more of noise away.
+    numbers take more of noise away. Those of another shape of the hysteresis are found
+    without sparing what a shape could do.
 
     Parameters
     ----------
     state : ModelState
         With all that was named.
     floor_rms : float
-    shape : bool
-        Whether what a wrong shape could do is spared.
     """
-    directions = state.wrong_shape if shape else state.wrong_shape[:, :0]
     floor = min(floor_rms**2, float(np.min(state.squares)) / 2)
     rounded = (ROUNDING * rms(state.measured)) ** 2
-    return Score(state.sample, directions, max(floor, rounded, LEAST))
+    floor = max(floor, rounded, LEAST)
+    if state.has_shape:
+        return Score.plain(state.sample, floor)
+    return Score(state.sample, state.wrong_shape, floor)
 
 
 def directions_of(wrong_shape: FloatArray, state: ModelState) -> FloatArray:

@@ -220,8 +220,10 @@ class Score:
         if held is not None:
             charge[: own + 1, : own + 1] = held.form(np.diag(1 / scale))
         if beside is not None:
-            theirs = np.r_[0, own + 1 : k + 1]
-            charge[np.ix_(theirs, theirs)] += beside.charge
+            theirs = beside.charge
+            charge[0, 0] += theirs[0, 0]
+            charge[0, own + 1 :] = charge[own + 1 :, 0] = theirs[0, 1:]
+            charge[own + 1 :, own + 1 :] = theirs[1:, 1:]
         found = self._products(whole, beside)
         # Of each record, of the directions and of the charge: one quadratic form each.
         within = found.inside.T @ found.inside

@@ -22,6 +22,7 @@ from hystbench.gap.records.scored_samples import ScoredSamples, rms
 from hystbench.gap.simulation.reshape import orthonormal, reshapings
 from hystbench.gap.simulation.shared import shared
 from hystbench.gap.simulation.simulation import Signals, Simulation
+from hystbench.gap.thresholds import SHAPE
 from hystbench.record import FloatArray, Record
 
 
@@ -134,6 +135,11 @@ class ModelState:
     def freedom(self) -> float:
         """Parameters that are charged."""
         return sum(item.charge for item in self.added)
+
+    @property
+    def has_shape(self) -> bool:
+        """Whether another shape of the base's hysteresis was added."""
+        return any(item.effect == SHAPE for item in self.added)
 
     @cached_property
     def places_added(self) -> frozenset[int]:

@@ -137,9 +137,9 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
     if law.place == "inside":
         host = host_of(state)
         place = host + 1
-        if law.stands_for and _is_free(state, host, "stiffness"):
+        if law.stands_for:
             left = (1.0 - law.stands_for) * base[host].stiffness
-            spring = _in_range(state, host, "stiffness", left)
+            spring = _if_free(state, host, "stiffness", left)
             base[host] = replace(base[host], stiffness=spring)
     chain = (*base[:place], law.block, *base[place:])
 
@@ -175,10 +175,10 @@ def evened(state: ModelState) -> ModelState:
     if place < number:
         known = any(np.isfinite(x.low) for x in state.free if x.block == number)
         # A gain does what a mass, a damper and a spring do together.
-        known = known or not any(_is_free(state, number, x) for x in ("gain", "mass"))
+        known = known or not _any_is_free(state, number, "gain", "mass")
         return state if known else _as_strong(state, place)
-    names = [x for x in ("stiffness", "damping") if _is_free(state, number, x)]
-    if not (isinstance(law, Force) and names):
+    loose = _any_is_free(state, number, "stiffness", "damping")
+    if not (isinstance(law, Force) and loose):
         return state
     own = chain[number + 1 :]
     others = tuple(x for x in own if isinstance(x, Force) and x is not law)
@@ -200,13 +200,11 @@ def evened(state: ModelState) -> ModelState:
         return state  # the host all but runs away
     stiffness = max(host.stiffness - spring, REMAINS * host.stiffness)
     damping = max(host.damping - damper, REMAINS * host.damping)
-    if "stiffness" in names:
-        spring = _in_range(state, number, "stiffness", stiffness)
-        host = replace(host, stiffness=spring)
-    if "damping" in names:
-        damper = _in_range(state, number, "damping", damping)
-        host = replace(host, damping=damper)
-    chain[number] = host
+    chain[number] = replace(
+        host,
+        stiffness=_if_free(state, number, "stiffness", stiffness),
+        damping=_if_free(state, number, "damping", damping),
+    )
     return state.with_chain(tuple(chain))
 
 
@@ -228,20 +226,23 @@ def _as_strong(state: ModelState, place: int) -> ModelState:
     return state.with_chain(tuple(chain))
 
 
-def _in_range(state: ModelState, place: int, name: str, value: float) -> float:
-    """Keep a number of a block within the range that it may have."""
-    for free in state.free:
-        if (free.block, free.parameter) == (place, name):
-            return float(np.clip(value, free.low, free.high))
-    return value
+def _unknown(state: ModelState, place: int) -> dict[str, Free]:
+    """Give the numbers of a block that may be anything, as nobody knows them."""
+    own = (free for free in state.free if free.block == place)
+    return {free.parameter: free for free in own if free.given is None}
 
 
-def _is_free(state: ModelState, place: int, name: str) -> bool:
-    """Tell whether a number of a block may be anything, as nobody knows it."""
-    return any(
-        (free.block, free.parameter) == (place, name) and free.given is None
-        for free in state.free
-    )
+def _any_is_free(state: ModelState, place: int, *names: str) -> bool:
+    """Tell whether some number of a block may be anything."""
+    return not _unknown(state, place).keys().isdisjoint(names)
+
+
+def _if_free(state: ModelState, place: int, name: str, value: float) -> float:
+    """Give a number of a block a value in its range; as it is if it is known."""
+    free = _unknown(state, place).get(name)
+    if free is None:
+        return float(getattr(state.chain[place], name))
+    return float(np.clip(value, free.low, free.high))
 
 
 def host_of(state: ModelState) -> int:

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from scipy.special import fdtrc
 
 from hystbench.gap.effects.drift import FORMS, WINDING, degree
 from hystbench.gap.fitting.state import ModelState
@@ -26,6 +25,7 @@ from hystbench.gap.judging.known_signals import (
     halves,
     paths,
 )
+from hystbench.gap.locate.forms import f_test
 from hystbench.gap.simulation.reshape import orthonormal, products
 from hystbench.gap.thresholds import (
     BY_CHANCE,
@@ -297,11 +297,10 @@ def means_may_differ_by_chance(state: ModelState) -> bool:
     each = np.array(
         [[np.mean(x) for x in np.array_split(own, count)] for own in records]
     )
-    between = count * float(np.var(each.mean(axis=1), ddof=1))
-    within = float(np.mean(np.var(each, axis=1, ddof=1)))
-    freedom = len(records) - 1, len(records) * (count - 1)
-    chance = fdtrc(*freedom, between / within) if within > 0 else float(between == 0)
-    return float(chance) > BY_CHANCE
+    whole = float(np.sum((each - np.mean(each)) ** 2))
+    within = float(np.sum((each - each.mean(axis=1, keepdims=True)) ** 2))
+    share = 1.0 - within / whole if whole > 0 else 0.0
+    return f_test(share, len(records) - 1, each.size - 1) > BY_CHANCE
 
 
 def _moved(state: ModelState, signal: FloatArray, k: int) -> FloatArray:

@@ -141,13 +141,11 @@ def judge(
         return "unnamed", why
     if much and unnamed.trust(unnamed_share, of_base=True) < MOST:
         return "unnamed", unnamed.reason(unnamed_share)  # likelier wrong than right
+    too_much = f"too much stays for a name: {left.sentence}"
     if left.share > LOOSE and not left.slight:
-        return "unnamed", f"too much stays for a name: {left.sentence}"
+        return "unnamed", too_much
     if unnamed.stays > LOOSE:
-        return "unnamed", (
-            f"too much stays for a name: {left.sentence}, and most of it follows no "
-            "known signal"
-        )
+        return "unnamed", f"{too_much}, and most of it follows no known signal"
     if much:
         return "named", (
             f"{left.sentence}; this is less sure, as {unnamed.reason(unnamed_share)}, "

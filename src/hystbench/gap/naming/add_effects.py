@@ -87,11 +87,7 @@ def settled(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Name
     they are tried first; if the shape is needed after all, it goes first.
     """
     cut_short = current().refused()
-    if (
-        not cut_short
-        and found.deferred
-        and any(item.effect == SHAPE for item in found.state.added)
-    ):
+    if not cut_short and found.deferred and found.state.has_shape:
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
         found = _path(start, floor_rms, say, found.share, shape_first=True)
     if not cut_short:
@@ -109,10 +105,8 @@ def settled(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Name
         if names(state) == before:
             break
     if state.added:
-        # Its own numbers are found without what other forms of it could do, and those
-        # of another shape of the hysteresis without sparing what a shape could do.
-        score = score_of_numbers(state, floor_rms, SHAPE not in names(state))
-        state = finished_to_the_end(state, score)
+        # Its own numbers are found without what other forms of it could do.
+        state = finished_to_the_end(state, score_of_numbers(state, floor_rms))
     return Named(state, rounds, gone)
 
 
@@ -124,16 +118,13 @@ def _of_few_numbers(
     So many numbers do much of what several laws of few do together. These are named if
     they score better, each charged as a further effect is.
     """
-    score = make_score(start, floor_rms, forms=False)
-    many = [
-        item
-        for item in found.state.added
-        if item.blocks and item.effect != SHAPE and item.charge > MANY
-    ]
-    alone = many and len(found.state.added) == 1
-    if not alone or above_floor(found.state, score) < FURTHER:
+    if len(found.state.added) != 1 or found.state.has_shape:
         return found
-    (name,) = names(found.state)
+    (one,), name = found.state.added, found.state.added[0].effect
+    score = make_score(start, floor_rms, forms=False)
+    is_many = bool(one.blocks) and one.charge > MANY
+    if not is_many or above_floor(found.state, score) < FURTHER:
+        return found
     say(f"{name} has many numbers and leaves more than noise: naming without it")
     others = tuple(x for x in among(start.offered) if x != name)
     other = _path(replace(start, offered=others), floor_rms, say, found.share)
