@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from hystbench.blocks import registry
 from hystbench.blocks.friction_force import FrictionForce
@@ -120,6 +121,34 @@ def test_without_a_stribeck_velocity_there_is_no_excess():
     np.testing.assert_array_equal(same, plain)
 
 
+BRISTLES = {"coulomb": 2.0, "presliding_distance": 0.3}
+
+
+def test_bristles_that_slide_alike_at_every_velocity_are_dahls():
+    dahl = force("hysteretic-force", largest=2.0, yield_distance=0.3, sharing=0.0)
+    found = against(force("lugre-force", **BRISTLES), motion())
+    np.testing.assert_allclose(found, against(dahl, motion()), atol=1e-12)
+
+
+def test_bristles_bend_as_lugres_equation_says():
+    """Also from above, where the force of sliding falls faster than they give way."""
+    excess = {"static_excess": 1.5, "stribeck_velocity": 2.0}
+    t = np.linspace(0, 1, 4001)
+
+    def place(t):
+        return np.sin(9 * t) + 0.3 * np.sin(31 * t)
+
+    def bends(t, z):
+        v = 9 * np.cos(9 * t) + 9.3 * np.cos(31 * t)
+        slides = 2 + 1.5 * np.exp(-((v / 2) ** 2))
+        return v - abs(v) * z * (3.5 / 0.3) / slides
+
+    z = solve_ivp(bends, (0, 1), [0.0], t_eval=t, rtol=1e-9, max_step=1e-3).y[0]
+    found = against(force("lugre-force", **BRISTLES, **excess), place(t), t[1])
+    wanted = z * 3.5 / 0.3
+    assert np.abs(found - wanted).max() < 1e-3 * np.ptp(wanted)
+
+
 def test_a_slider_behind_a_gap_lets_go_is_free_climbs_and_slides():
     block = force("slider-with-gap", contact_stiffness=10.0, slip_force=2.0, gap=0.3)
     up, down = np.linspace(0, 2, 401), np.linspace(2, -1, 601)
@@ -167,6 +196,15 @@ PASSIVE = {
         {
             "coulomb": 0.2,
             "presliding_distance": 3.0,
+            "static_excess": 1.0,
+            "stribeck_velocity": 0.5,
+        },
+    ),
+    "bristles that slide easier when fast": (
+        "lugre-force",
+        {
+            "coulomb": 0.2,
+            "presliding_distance": 0.3,
             "static_excess": 1.0,
             "stribeck_velocity": 0.5,
         },

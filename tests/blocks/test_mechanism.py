@@ -210,6 +210,12 @@ DISSIPATIVE = {
          "stribeck_velocity": 0.3},
         0.04,
     ),
+    "bristles": (
+        "lugre-force",
+        {"coulomb": 2.0, "presliding_distance": 0.02, "static_excess": 2.0,
+         "stribeck_velocity": 0.3},
+        0.04,
+    ),
     "slider": (
         "slider-with-gap",
         {"contact_stiffness": 2e8, "slip_force": 4.0, "gap": 0.05},

@@ -30,6 +30,7 @@ from hystbench.blocks.hysteretic_force import HystereticForce  # noqa: E402
 from hystbench.blocks.impedance import Impedance  # noqa: E402
 from hystbench.blocks.iwan_force import IwanForce  # noqa: E402
 from hystbench.blocks.jiles_atherton import JilesAtherton  # noqa: E402
+from hystbench.blocks.lugre_force import LuGreForce  # noqa: E402
 from hystbench.blocks.mechanism import Mechanism  # noqa: E402
 from hystbench.blocks.preisach import Preisach  # noqa: E402
 from hystbench.blocks.rate_dependent_hysteresis import (  # noqa: E402
@@ -166,6 +167,7 @@ def blocks(x):
         Gravity(amplitude=3.0),
         HystereticForce(largest=0.3, yield_distance=1e-2),
         IwanForce(stiffness=5.0, slip_distance=2e-2),
+        LuGreForce(0.1, 1e-3, 0.1, 5.0),
         RelaxationForce(stiffness=3.0, relaxation_time_s=2e-3),
         Stiffness(quadratic=5.0, cubic=40.0),
     )

@@ -104,6 +104,20 @@ static double hb_friction_reach(const double *f, double v)
     return most > 0 ? f[4] * (hb_sliding(f, v) / most) : 0;
 }
 
+/* LuGre's bristles: their bend after an even way, and its integral over the way.  In
+ * the direction of the way it moves by 1 - bend / reach, a unit of way: so it nears the
+ * reach from either side. */
+static double hb_bend(double bend, double way, double reach, double *integral)
+{
+    *integral = 0;
+    if (!(reach > 0)) return 0;
+    const double sign = way < 0 ? -1 : 1, length = fabs(way), from = sign * bend;
+    double twice;
+    const double once = hb_phi(-length / reach, &twice), slope = 1 - from / reach;
+    *integral = length * (from + slope * length * twice);
+    return sign * (from + slope * length * once);
+}
+
 /* The mean force of an attached mass over an even way in a time h, by the midpoint rule:
  * it gives back no more than it was given. memory: how far it lags behind, and how fast
  * it is. */
@@ -123,6 +137,8 @@ static double hb_remembered(const double *f, double way, double v, double h,
     switch ((int)f[0]) {
     case 3: /* friction */
         return hb_clip(hb_friction_reach(f, v), memory + way);
+    case 11: /* lugre */
+        return hb_bend(memory, way, hb_friction_reach(f, h > 0 ? way / h : v), &integral);
     case 5: /* hysteretic */
         return hb_bouc_wen(memory, way, f[2], f[3], &integral);
     case 7: /* slider */
@@ -147,6 +163,7 @@ static double hb_force(const double *f, double q, double v, const double *memori
         return f[4] * way < 0 ? 0 : f[1] * hb_dead_zone(f[2], way);
     }
     case 3: /* friction */
+    case 11: /* lugre */
         return hb_sliding(f, 0) * memory / f[4];
     case 8: /* smooth */
         return hb_level(f[1], f[3], f[4], v) * tanh(v / f[2]);
@@ -193,6 +210,13 @@ static double hb_mean_force(const double *f, double q, double way, double h,
     case 3: /* friction */
         return hb_sliding(f, 0) / f[4] *
                hb_mean_held(memory, way, hb_friction_reach(f, v), 0);
+    case 11: /* lugre */ {
+        double integral;
+        const double stiffness = hb_sliding(f, 0) / f[4];
+        if (way == 0) return stiffness * memory;
+        hb_bend(memory, way, hb_friction_reach(f, v), &integral);
+        return stiffness * integral / way;
+    }
     case 8: /* smooth */
         return hb_level(f[1], f[3], f[4], v) * tanh(v / f[2]);
     case 4: /* drag */
@@ -278,7 +302,7 @@ static int hb_falls(int count, const double *forces)
 {
     for (int i = 0; i < count; i++) {
         const double *f = forces + 6 * i;
-        if ((int)f[0] == 3 && f[2] > 0) return 1;
+        if (((int)f[0] == 3 || (int)f[0] == 11) && f[2] > 0) return 1;
         if ((int)f[0] == 8 && f[3] > 0 && f[4] > 0) return 1;
     }
     return 0;
@@ -335,7 +359,7 @@ static int hb_turns(int count, const double *forces)
 {
     for (int i = 0; i < count; i++) {
         const int kind = (int)forces[6 * i];
-        if (kind == 3 || kind == 5 || kind == 7) return 1;
+        if (kind == 3 || kind == 5 || kind == 7 || kind == 11) return 1;
     }
     return 0;
 }

@@ -115,6 +115,36 @@ def test_smooth_friction_may_fall_with_the_speed():
     assert rms == pytest.approx(NOISE, rel=0.1)
 
 
+def test_friction_of_bristles_is_found_with_its_numbers():
+    """LuGre's model of a device that is moved, solved without a block."""
+    given = []
+    for seed, size in enumerate((0.5, 3.0)):
+
+        def bends(t, z, size=size):
+            v = size * (4.4 * np.cos(4.4 * t) + 1.8 * np.cos(9.1 * t))
+            slides = 2.0 + 1.0 * np.exp(-((v / 3.0) ** 2))
+            return v - abs(v) * z * 5.0 / slides
+
+        exact = {"rtol": 1e-8, "max_step": DT}
+        z = solve_ivp(bends, (0, TIME[-1]), [0.0], t_eval=TIME, **exact).y[0]
+        x = size * (np.sin(4.4 * TIME) + 1.8 / 9.1 * np.sin(9.1 * TIME))
+        noise = NOISE * np.random.default_rng(seed).standard_normal(len(x))
+        given.append(record(f"{seed}", x, 5.0 * z + 0.03 * np.gradient(x, DT) + noise))
+    begun = one_coordinate(tuple(given), Quantities("position", "force"), "linear")
+    sample = ScoredSamples.of(tuple(given))
+    score = Score(sample, np.zeros((len(sample), 0)), NOISE**2)
+    known = ["friction", "hysteretic-force", "slider-with-gap"]
+    found = search(best_host(list(begun), score), score, offered=known)
+    best = min(found, key=lambda item: item.score)
+    assert best.effects == ("friction",)
+    assert best.forms == ("LuGre",)
+    law = next(x for x in best.state.chain if x.name == "lugre-force")
+    assert law.coulomb == pytest.approx(2.0, rel=0.02)
+    assert law.presliding_distance == pytest.approx(3.0 / 5.0, rel=0.02)
+    assert law.static_excess == pytest.approx(1.0, rel=0.05)
+    assert law.stribeck_velocity == pytest.approx(3.0, rel=0.05)
+
+
 def test_a_host_without_a_force_stands_first(found):
     assert found[0].effects == ()
     assert found[0].score > min(item.score for item in found) + 100

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.hysteretic_force import HystereticForce
+from hystbench.blocks.lugre_force import LuGreForce
 from hystbench.blocks.smooth_friction import SmoothFriction
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.law import Law, Moved
@@ -29,7 +30,7 @@ class Friction(Effect):
     name = "friction"
     shows = "branch"
     place = "mechanics"
-    laws = ("friction-force", "smooth-friction", "hysteretic-force")
+    laws = ("friction-force", "lugre-force", "smooth-friction", "hysteretic-force")
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer it behind the mechanics, by the velocity at which it saturates."""
@@ -64,6 +65,7 @@ class Friction(Effect):
                 "stribeck_velocity": 0.1 * moved.speed,
             }
             yield Law("Stribeck", FrictionForce(**own), tuple(own))
+            yield Law("LuGre", LuGreForce(**own), tuple(own))
         for share in (0.03, 0.3):
             dahl = {
                 "largest": share * moved.force,
