@@ -12,6 +12,7 @@ from hystbench.blocks.dead_zone import DeadZone
 from hystbench.blocks.drive_saturation import DriveSaturation
 from hystbench.blocks.input_delay import InputDelay, later
 from hystbench.blocks.slew_limit import SlewLimit
+from hystbench.errors import InputError
 
 DT = 1e-3
 Z = np.array([-2.0, -0.3, 0.0, 0.3, 1.0, 3.0])
@@ -25,6 +26,19 @@ def test_saturation_and_dead_zone_worked_out_by_hand():
     np.testing.assert_array_equal(
         DeadZone(half_width=0.5).simulate(Z, Z, DT), [-1.5, 0.0, 0.0, 0.0, 0.5, 2.5]
     )
+
+
+def test_a_dead_zone_is_rounded_and_never_falls():
+    rounded = DeadZone(half_width=0.5, rounding=0.5)
+    z = np.linspace(-4.0, 4.0, 801)
+    v = rounded.simulate(z, z, DT)
+    assert np.diff(v).min() > 0
+    assert np.gradient(v, z)[400] == pytest.approx(0.0, abs=1e-3)
+    np.testing.assert_allclose(v[[0, -1]], [-3.5, 3.5], atol=1e-6)
+    nearly = DeadZone(half_width=0.5, rounding=1e6).simulate(z, z, DT)
+    np.testing.assert_allclose(nearly, z, atol=1e-5)
+    with pytest.raises(InputError, match="expected 0 or at least half_width, 0.5"):
+        DeadZone(half_width=0.5, rounding=0.4)
 
 
 def follow(z, step, parts=500):

@@ -72,6 +72,12 @@ static double hb_saturation(double level, double sharpness, double z)
     return z / pow(1 + pow(fabs(ratio), sharpness), 1 / sharpness);
 }
 
+static double hb_rounded_dead_zone(double half_width, double rounding, double z)
+{
+    if (rounding == 0) return hb_dead_zone(half_width, z);
+    return z - half_width * tanh(z / rounding);
+}
+
 static double hb_backlash(double half_width, double *started, double *w, double z)
 {
     if (*started == 0) *w = z;

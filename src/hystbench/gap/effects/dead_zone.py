@@ -12,7 +12,7 @@ from hystbench.gap.simulation.simulation import Simulation
 
 
 class DeadZone(Effect):
-    """A dead zone of up to half of the largest input."""
+    """A dead zone of up to half of the largest input, with corners or rounded."""
 
     name = "dead-zone"
     shows = "amplitude"
@@ -24,8 +24,18 @@ class DeadZone(Effect):
             largest = simulation.largest(place)
             widths = logarithmic(1e-3 * largest, 0.5 * largest, 4)
             yield self.inserted(simulation, place, grids={"half_width": widths})
+            yield self.inserted(
+                simulation,
+                place,
+                form="rounded",
+                grids={"rounding": widths},
+                unit={"half_width": 1e-3 * widths[0]},
+                positive=("half_width",),
+            )
 
     def around(self, passed: Passed) -> Iterator[Law]:
         """Offer narrow and wide ones before the host."""
         for share in (0.02, 0.15):
-            yield self.curve("before", half_width=share * passed.given)
+            width = share * passed.given
+            yield self.curve("before", half_width=width)
+            yield self.curve("before", "rounded", half_width=width, rounding=2 * width)

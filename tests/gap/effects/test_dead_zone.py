@@ -1,0 +1,43 @@
+"""A dead zone with rounded corners, as of an amplifier without feedback."""
+
+import numpy as np
+import pytest
+
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.model import Model
+from hystbench.record import Channel, Record
+from tests.gap.searched import search
+
+DT, COUNT, NOISE = 1e-3, 1500, 0.004
+DRIVE, OUTPUT = Channel("drive", "V"), Channel("output", "V")
+POLE = TransferFunction(numerator=(1.0,), denominator=(4e-3, 1.0), hold="linear")
+
+
+def records(bend):
+    random = np.random.default_rng(3)
+    found = []
+    for k, size in enumerate((0.4, 1.5)):
+        slow = np.convolve(random.standard_normal(COUNT + 40), np.hanning(41), "valid")
+        u = size * slow / np.std(slow)
+        given = bend(u)
+        y = POLE.simulate(given, given, DT) + NOISE * random.standard_normal(COUNT)
+        found.append(Record(f"run-{k}", DT, u, y, DRIVE, OUTPUT, "measured", "fit"))
+    return tuple(found)
+
+
+def test_a_crossover_is_a_dead_zone_with_its_width_and_rounding():
+    given = records(lambda u: u - 0.18 * np.tanh(u / 0.2))
+    answer = search("amplifier", given, Model("pole", DRIVE, OUTPUT, (POLE,)), "linear")
+    (effect,) = answer.content["effects"]
+    assert effect["name"] == "dead-zone"
+    assert effect["parameters"]["half_width"]["value"] == pytest.approx(0.18, rel=0.02)
+    assert effect["parameters"]["rounding"]["value"] == pytest.approx(0.2, rel=0.05)
+
+
+def test_corners_are_not_rounded():
+    given = records(lambda u: np.sign(u) * np.maximum(np.abs(u) - 0.2, 0.0))
+    answer = search("amplifier", given, Model("pole", DRIVE, OUTPUT, (POLE,)), "linear")
+    (effect,) = answer.content["effects"]
+    assert effect["name"] == "dead-zone"
+    assert effect["parameters"]["half_width"]["value"] == pytest.approx(0.2, rel=0.02)
+    assert effect["parameters"]["rounding"]["value"] == 0.0
