@@ -36,6 +36,11 @@ WN = 2 * np.pi * 65.0
 CASES = {
     "drive-lag": (DriveLag(time_constant_s=0.002), [1.0], [0.002, 1.0]),
     "sensor-lag": (SensorLag(time_constant_s=0.0007), [1.0], [0.0007, 1.0]),
+    "sensor-lag of second order": (
+        SensorLag(time_constant_s=0.0007, damping_ratio=0.8),
+        [1.0],
+        [0.0007**2, 2 * 0.8 * 0.0007, 1.0],
+    ),
     # (1 - p) + p wn^2 / (...) on one denominator, by hand.
     "resonance": (
         Resonance(frequency_hz=65.0, damping_ratio=0.03, participation=-0.2),
@@ -67,7 +72,11 @@ def test_every_linear_block_has_a_case():
     linear = {k for k, block in registry().items() if issubclass(block, LinearBlock)}
     # Diffusion is no ratio of polynomials; its own test is below, and so is that of
     # creep over decades.
-    assert linear == {*CASES, "eddy-diffusion", "logarithmic-creep"}
+    assert linear == {
+        *(name.split()[0] for name in CASES),
+        "eddy-diffusion",
+        "logarithmic-creep",
+    }
 
 
 @pytest.mark.parametrize("power", [0.0, 0.3])

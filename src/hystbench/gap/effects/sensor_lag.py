@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
+import numpy as np
+
+from hystbench.blocks.sensor_lag import SensorLag as Block
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.law import Law, Passed
 from hystbench.gap.effects.places import places_in_sensor
 from hystbench.gap.effects.variant import Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
+FILTERS = (0.5, 1.5)
+"""Damping ratios of a filter that neither rings, as a mode does, nor is two lags of
+which one counts."""
+
 
 class SensorLag(Effect):
-    """A first-order lag behind the last block."""
+    """A lag behind the last block, of first or second order."""
 
     name = "sensor-lag"
     shows = "frequency"
@@ -23,7 +31,24 @@ class SensorLag(Effect):
         times = logarithmic(simulation.step / 20, simulation.span / 20)
         for place in places_in_sensor(simulation, linear=True):
             yield self.inserted(simulation, place, grids={"time_constant_s": times})
+            yield self.inserted(
+                simulation,
+                place,
+                form="second order",
+                grids={"time_constant_s": times, "damping_ratio": np.array([0.6, 1.0])},
+                limits={"damping_ratio": FILTERS},
+            )
 
     def around(self, passed: Passed) -> Iterator[Law]:
         """Offer it behind the host."""
-        yield self.filter_around(passed, "time_constant_s", "behind", start="settled")
+        first = self.filter_around(passed, "time_constant_s", "behind", start="settled")
+        yield first
+        yield replace(
+            first,
+            form="second order",
+            block=Block.from_mapping(
+                {**first.block.to_mapping(), "damping_ratio": 0.8}
+            ),
+            free=(*first.free, "damping_ratio"),
+            ranges={**first.ranges, "damping_ratio": FILTERS},
+        )
