@@ -71,7 +71,7 @@ def read(path: Path, wanted: Collection[str] | None = None) -> Table:
     text, encoding = decoded(path, "a CSV file")
     notes = [] if encoding == "UTF-8" else [f"read as {encoding}"]
     lines = text.splitlines()
-    layout = layout_of(path, lines)
+    layout = layout_of(lines)
     if layout is None:
         raise InputError(f"{path}: {_no_numbers(lines, wanted)}")
     rows = _rows(text, lines, layout.first)
@@ -122,7 +122,7 @@ def _rows(text: str, lines: Sequence[str], first: int) -> Sequence[int]:
     ]
 
 
-def layout_of(path: Path, lines: Sequence[str]) -> Layout | None:
+def layout_of(lines: Sequence[str]) -> Layout | None:
     """Find how a text is laid out; None where it has no two rows of numbers."""
     some = [
         (k, line)

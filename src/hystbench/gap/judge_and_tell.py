@@ -21,10 +21,9 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.uncertainty import (
     beside_errors,
     on_more_samples,
-    size_error,
+    size_error_or_none,
     standard_errors,
 )
-from hystbench.gap.judging.black_box import BlackBox, black_box
 from hystbench.gap.judging.effect_rows import (
     effect_mapping,
     not_tried,
@@ -46,6 +45,7 @@ from hystbench.gap.locate.level import beside_level
 from hystbench.gap.locate.view import LEAST_SHARE
 from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.ladder import contributions, rungs
+from hystbench.gap.records.black_box import BlackBox, black_box
 from hystbench.gap.records.floor import Floor, lone_share, unrepeated
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.model import Model
@@ -231,7 +231,7 @@ def _effects(
             of_beside,
             by_effect.get(item.effect, ()),
             left,
-            size_error(finer, floor.rms, number),
+            size_error_or_none(finer, floor.rms**2, number),
             trust,
         )
         | {"blocks": blocks_of(item, state, model)}

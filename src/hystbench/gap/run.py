@@ -25,12 +25,12 @@ from hystbench.gap.holdout.outcome import outcome
 from hystbench.gap.holdout.show import Outcome
 from hystbench.gap.inside.named_inside import quantities_if_linear
 from hystbench.gap.judge_and_tell import Decision
-from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.naming.built_in import BuiltIn, build_in
 from hystbench.gap.naming.forecast_calls import reserve_calls
 from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.progress import Say, silent
+from hystbench.gap.records.black_box import black_box
 from hystbench.gap.records.evidence import Evidence, check_units
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.search import search

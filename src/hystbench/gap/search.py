@@ -26,8 +26,8 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.named_inside import (
     Inside,
     apart_inside,
-    beats,
-    betters,
+    beats_base,
+    beats_chain,
     named_inside,
 )
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
@@ -205,7 +205,7 @@ def _beside(
         start, floor, inside, own = _with_forces(
             base, start, floor, quantities, declared, asked, most
         )
-        if inside is not None and not betters(inside, start, floor.rms):
+        if inside is not None and not beats_base(inside, start, floor.rms):
             say("inside: what stands for the base leaves more than the base does")
             (start, floor), inside, own = whole, None, NONE
     if inside is not None:
@@ -218,7 +218,7 @@ def _beside(
             say(f"inside: {enough}, so no chain of effects is tried")
             return _Searched(base, start, floor, None, inside, own)
     chain = in_a_chain() if start is first else add_effects(start, floor.rms, asked)
-    if inside is not None and not beats(inside, chain, floor.rms, say):
+    if inside is not None and not beats_chain(inside, chain, floor.rms, say):
         inside = None
     return _Searched(base, start, floor, chain, inside, own)
 
@@ -234,7 +234,7 @@ def _apart(found: _Searched, asked: Asked) -> _Searched:
     if (
         inside is not None
         and own.records
-        and not beats(inside, chain, floor.rms, asked.say)
+        and not beats_chain(inside, chain, floor.rms, asked.say)
     ):
         inside = None
     own = found.own if inside is not None else own

@@ -40,4 +40,4 @@ def test_corners_are_not_rounded():
     (effect,) = answer.content["effects"]
     assert effect["name"] == "dead-zone"
     assert effect["parameters"]["half_width"]["value"] == pytest.approx(0.2, rel=0.02)
-    assert effect["parameters"]["rounding"]["value"] == 0.0
+    assert list(effect["parameters"]) == ["half_width"]

@@ -31,7 +31,7 @@ from tests.gap.searched import search
 from tests.gap.small import block, state_of
 
 DT, COUNT, NOISE = 1e-3, 800, 0.02
-GAIN, LAG_S = 12.0, 0.006
+GAIN, LAG_S = 12.0, 0.007
 
 
 def tones(time, seed):

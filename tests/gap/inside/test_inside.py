@@ -29,7 +29,6 @@ from hystbench.gap.inside.combine_forces import (
     with_one_fewer,
 )
 from hystbench.gap.inside.host import best_host
-from hystbench.gap.inside.hosts import hosts, is_seen_moving
 from hystbench.gap.inside.insert_law import (
     Times,
     evened,
@@ -39,12 +38,13 @@ from hystbench.gap.inside.insert_law import (
 )
 from hystbench.gap.inside.named_inside import (
     Inside,
-    beats,
-    betters,
+    beats_base,
+    beats_chain,
     named_inside,
     re_tuning,
 )
 from hystbench.gap.inside.one_coordinate import free_masses, one_coordinate
+from hystbench.gap.inside.possible_hosts import hosts, is_seen_moving
 from hystbench.gap.inside.same_as import same_as
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.records.free_mass import decay_of_free_mass, windows
@@ -123,13 +123,15 @@ def test_friction_of_bristles_is_found_with_its_numbers():
         def bends(t, z, size=size):
             v = size * (4.4 * np.cos(4.4 * t) + 1.8 * np.cos(9.1 * t))
             slides = 2.0 + 1.0 * np.exp(-((v / 3.0) ** 2))
-            return v - abs(v) * z * 5.0 / slides
+            return v - abs(v) * z * 100.0 / slides
 
         exact = {"rtol": 1e-8, "max_step": DT}
         z = solve_ivp(bends, (0, TIME[-1]), [0.0], t_eval=TIME, **exact).y[0]
         x = size * (np.sin(4.4 * TIME) + 1.8 / 9.1 * np.sin(9.1 * TIME))
         noise = NOISE * np.random.default_rng(seed).standard_normal(len(x))
-        given.append(record(f"{seed}", x, 5.0 * z + 0.03 * np.gradient(x, DT) + noise))
+        given.append(
+            record(f"{seed}", x, 100.0 * z + 0.03 * np.gradient(x, DT) + noise)
+        )
     begun = one_coordinate(tuple(given), Quantities("position", "force"), "linear")
     sample = ScoredSamples.of(tuple(given))
     score = Score(sample, np.zeros((len(sample), 0)), NOISE**2)
@@ -140,7 +142,7 @@ def test_friction_of_bristles_is_found_with_its_numbers():
     assert best.forms == ("LuGre",)
     law = next(x for x in best.state.chain if x.name == "lugre-force")
     assert law.coulomb == pytest.approx(2.0, rel=0.02)
-    assert law.presliding_distance == pytest.approx(3.0 / 5.0, rel=0.02)
+    assert law.presliding_distance == pytest.approx(3.0 / 100.0, rel=0.02)
     assert law.static_excess == pytest.approx(1.0, rel=0.05)
     assert law.stribeck_velocity == pytest.approx(3.0, rel=0.05)
 
@@ -662,7 +664,7 @@ def test_an_effect_that_makes_up_for_what_its_host_lacks_is_not_missing(after, p
     )
     model = Model("rig", *(Channel("in", "V"), Channel("out", "mm")), base.chain)
     inside = Inside(model, base, Named(found, ()), "")
-    assert betters(inside, base, 0.01) == pays
+    assert beats_base(inside, base, 0.01) == pays
 
 
 @pytest.mark.parametrize(
@@ -679,7 +681,7 @@ def test_what_a_chain_needs_more_counts_against_it(monkeypatch, chain, gain, bet
         "hystbench.gap.inside.named_inside.gain_held_back",
         lambda _, found, score: gain if found is inside.named.state else 0.0,
     )
-    assert beats(inside, named, NOISE) == better
+    assert beats_chain(inside, named, NOISE) == better
 
 
 def test_a_stop_on_both_sides_without_a_clearance_is_a_spring_and_no_stop():

@@ -19,7 +19,7 @@ from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside import store_hosts as of_stores
 from hystbench.gap.inside.choose import chosen
 from hystbench.gap.inside.host import best_host
-from hystbench.gap.inside.hosts import hosts
+from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.inside.store_hosts import (
     all_are_seen_filling,
     may_be_stores,

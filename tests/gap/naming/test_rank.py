@@ -218,10 +218,10 @@ def test_one_that_was_not_judged_on_records_held_back_is_never_first(monkeypatch
     monkeypatch.setattr(module, "EXACT", 1)
     for name in judges:
         monkeypatch.setattr(module, name, judge(name))
-    names = ("sensor-lag", "rate-dependent-hysteresis", "eddy-diffusion", "input-delay")
+    names = ("sensor-lag", "rate-dependent-hysteresis", "eddy-diffusion", "drive-lag")
     lag = block("sensor-lag", time_constant_s=0.004)
     first, *_ = ranked((*LOOP, lag), LOOP, names)
-    assert first.effect == "input-delay"
+    assert first.effect == "drive-lag"
     assert first.held_back is not None
 
 

@@ -10,8 +10,8 @@ from hystbench.gap.fitting.edit_chain import with_effect, without_effect
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.refit import refit
 from hystbench.gap.fitting.uncertainty import (
-    error_of_size,
     on_more_samples,
+    size_error,
     standard_errors,
 )
 from hystbench.gap.naming import removal as taken_out
@@ -75,7 +75,7 @@ def test_an_error_of_more_than_half_the_size_decides(
     error, held_back, kept, monkeypatch
 ):
     """Unless records that did not fit the effect are foretold beyond doubt."""
-    monkeypatch.setattr(taken_out, "error_of_size", lambda *given: error)
+    monkeypatch.setattr(taken_out, "size_error", lambda *given: error)
     monkeypatch.setattr(taken_out, "gain_held_back", lambda *given: held_back)
     found = unknown(with_two(BEND), NOISE)
     assert names(with_two(BEND) if found is None else found[1]) == kept
@@ -103,7 +103,7 @@ def test_numbers_that_stand_in_for_each_other_do_not_hide_a_size():
     ]
     alone = [abs(finer.value(finer.free[k])) / errors[k] for k in own]
     assert np.nanmin(alone) < 1.0
-    assert error_of_size(finer, NOISE**2, 1) < 0.2
+    assert size_error(finer, NOISE**2, 1) < 0.2
     assert unknown(state, NOISE) is None
 
 
@@ -189,5 +189,5 @@ def test_what_a_wrong_shape_could_do_as_well_has_a_size_all_the_same():
     added = without_effect(finer, 1).settled().residual - finer.residual
     inside = score.directions @ (score.directions.T @ added)
     assert np.std(added - inside) < 0.1 * np.std(added)
-    assert error_of_size(finer, NOISE**2, 1) < 0.1
+    assert size_error(finer, NOISE**2, 1) < 0.1
     assert unknown(state, NOISE) is None

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from hystbench.gap.holdout.shrink import shrink
-from hystbench.gap.judging.black_box import BlackBox
 from hystbench.gap.locate.samples import ViewSamples
+from hystbench.gap.records.black_box import BlackBox
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.folds import make_folds

@@ -76,6 +76,24 @@ def test_a_static_curve_of_the_input_lies_inside(state, basis):
     assert rest < 0.03 * whole
 
 
+def forgets(u, way):
+    """Dahl's and Duhem's simplest loop, in many small steps along the way."""
+    h, found = 0.0, []
+    for step in np.diff(u, prepend=0.0):
+        for _ in range(50):
+            h += step / 50 - abs(step) / 50 * h / way
+        found.append(h)
+    return np.array(found)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.25, 0.6])
+def test_a_loop_whose_small_loops_do_not_close_lies_inside(state, basis, share):
+    amplitude = max(np.abs(one.u).max() for one in records())
+    loops = [forgets(one.u, share * amplitude) for one in records()]
+    rest, whole = left_over(basis, loops, state.sample)
+    assert rest < 0.01 * whole
+
+
 @pytest.mark.parametrize("kind", ["delay", "tone", "ramp"])
 def test_what_is_no_hysteresis_lies_outside(state, basis, kind):
     signals = {

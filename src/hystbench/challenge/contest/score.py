@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from hystbench.challenge.contest.parameters import recovered
-from hystbench.challenge.contest.place import where_hit
+from hystbench.challenge.contest.view_hit import where_hit
 from hystbench.challenge.plant.inside import MACHINES
 from hystbench.errors import InputError
 from hystbench.files import write_csv

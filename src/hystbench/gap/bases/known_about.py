@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -85,6 +86,12 @@ def _told(model: Model, labels: Mapping[str, str]) -> dict[str, Provenance]:
     return found
 
 
+def defaults(block: Block) -> dict[str, Any]:
+    """Give what each parameter of a block is where nobody states it, by name."""
+    usual = {item.name: item.default for item in fields(block)}
+    return {name: usual[name] for name in block.parameters()}
+
+
 def stated(block: Block) -> list[str]:
     """Give the numbers of a block that are not what they are where nobody states them.
 
@@ -94,11 +101,10 @@ def stated(block: Block) -> list[str]:
     """
     if block.hysteretic or isinstance(block, InputDelay):
         return []
-    usual = {item.name: item.default for item in fields(block)}
     found = []
-    for name in block.parameters():
+    for name, usual in defaults(block).items():
         value = getattr(block, name)
-        if isinstance(value, str) or value == usual.get(name):
+        if isinstance(value, str) or value == usual:
             continue
         numbers = np.atleast_1d(np.asarray(value, dtype=float))
         poles = name == "denominator" and len(numbers) > HIGHEST + 1

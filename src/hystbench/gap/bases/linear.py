@@ -19,7 +19,7 @@ from hystbench.gap.bases.orders import (
     Found,
     Judged,
     Orders,
-    as_good,
+    none_lowers_both,
     simplest_as_good,
     with_plainest_start,
 )
@@ -103,11 +103,11 @@ def linear_of(evidence: Evidence) -> Linear:
     to 6 are fitted to the spectra first, then by least squares on simulation with the
     dataset's hold, without the first tenth of each record, and with an offset of each
     record where its zero is not physical. Where order 5 or more is needed, modes are
-    added one by one, up to order 12. The order is the lowest whose error is within 2 %
-    of the best on folds of the fit records, or on all of them; then the numerator is
-    shortened by the same rule, and the input may come up to a sample early or late.
-    Where a motion makes a force, the impedance of a mass on a spring is tried as well.
-    Deterministic.
+    added one by one, up to order 12. The order is the lowest of which no other one
+    lowers both errors by more than 2 %, that on folds of the fit records and that on
+    all of them; then the numerator is shortened by the same rule, and the input may
+    come up to a sample early or late. Where a motion makes a force, the impedance of a
+    mass on a spring is tried as well. Deterministic.
 
     Parameters
     ----------
@@ -123,16 +123,16 @@ def linear_of(evidence: Evidence) -> Linear:
     moved = impedance(orders)
     tried: list[Judged] = [gain, *found] if moved is None else [gain, moved[0], *found]
     chain: tuple[Block, ...]
-    if as_good(gain, tried):
+    if none_lowers_both(gain, tried):
         gain = static(everything)
         value, offset = gain.numbers
         chain = (Gain(value=value, offset=offset),)
         fit, fold, what = gain.fit, gain.folds, "order 0 (a gain and an offset)"
-    elif moved is not None and as_good(moved[0], tried):
+    elif moved is not None and none_lowers_both(moved[0], tried):
         (fit, fold, _), block = moved
         chain, what = (block,), "the impedance of a mass on a spring"
     else:
-        chosen = next(item for item in found if as_good(item, tried))
+        chosen = next(item for item in found if none_lowers_both(item, tried))
         steps = {item.dt for item in evidence.fit}
         chosen = simplest_as_good(
             chosen, tried, min(steps) if len(steps) == 1 else None

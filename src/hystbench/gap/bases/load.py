@@ -17,11 +17,11 @@ from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.simulator import Simulator
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
-from hystbench.gap.bases.given import split_given
 from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.bases.kinds import COMMAND, IDENTIFIED, kind_of_base
 from hystbench.gap.bases.linear import identified_linear
 from hystbench.gap.bases.orders import HIGHEST
+from hystbench.gap.bases.split_given import split_given
 from hystbench.gap.cache import records_digest, remembered
 from hystbench.gap.records.evidence import Evidence, check_units
 from hystbench.gap.simulation.simulation import Simulation

@@ -67,7 +67,7 @@ def lowers(better: Judged, item: Judged, share: float = NUMBER_PAYS) -> bool:
     return better.fit < most * item.fit and better.folds < most * item.folds
 
 
-def as_good(item: Judged, others: Iterable[Judged]) -> bool:
+def none_lowers_both(item: Judged, others: Iterable[Judged]) -> bool:
     """Tell whether no other model lowers both errors of one by what a number pays."""
     return not any(lowers(other, item) for other in others)
 
@@ -162,7 +162,7 @@ class Orders:
         for order in range(1, HIGHEST + 1):
             found.append(self.of(order, order))
             in_vain = 0 if lowers(found[-1], plain) else in_vain + 1
-            plain = next(x for x in (without, *found) if as_good(x, found))
+            plain = next(x for x in (without, *found) if none_lowers_both(x, found))
             if in_vain > IN_VAIN:
                 break
         if isinstance(plain, Found) and len(plain.ratio.a) >= MANY:
@@ -222,7 +222,7 @@ def simplest_as_good(
     motion = found.orders.evidence.quantities.causality == "force to motion"
     for plain in tried[-2:]:
         timed = None if step is None else in_time(plain, step)
-        if timed is None or not as_good(timed, others):
+        if timed is None or not none_lowers_both(timed, others):
             continue
         simpler = _simpler(timed, [*others, timed])
         # What grows with the frequency, as the force on a mass that is moved, asks for
@@ -238,7 +238,7 @@ def _simpler(timed: Found, others: Sequence[Judged]) -> Found:
     lower = (
         timed.orders.of(k, min(k, zeros)) for k in range(1, min(order, HIGHEST + 1))
     )
-    found = next((item for item in lower if as_good(item, others)), timed)
+    found = next((item for item in lower if none_lowers_both(item, others)), timed)
     return _last_good(_shorter(found, others), others)
 
 
@@ -248,13 +248,13 @@ def _shorter(found: Found, others: Sequence[Judged]) -> list[Found]:
     fewer = reversed(range(len(found.ratio.b) - 1)) if order <= HIGHEST else ()
     for zeros in fewer:
         tried.append(found.orders.of(order, zeros))
-        if not as_good(tried[-1], others):
+        if not none_lowers_both(tried[-1], others):
             break
     return tried
 
 
 def _last_good(tried: Sequence[Found], others: Sequence[Judged]) -> Found:
-    return next(item for item in reversed(tried) if as_good(item, others))
+    return next(item for item in reversed(tried) if none_lowers_both(item, others))
 
 
 def in_time(plain: Found, step: float) -> Found | None:

@@ -19,6 +19,9 @@ HOLDS = 1e-7
 so little."""
 SOON = 1e-3
 """The same where it gives way along a curve."""
+BENDS = 0.1
+"""The same, at most, where it falls with the velocity, as no hysteretic force does:
+there is friction that slides on most of its way."""
 VISCOUS = 1.0
 """Of the fastest velocity: there the tangent is a quarter below a straight line. What
 bends less is as much as viscous."""
@@ -65,18 +68,16 @@ class Friction(Effect):
                 "stribeck_velocity": 0.1 * moved.speed,
             }
             yield Law("Stribeck", FrictionForce(**own), tuple(own))
-            yield Law("LuGre", LuGreForce(**own), tuple(own))
+            ranges = {"presliding_distance": (0.0, BENDS * moved.reach)}
+            yield Law("LuGre", LuGreForce(**own), tuple(own), ranges=ranges)
         for share in (0.03, 0.3):
             dahl = {
                 "largest": share * moved.force,
                 "yield_distance": SOON * moved.reach,
             }
-            yield Law(
-                "Dahl",
-                HystereticForce(**dahl, sharing=0.0),
-                tuple(dahl),
-                ranges={"yield_distance": (0.0, SLIDES * moved.reach)},
-            )
+            block = HystereticForce(**dahl, sharing=0.0)
+            ranges = {"yield_distance": (0.0, SLIDES * moved.reach)}
+            yield Law("Dahl", block, tuple(dahl), ranges=ranges)
         for share in (0.03, 0.3):
             smooth = {
                 "coulomb": 0.1 * moved.force,

@@ -7,7 +7,7 @@ from dataclasses import replace
 from hystbench.blocks import block_class
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import SETTINGS
-from hystbench.gap.bases.known_about import as_it_was
+from hystbench.gap.bases.known_about import as_it_was, defaults
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.model import Model
@@ -17,9 +17,9 @@ def augmented(base: Model, state: ModelState) -> Model:
     """Give the base with the effects that were added, as a model that runs anywhere.
 
     What is new in every record has the mean amplitude and the first record's phase.
-    Free are the numbers of the effects, and those that the base leaves free, within the
-    same share of what they are now. What the base tells of where numbers came from
-    stays with those that were not re-tuned.
+    Free are the numbers of the effects, but for those that no law of theirs has, and
+    those that the base leaves free, within the same share of what they are now. What
+    the base tells of where numbers came from stays with those that were not re-tuned.
     """
     chain = (*state.chain, *beside_blocks(state))
     about = f"{base.name}-augmented", base.input, base.output, chain
@@ -34,8 +34,13 @@ def augmented(base: Model, state: ModelState) -> Model:
         for item in state.free
         if given or item.block in own
     }
-    effects = {labels[k] for k in own}
-    free = tuple(n for n in names if n in left or n.rpartition(".")[0] in effects)
+    stated = {
+        f"{labels[k]}.{name}"
+        for k in own
+        for name, usual in defaults(chain[k]).items()
+        if getattr(chain[k], name) != usual
+    }
+    free = tuple(name for name in names if name in left | stated)
     free = tuple(name for name in free if _numeric(model, name))
     now = _names_now(base, state, labels)
     return replace(

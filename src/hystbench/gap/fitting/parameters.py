@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.blocks.parameter import SETTINGS
+from hystbench.gap.bases.known_about import defaults
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import beside_blocks, places_of_base
 from hystbench.gap.fitting.parameter_units import unit_at, unit_behind, written
@@ -79,14 +80,18 @@ def parameters_of(
             found[label] = _number(value, error, _unit(unit, place, state))
         return found
     numbers = effects()[item.effect].numbers
+    fitted = {(free.block, free.parameter) for free in state.free}
     for place in item.blocks:
         block = state.chain[place]
         if block.name not in (item.effect, *effects()[item.effect].laws):
             continue  # what the effect left of a block that it was taken out of
+        usual = defaults(block)
         for key, about in block.parameters().items():
             value = getattr(block, key)
             if key in SETTINGS or value == () or (numbers and key not in numbers):
                 continue
+            if value == usual[key] and (place, key) not in fitted:
+                continue  # no law that was named has it
             error = _errors_of(place, key, value, state, errors)
             count = 1 + sum(name.partition("#")[0] == key for name in found)
             label = key if count == 1 else f"{key}#{count}"

@@ -79,7 +79,7 @@ def standard_errors(state: ModelState, score: Score) -> FloatArray:
     return _errors(columns, residual, usable, state, score.floor)[: len(state.free)]
 
 
-def error_of_size(state: ModelState, floor: float, number: int) -> float:
+def size_error(state: ModelState, floor: float, number: int) -> float:
     """Estimate the standard error of an added effect's size, as a share of it.
 
     Of all its numbers together: they may stand in for each other, and none of them be
@@ -112,7 +112,7 @@ def error_of_size(state: ModelState, floor: float, number: int) -> float:
     return float(_errors(columns, residual, usable, state, floor, uncounted=1)[0])
 
 
-def size_error(state: ModelState, floor_rms: float, number: int) -> float | None:
+def size_error_or_none(state: ModelState, floor: float, number: int) -> float | None:
     """Give the same of an effect whose size can be told, else None.
 
     Of a signal beside the chain its own numbers tell; of an effect that others stand
@@ -120,7 +120,7 @@ def size_error(state: ModelState, floor_rms: float, number: int) -> float | None
     """
     if not state.added[number].blocks or not removable(state, number):
         return None
-    error = error_of_size(state, floor_rms**2, number)
+    error = size_error(state, floor, number)
     return error if np.isfinite(error) else None
 
 

@@ -1,6 +1,7 @@
 """Naming effects inside the dynamics, also of records with a zero of their own.
 
-Whether they do better than those in the chain is asked afterwards (:func:`beats`).
+Whether they do better than those in the chain is asked afterwards
+(:func:`beats_chain`).
 """
 
 from __future__ import annotations
@@ -29,8 +30,8 @@ from hystbench.gap.inside.further_modes import (
     with_modes,
 )
 from hystbench.gap.inside.host import ZEROS, Host
-from hystbench.gap.inside.hosts import hosts
 from hystbench.gap.inside.insert_law import Times, host_places, laws_for
+from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
@@ -278,7 +279,7 @@ def apart_inside(
     return found
 
 
-def betters(inside: Inside, start: ModelState, floor_rms: float) -> bool:
+def beats_base(inside: Inside, start: ModelState, floor_rms: float) -> bool:
     """Tell whether effects inside lower the base's score by what one has to gain.
 
     A model of one coordinate may lack what a base of higher order has: an effect that
@@ -288,7 +289,9 @@ def betters(inside: Inside, start: ModelState, floor_rms: float) -> bool:
     return score_of(start, score) - score_of(inside.named.state, score) >= PAYS
 
 
-def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> bool:
+def beats_chain(
+    inside: Inside, named: Named, floor_rms: float, say: Say = silent
+) -> bool:
     """Tell whether effects inside do better than those in a chain.
 
     They have to lower the score on folds by as much as any effect; what the chain

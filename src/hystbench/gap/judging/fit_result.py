@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.judging.black_box import BlackBox
 from hystbench.gap.naming.ladder import Rung
+from hystbench.gap.records.black_box import BlackBox
 from hystbench.gap.records.floor import Floor
 from hystbench.model import Model
 

@@ -128,7 +128,7 @@ def judge(
         return "unnamed", (
             f"on the fit records a gap of {left.after:.2g} times the noise power is "
             "there and no effect of the vocabulary pays; "
-            f"{_box_words(explained_by_box, 'it')}"
+            f"{_box_words(explained_by_box)}"
         )
     much = unnamed.too_much(unnamed_share)
     if much and not left.may_be_of_base:
@@ -168,7 +168,7 @@ def _why_new(left: Left, unrelated: Unnamed | None, explained: float | None) -> 
         follows = "the input no more than when it is moved in time against it"
     return (
         f"what is left on the fit records, {left.after:.2g} times the power of the "
-        f"noise floor, follows {follows}; {_box_words(explained, 'it')}"
+        f"noise floor, follows {follows}; {_box_words(explained)}"
     )
 
 
@@ -269,12 +269,12 @@ def _listed(value: Any) -> Sequence[Any]:
     return value if isinstance(value, list | tuple) else (value,)
 
 
-def _box_words(explained: float | None, what: str) -> str:
+def _box_words(explained: float | None) -> str:
     if explained is None:
-        return f"how much of {what} a black box takes away on folds is not known"
+        return "how much of it a black box takes away on folds is not known"
     if explained < 0:
-        return f"a black box makes {what} worse on folds of the fit records"
+        return "a black box makes it worse on folds of the fit records"
     return (
-        f"a black box takes {100 * explained:.0f} % of the power of {what} away on "
+        f"a black box takes {100 * explained:.0f} % of its power away on "
         "folds of the fit records"
     )

@@ -14,6 +14,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import among, effects
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.hysteresis import Hysteresis
+from hystbench.gap.effects.variant import Variant
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.model_score import score_of
@@ -41,6 +42,7 @@ BEHIND = 0.75
 EXACT = 3
 """Of the finalists, those that are simulated exactly before one is taken."""
 FITTED_WITH_IT = "the shape of a hysteresis whose weights are free is fitted with it"
+REFUSED = "fits best where"
 AT_AN_END = "fits best at the end of what it can be"
 ALIKE_WITHOUT = "the same curves fit alike without"
 
@@ -134,7 +136,7 @@ def rank(
     ]
     # A form that bends far on all records may still foretell none of them.
     judged = best_forms(
-        _each_judged(likely, state, score, now, folds),
+        _each_judged(likely, refined, state, score, now, folds),
         lambda item: on_folds(item, state, score).score,
     )
     finalists = {trial.variant.effect for trial in likely}
@@ -222,19 +224,36 @@ def _candidate(trial: Trial, now: float) -> Candidate:
 
 
 def _each_judged(
-    likely: Sequence[Trial], state: ModelState, score: Score, now: float, folds: bool
+    likely: Sequence[Trial],
+    every: Sequence[Trial],
+    state: ModelState,
+    score: Score,
+    now: float,
+    folds: bool,
 ) -> Iterator[Candidate]:
     """Judge effects, the likeliest first.
 
+    Where a block refuses the numbers of an effect's best law, the next one is judged.
     What is not judged on folds only has to do better than one that stands: far behind
     the best so far, beyond what a free form is charged beside it, a refit ends early.
     """
     wanted = np.inf
     for trial in likely:
         item = _judged(trial, state, score, now, wanted)
+        for other in every if item.declined.startswith(REFUSED) else ():
+            if _is_other_law(other.variant, trial.variant):
+                next_law = _judged(other, state, score, now, wanted)
+                if not next_law.declined:
+                    item = next_law
+                    break
         if not folds and item.state is not None:
             wanted = min(wanted, item.score + CERTAIN + NEAR)
         yield item
+
+
+def _is_other_law(variant: Variant, of: Variant) -> bool:
+    """Tell whether a variant is another law of the same effect."""
+    return variant.effect == of.effect and variant.form != of.form and not variant.begun
 
 
 def _judged(
@@ -252,7 +271,7 @@ def _judged(
     try:
         after, value = added(state, trial, score, wanted)
     except InputError as error:
-        return declined(f"fits best where {error}")
+        return declined(f"{REFUSED} {error}")
     if end := at_end(after):
         return declined(f"{AT_AN_END}: {end}")
     if does_without_itself(after, after.added[-1], value, score):

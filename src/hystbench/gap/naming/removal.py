@@ -13,7 +13,7 @@ from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.state import Added, ModelState
-from hystbench.gap.fitting.uncertainty import error_of_size, on_more_samples
+from hystbench.gap.fitting.uncertainty import on_more_samples, size_error
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import CERTAIN, FURTHER, LOOSE, PAYS, SHAPE, UNKNOWN
 
@@ -117,7 +117,7 @@ def unknown(state: ModelState, floor_rms: float) -> Without | None:
         item = state.added[number]
         if not _is_judged(item, state) or not removable(state, number):
             continue
-        error = error_of_size(finer, floor_rms**2, number)
+        error = size_error(finer, floor_rms**2, number)
         if error <= UNKNOWN:
             continue
         short = without_effect(state, number)

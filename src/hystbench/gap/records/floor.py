@@ -18,6 +18,7 @@ from typing import Literal
 import numpy as np
 from scipy import fft
 
+from hystbench.gap.records.black_box import black_box
 from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import FloatArray, Record
 
@@ -39,8 +40,8 @@ class Floor:
     """RMS of the white noise on the output, in the output's unit; above zero."""
     method: Method
     """Differences of periods; stated by the dataset; or the high, unexcited part of the
-    residual's spectrum. The last is a bound: what a gap leaves up there is taken for
-    noise."""
+    residual's spectrum, as far as no black box foretells it. The last is a bound: what
+    a gap leaves up there, and no black box knows, is taken for noise."""
 
 
 def noise_floor(compared: Sequence[Compared], declared: float | None = None) -> Floor:
@@ -49,7 +50,8 @@ def noise_floor(compared: Sequence[Compared], declared: float | None = None) -> 
     A declared floor is taken as it is. Otherwise the first half of a record's periods
     is subtracted from the second half: no model enters, and what the input causes
     cancels, gap included. Where no record holds two whole periods, the residual is
-    read above the band that the input excites.
+    read above the band that the input excites; and it is no more than a black box
+    leaves on folds, which foretells the gap and no noise.
 
     Parameters
     ----------
@@ -77,7 +79,10 @@ def noise_floor(compared: Sequence[Compared], declared: float | None = None) -> 
     if repeated:
         return Floor(float(np.median(repeated)), "repeats")
     bounds = [_from_residual(item) for item in compared]
-    return Floor(float(np.median(bounds)), "upper-bound")
+    # What the input foretells is no noise: a broad gap reaches above the band too.
+    foretold = black_box(compared, 0.0).left_on_folds
+    least = min(_at_least(item.record.y, foretold) for item in compared)
+    return Floor(min(float(np.median(bounds)), least), "upper-bound")
 
 
 def _from_repeats(record: Record) -> float | None:

@@ -2,8 +2,9 @@
 
 Powers of what enters the hysteresis, powers of play operators of it (sums of play
 operators approximate any Prandtl-Ishlinskii operator, sums of their powers much of a
-Preisach operator), each operator of the chain's own hysteresis and the tangents of its
-envelopes, all sent through the blocks behind the hysteresis.
+Preisach operator), loops that forget along the way (as of Duhem's equation), each
+operator of the chain's own hysteresis and the tangents of its envelopes, all sent
+through the blocks behind the hysteresis.
 
 Of a simulator whose inside is not seen the same is made of what it gives as well: what
 else may lie in it, behind its hysteresis, is in there.
@@ -20,7 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.blocks.base import Block
+from hystbench.blocks.force import against
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
+from hystbench.blocks.hysteretic_force import HystereticForce
 from hystbench.blocks.linear import LinearBlock
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.shared import Same
@@ -33,6 +36,8 @@ OPERATORS = 10
 OPERATOR_POWERS = 3
 MIXED = 6
 """Play operators, the input among them, of which products are taken."""
+WAYS = (0.05, 0.15, 0.4, 1.0, 3.0)
+"""In which loops forget, as shares of the largest input."""
 SLOPES, HEIGHTS, LEVELS = (1, 5), (0, 4), (0, 3, 4, 7)
 """Of the envelope functions' numbers a0 to a7 (Eqs. 5 and 6): per unit of input, how
 high they are, and what is in the unit of their output."""
@@ -149,6 +154,7 @@ def _ways(
     ways: list[Signals] = [tuple(np.ones(len(z)) for z in _at(v, sample))]
     for signals in filter(None, (v, given)):
         ways += _powers(signals, sample)
+    ways += _that_forget(v, sample)
     own: list[Signals] = []
     if isinstance(block, GeneralizedPrandtlIshlinskii):
         own = [_at(x, sample) for x in _own(block, v)]
@@ -199,6 +205,24 @@ def _powers(signals: Signals, sample: ScoredSamples | None) -> list[Signals]:
             ways.append(power)
             power = tuple(a * b for a, b in zip(power, base, strict=True))
     return ways
+
+
+def _that_forget(signals: Signals, sample: ScoredSamples | None) -> list[Signals]:
+    """Give loops that forget along the way, and products of them with the signal.
+
+    Dahl's operator, ``dh = dz - |dz| h / way``, for a few ways. Their small loops do
+    not close: no sum of play operators does so, while Duhem's equation does.
+    """
+    amplitude = max(float(np.abs(z).max()) for z in signals) or 1.0
+    scaled = tuple(np.concatenate([[0.0], z / amplitude]) for z in signals)
+    at = _at(tuple(z[1:] for z in scaled), sample)
+    found: list[Signals] = []
+    for way in WAYS:
+        law = HystereticForce(largest=way, yield_distance=way, sharing=0.0)
+        loops = tuple(against((law,), z, np.zeros(len(z)), 1.0)[1:] for z in scaled)
+        loops = _at(loops, sample)
+        found += [loops, tuple(a * b for a, b in zip(loops, at, strict=True))]
+    return found
 
 
 def _own(block: GeneralizedPrandtlIshlinskii, v: Signals) -> list[Signals]:

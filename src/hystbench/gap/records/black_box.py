@@ -66,6 +66,8 @@ class BlackBox:
     explained_on_folds: float | None
     input_range: tuple[float, float]
     largest_rate: float
+    left_on_folds: float = np.inf
+    """RMS of what it leaves on these samples, in the unit of the output."""
 
     @classmethod
     def fit(
@@ -112,6 +114,7 @@ class BlackBox:
             (before - after) / above if above > 0 else None,
             (float(inputs.min()), float(inputs.max())),
             max(_fastest(record) for record in records),
+            float(np.sqrt(after)),
         )
 
     def predict(self, record: Record, simulated: FloatArray) -> FloatArray:
