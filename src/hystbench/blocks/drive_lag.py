@@ -1,4 +1,6 @@
-"""Block ``drive-lag``: first-order lag of amplifier and coil."""
+"""Block ``drive-lag``: low-pass of amplifier and coil."""
+
+import numpy as np
 
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.parameter import number
@@ -8,6 +10,10 @@ from hystbench.blocks.state_space import StateSpace, lag
 class DriveLag(LinearBlock, name="drive-lag", place="drive"):
     """First-order lag, as of a coil's L/R: ``V(s) = U(s) / (1 + s tau)``.
 
+    With a damping ratio zeta it is of second order: ``V(s) = U(s) / (1 + 2 zeta s tau +
+    (s tau)^2)``. Zeta is 0.71 of Butterworth's filter, 0.87 of Bessel's, and 1 of two
+    equal lags.
+
     References
     ----------
     .. [1] G. Engdahl (ed.), Handbook of Giant Magnetostrictive Materials, Academic
@@ -15,7 +21,18 @@ class DriveLag(LinearBlock, name="drive-lag", place="drive"):
     """
 
     time_constant_s: float = number("s", "tau", 1e-12, 1e3)
+    damping_ratio: float = number(
+        "-", "zeta; 0 for a lag of first order", 0.0, 10.0, default=0.0
+    )
 
     def continuous(self) -> StateSpace:
-        """Return the lag with its output as the state."""
-        return lag(self.time_constant_s)
+        """Return the lag with its output, and that one's scaled rate, as states."""
+        if not self.damping_ratio:
+            return lag(self.time_constant_s)
+        rate = 1.0 / self.time_constant_s
+        return StateSpace(
+            np.array([[0.0, rate], [-rate, -2.0 * self.damping_ratio * rate]]),
+            np.array([0.0, rate]),
+            np.array([1.0, 0.0]),
+            0.0,
+        )

@@ -207,14 +207,14 @@ def test_a_neutral_variant_changes_nothing_where_all_is_zero(chain, variant):
 # hysteresis on a finer grid, and what that gains is named where nothing is hidden.
 NOTHING = {
     "input-delay": {"delay_s": 0.0},
-    "drive-lag": {"time_constant_s": 1e-7},
+    "drive-lag": {"time_constant_s": 1e-7, "damping_ratio": 0.7},
     "eddy-diffusion": {"time_constant_s": 1e-12},
     "drive-saturation": {"limit": 1e6},
     "slew-limit": {"rate": 1e8},
-    "dead-zone": {"half_width": 0.0},
+    "dead-zone": {"half_width": 0.0, "rounding": 1.0},
     "saturation": {"level": 1e8, "sharpness": 2.0},
     "backlash": {"half_width": 0.0},
-    "sensor-lag": {"time_constant_s": 1e-7},
+    "sensor-lag": {"time_constant_s": 1e-7, "damping_ratio": 0.7},
 }
 
 
