@@ -8,6 +8,7 @@ from scipy.integrate import quad, solve_ivp
 
 from hystbench.blocks.iwan_force import IwanForce
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.errors import InputError
 
 from .bare import against, errors_of
 
@@ -118,3 +119,36 @@ def test_half_the_step_makes_a_quarter_of_the_error():
     assert errors[-1] < 3e-4
     for before, after in pairwise(errors):
         assert before / after > 3.0
+
+
+@pytest.mark.parametrize("exponent", [-2.5, -1.0, 0.5])
+def test_below_a_first_slip_it_is_a_spring(exponent):
+    block = IwanForce(
+        stiffness=8.0, slip_distance=0.5, exponent=exponent, first_slip=0.2
+    )
+    q = np.linspace(0, 0.1, 11)  # a fifth of the slip distance
+    np.testing.assert_allclose(against(block, q), 8.0 * q, rtol=1e-9)
+
+
+def test_with_a_first_slip_the_first_loading_is_iwans_integral():
+    exponent, first = -1.7, 0.1
+
+    def density(r):
+        return r**exponent
+
+    whole, _ = quad(density, first, 1)
+    q = np.linspace(0, 0.6, 61)
+    wanted = []
+    for x in q / 0.5:
+        slipped, _ = quad(lambda r: r * density(r), first, np.clip(x, first, 1))
+        held, _ = quad(density, np.clip(x, first, 1), 1)
+        wanted.append(8.0 * 0.5 * (slipped + x * held) / whole)
+    block = IwanForce(
+        stiffness=8.0, slip_distance=0.5, exponent=exponent, first_slip=first
+    )
+    assert np.abs(against(block, q) - wanted).max() < 0.01 * max(wanted)
+
+
+def test_without_a_first_slip_the_density_has_an_end():
+    with pytest.raises(InputError, match="expected at least -0.95 without a first_sl"):
+        IwanForce(stiffness=8.0, slip_distance=0.5, exponent=-1.2)

@@ -4,11 +4,16 @@ import numpy as np
 
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import TINY, number, numbers
+from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 ELEMENTS = 12
 """So many stand for a density: the force of the first loading is within some tenths of
 a percent of the largest, and within one where nearly all slip at once or soon."""
+
+
+STEEPEST = -0.95
+"""Exponent without a first slip: at minus one the stiffness has no bound."""
 
 
 class IwanForce(Force, name="iwan-force", law="slider"):
@@ -20,8 +25,9 @@ class IwanForce(Force, name="iwan-force", law="slider"):
     spread between zero and the slip distance with a density that goes as
     ``r^exponent``: zero is even, toward minus one are bolted joints, whose loss at a
     small amplitude goes as its power of ``exponent + 3`` [2]_; a large one is dry
-    friction that slips at once. Or ``weights`` are those of thresholds
-    ``slip_distance i / n``, i from 1 to n.
+    friction that slips at once. With a first slip no threshold lies below that share of
+    the slip distance, and the exponent may be any. Or ``weights`` are those of
+    thresholds ``slip_distance i / n``, i from 1 to n.
 
     Its loops are Masing's: every branch is the first loading at twice the size, and a
     small loop within a large one closes, as none of Bouc and Wen's does.
@@ -39,9 +45,12 @@ class IwanForce(Force, name="iwan-force", law="slider"):
     exponent: float = number(
         "-",
         "of the density of thresholds: 0 even, below it more short ones",
-        -0.95,
+        -4.0,
         20.0,
         0.0,
+    )
+    first_slip: float = number(
+        "-", "least threshold, as a share of the slip distance", 0.0, 0.99, default=0.0
     )
     weights: tuple[float, ...] = numbers(
         "-",
@@ -49,6 +58,14 @@ class IwanForce(Force, name="iwan-force", law="slider"):
         0.0,
         optional=True,
     )
+
+    def check(self) -> None:
+        """Refuse a density of which the stiffness has no bound."""
+        if self.exponent < STEEPEST and not self.first_slip:
+            raise InputError(
+                f"exponent: {self.exponent:g}; expected at least {STEEPEST:g} without "
+                "a first_slip"
+            )
 
     def elements(self) -> tuple[FloatArray, FloatArray]:
         """Give the share of the stiffness and the threshold of each element.
@@ -62,14 +79,22 @@ class IwanForce(Force, name="iwan-force", law="slider"):
             return np.array(self.weights) / total, np.arange(1, n + 1) / n * (
                 self.slip_distance
             )
-        edges = np.linspace(0.0, 1.0, ELEMENTS + 1) ** 1.5
-        order = self.exponent + 1.0
-        shares = np.diff(edges**order)
-        largest = order / (order + 1.0) * np.diff(edges ** (order + 1.0))
+        first = self.first_slip ** (1.0 / 1.5)
+        edges = np.linspace(first, 1.0, ELEMENTS + 1) ** 1.5
+        shares, largest = (_between(edges, self.exponent + k) for k in (0.0, 1.0))
         means = largest / np.maximum(shares, TINY)
-        return shares, np.clip(means, edges[:-1], edges[1:]) * self.slip_distance
+        thresholds = np.clip(means, edges[:-1], edges[1:]) * self.slip_distance
+        return shares / shares.sum(), thresholds
 
     def numbers(self) -> FloatArray:
         """Give sliders without a gap: a stiffness and a reach each."""
         shares, thresholds = self.elements()
         return np.column_stack([self.stiffness * shares, thresholds])
+
+
+def _between(edges: FloatArray, exponent: float) -> FloatArray:
+    """Integrate a power from each edge to the next."""
+    order = exponent + 1.0
+    if order == 0.0:
+        return np.diff(np.log(edges))
+    return np.diff(edges**order) / order

@@ -60,6 +60,14 @@ class HystereticForce(ForceEffect):
                 "exponent": (-np.inf, STEEPEST),
             }
             yield Law("plays", iwan, plays, ranges=ranges)
+        late = IwanForce(
+            stiffness=0.3 * stiffness,
+            slip_distance=0.5 * moved.reach,
+            exponent=-1.0,
+            first_slip=0.1,
+        )
+        late_names = (*plays, "first_slip")
+        yield Law("plays from a first slip on", late, late_names, ranges=ranges)
 
     def vanishing(self, form: str) -> Mapping[str, float]:
         """Without a loop it is a spring."""
