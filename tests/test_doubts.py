@@ -135,6 +135,29 @@ def test_equal_records_of_one_role_are_warned_of(tmp_path, role):
     assert warned(say(folder, b={"meant": ["copy"]})) == ()
 
 
+def staircase(size=1.0):
+    levels = size * np.random.default_rng(2).standard_normal(len(U) // 20)
+    return np.repeat(levels, 20)
+
+
+def test_an_input_that_a_converter_held_is_warned_of_unless_it_is_said(tmp_path):
+    held = staircase()
+    made = [fit(u=held, y=5 * held), held_out()]
+    folder = write_folder(tmp_path / "d", made)
+    (line,) = warned(folder)
+    assert "stands still and jumps" in line
+    assert "taken as band-limited" in line
+    assert warned(say(folder, a={"meant": ["hold"]})) == ()
+    said = write_folder(tmp_path / "e", made)
+    assert warned(say(said, input={"hold": "zero-order"})) == ()
+
+
+def test_a_coarse_converter_makes_no_staircase(tmp_path):
+    coarse = np.round(U / np.ptp(U) * 200) * np.ptp(U) / 200
+    made = [fit(u=coarse, y=5 * coarse), held_out()]
+    assert warned(write_folder(tmp_path / "d", made)) == ()
+
+
 @pytest.mark.parametrize(
     ("unit", "likely", "dt", "told"),
     [

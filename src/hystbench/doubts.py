@@ -12,7 +12,7 @@ import numpy as np
 from hystbench.copies import CommonPiece, Written, common_piece
 from hystbench.dataset import Dataset
 from hystbench.errors import InputError
-from hystbench.record import Record
+from hystbench.record import FloatArray, Record
 from hystbench.units import named_otherwise, plain, prefixed, seconds
 
 SLOWEST_HZ = 0.02
@@ -24,6 +24,9 @@ SHORTEST_STEP_S = 1e-7
 """A sampling rate of 10 MHz: recorders of displacement end there."""
 THOUSAND = 1000 / 10**0.5
 """A factor that is nearer to a thousand than to a hundred."""
+JUMPS, JUMP = 10, 0.02
+"""So many lone steps, most of them of more than this share of the range, are no steps
+of a coarse converter on a slow signal."""
 IN_BAND = 0.99
 """Share of the input's power up to its fastest content."""
 TIMES = ("ns", "us", "ms", "s", "min", "h")
@@ -70,6 +73,7 @@ def doubts(
             found.append(_copy(dataset, one, two, piece))
     for channel in ("input", "output"):
         found += _other_size(dataset, records, channel, about)
+    found += _staircases(dataset, concerned)
     return tuple(found)
 
 
@@ -171,6 +175,32 @@ def _fastest_hz(record: Record) -> float:
     total = np.cumsum(power)
     line = int(np.searchsorted(total, IN_BAND * total[-1]))
     return max(line, 1) / (len(record) * record.dt)
+
+
+def _staircases(dataset: Dataset, records: Sequence[Record]) -> Iterator[str]:
+    """Tell of inputs that stand still and jump, where the input is said to move."""
+    hold = dataset.about["input"].get("hold", "band-limited")
+    for record in records:
+        if hold == "zero-order" or "hold" in dataset.meant(record.name):
+            continue
+        if _is_staircase(record.u):
+            yield (
+                f"{dataset.record_files[record.name]}: the input stands still and "
+                f"jumps, but between samples it is taken as {hold}; if a converter "
+                "held it, write 'hold: zero-order' at input in dataset.yaml (it is of "
+                "all records), and where it is meant 'meant: [hold]' of this record"
+            )
+
+
+def _is_staircase(u: FloatArray) -> bool:
+    """Tell whether a signal stands still but for many lone jumps."""
+    steps = np.diff(u)
+    at = np.flatnonzero(steps)
+    if len(at) < JUMPS:
+        return False
+    lone = np.diff(at) > 1
+    large = np.abs(steps[at]) > JUMP * np.ptp(u)
+    return bool(np.all(lone) and np.mean(large) > 0.5)
 
 
 def _other_size(
