@@ -25,8 +25,10 @@ SHORTEST_STEP_S = 1e-7
 THOUSAND = 1000 / 10**0.5
 """A factor that is nearer to a thousand than to a hundred."""
 JUMPS, JUMP = 10, 0.02
-"""So many lone steps, most of them of more than this share of the range, are no steps
-of a coarse converter on a slow signal."""
+"""So many lone steps, most of them of more than this share of the range, make a
+staircase."""
+LEVELS = 5
+"""A slow signal that a coarse encoder reads goes through more levels, a step each."""
 IN_BAND = 0.99
 """Share of the input's power up to its fastest content."""
 TIMES = ("ns", "us", "ms", "s", "min", "h")
@@ -187,8 +189,8 @@ def _staircases(dataset: Dataset, records: Sequence[Record]) -> Iterator[str]:
             yield (
                 f"{dataset.record_files[record.name]}: the input stands still and "
                 f"jumps, but between samples it is taken as {hold}; if a converter "
-                "held it, write 'hold: zero-order' at input in dataset.yaml (it is of "
-                "all records), and where it is meant 'meant: [hold]' of this record"
+                "held it, write 'hold: zero-order' at input in dataset.yaml (for all "
+                "records); if not, write 'meant: [hold]' at this record"
             )
 
 
@@ -199,8 +201,9 @@ def _is_staircase(u: FloatArray) -> bool:
     if len(at) < JUMPS:
         return False
     lone = np.diff(at) > 1
-    large = np.abs(steps[at]) > JUMP * np.ptp(u)
-    return bool(np.all(lone) and np.mean(large) > 0.5)
+    sizes = np.abs(steps[at])
+    coarse = len(np.unique(u)) > LEVELS and np.ptp(sizes) < 0.01 * sizes.max()
+    return bool(np.all(lone) and np.mean(sizes > JUMP * np.ptp(u)) > 0.5 and not coarse)
 
 
 def _other_size(

@@ -167,7 +167,7 @@ def blocks(x):
         Gravity(amplitude=3.0),
         HystereticForce(largest=0.3, yield_distance=1e-2),
         IwanForce(stiffness=5.0, slip_distance=2e-2),
-        LuGreForce(0.1, 1e-3, 0.1, 5.0),
+        LuGreForce(coulomb=0.1, presliding_distance=1e-3, static_excess=0.1),
         RelaxationForce(stiffness=3.0, relaxation_time_s=2e-3),
         Stiffness(quadratic=5.0, cubic=40.0),
     )

@@ -5,6 +5,10 @@ import numpy as np
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.parameter import number
 from hystbench.blocks.state_space import StateSpace, lag
+from hystbench.errors import InputError
+
+LEAST = 0.05
+"""Damping ratio of a filter; what rings longer is a ``resonance``."""
 
 
 class DriveLag(LinearBlock, name="drive-lag", place="drive"):
@@ -24,6 +28,14 @@ class DriveLag(LinearBlock, name="drive-lag", place="drive"):
     damping_ratio: float = number(
         "-", "zeta; 0 for a lag of first order", 0.0, 10.0, default=0.0
     )
+
+    def check(self) -> None:
+        """Refuse a filter that all but rings: zero is no small damping."""
+        if 0.0 < self.damping_ratio < LEAST:
+            raise InputError(
+                f"damping_ratio: {self.damping_ratio:g}; expected 0, for first order, "
+                f"or at least {LEAST:g}"
+            )
 
     def continuous(self) -> StateSpace:
         """Return the lag with its output, and that one's scaled rate, as states."""

@@ -12,7 +12,7 @@ ELEMENTS = 12
 a percent of the largest, and within one where nearly all slip at once or soon."""
 
 
-STEEPEST = -0.95
+LEAST_EXPONENT = -0.95
 """Exponent without a first slip: at minus one the stiffness has no bound."""
 
 
@@ -26,7 +26,7 @@ class IwanForce(Force, name="iwan-force", law="slider"):
     ``r^exponent``: zero is even, toward minus one are bolted joints, whose loss at a
     small amplitude goes as its power of ``exponent + 3`` [2]_; a large one is dry
     friction that slips at once. With a first slip no threshold lies below that share of
-    the slip distance, and the exponent may be any. Or ``weights`` are those of
+    the slip distance, and the exponent may be below -1. Or ``weights`` are those of
     thresholds ``slip_distance i / n``, i from 1 to n.
 
     Its loops are Masing's: every branch is the first loading at twice the size, and a
@@ -61,10 +61,10 @@ class IwanForce(Force, name="iwan-force", law="slider"):
 
     def check(self) -> None:
         """Refuse a density of which the stiffness has no bound."""
-        if self.exponent < STEEPEST and not self.first_slip:
+        if self.exponent < LEAST_EXPONENT and not self.first_slip:
             raise InputError(
-                f"exponent: {self.exponent:g}; expected at least {STEEPEST:g} without "
-                "a first_slip"
+                f"exponent: {self.exponent:g}; expected at least {LEAST_EXPONENT:g} "
+                "without a first_slip"
             )
 
     def elements(self) -> tuple[FloatArray, FloatArray]:

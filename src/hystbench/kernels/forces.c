@@ -109,9 +109,11 @@ static double hb_friction_reach(const double *f, double v)
  * reach from either side. */
 static double hb_bend(double bend, double way, double reach, double *integral)
 {
-    *integral = 0;
-    if (!(reach > 0)) return 0;
     const double sign = way < 0 ? -1 : 1, length = fabs(way), from = sign * bend;
+    if (!(reach > 1e-12 * length)) { /* it bends at once */
+        *integral = length * reach;
+        return sign * reach;
+    }
     double twice;
     const double once = hb_phi(-length / reach, &twice), slope = 1 - from / reach;
     *integral = length * (from + slope * length * twice);

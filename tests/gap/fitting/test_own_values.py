@@ -137,6 +137,16 @@ def values_of(content):
     return values
 
 
+@pytest.mark.parametrize("lag", [0.003, 0.008])
+def test_laws_of_more_numbers_do_not_tell_two_lags_apart(lag):
+    """Behind a plain gain a lag of the drive and one of the sensor are the same."""
+    given = made([(0, 1, 0)] * 5, lag)
+    (effect,) = search("made", given, rig(), declared=NOISE).content["effects"]
+    lags = {effect["name"], *effect["cannot_be_told_from"]}
+    assert lags >= {"sensor-lag", "drive-lag"}
+    assert effect["confidence"] < 0.6
+
+
 def test_an_effect_is_named_beside_late_triggers():
     content = search("made", made(DELAYS, LAG_S), rig(), declared=NOISE).content
     assert content["verdict"] == "named"

@@ -221,7 +221,7 @@ def found():
 def swapped():
     """Eddy currents, a mode and a lag: alone the lag of the drive does for two."""
     eddy = block("eddy-diffusion", time_constant_s=0.01, geometry="slab")
-    return found_in(eddy, MODE_BLOCK, block("sensor-lag", time_constant_s=0.003))
+    return found_in(eddy, MODE_BLOCK, block("sensor-lag", time_constant_s=0.001))
 
 
 def test_a_second_look_is_seen_in_the_ranking(found):

@@ -137,8 +137,8 @@ def test_a_reason_tells_harm_and_the_unknown_of_the_black_box_as_they_are():
     reasons = [judge(left(90.0), False, box)[1] for box in (-0.3, None, 0.3, 0.0)]
     assert "a black box makes it worse on folds of the fit records" in reasons[0]
     assert "is not known" in reasons[1]
-    assert "takes 30 % of the power of it away on folds" in reasons[2]
-    assert "takes 0 % of the power of it away on folds" in reasons[3]
+    assert "takes 30 % of its power away on folds" in reasons[2]
+    assert "takes 0 % of its power away on folds" in reasons[3]
 
 
 @given(st.floats(1.01 * ABOVE_NOISE, 1e6), st.none() | SHARES)

@@ -27,6 +27,10 @@ class DeadZone(Effect):
             yield self.inserted(
                 simulation,
                 place,
+                lambda given: {
+                    **given,
+                    "rounding": max(given["rounding"], given["half_width"]),
+                },
                 form="rounded",
                 grids={"rounding": widths},
                 unit={"half_width": 1e-3 * widths[0]},

@@ -8,7 +8,7 @@ import numpy as np
 
 from hystbench.blocks.bouc_wen_force import BoucWenForce
 from hystbench.blocks.hysteretic_force import HystereticForce as Block
-from hystbench.blocks.iwan_force import IwanForce
+from hystbench.blocks.iwan_force import LEAST_EXPONENT, IwanForce
 from hystbench.gap.effects.effect import ForceEffect
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.thresholds import SLIDES
@@ -16,6 +16,9 @@ from hystbench.gap.thresholds import SLIDES
 STEEPEST = 1.0
 """Exponent of plays, at most. Of a joint it is below zero (Segalman); a large one makes
 one way at which all slip, which is dry friction that gives way."""
+LATEST = 0.5
+"""Share of the slip distance at which the first plays slip, at most: with one that is
+as late as the last all slip at once, too."""
 
 
 class HystereticForce(ForceEffect):
@@ -57,7 +60,7 @@ class HystereticForce(ForceEffect):
             )
             ranges = {
                 "slip_distance": (SLIDES * moved.reach, np.inf),
-                "exponent": (-np.inf, STEEPEST),
+                "exponent": (LEAST_EXPONENT, STEEPEST),
             }
             yield Law("plays", iwan, plays, ranges=ranges)
         late = IwanForce(
@@ -66,8 +69,16 @@ class HystereticForce(ForceEffect):
             exponent=-1.0,
             first_slip=0.1,
         )
-        late_names = (*plays, "first_slip")
-        yield Law("plays from a first slip on", late, late_names, ranges=ranges)
+        yield Law(
+            "plays from a first slip on",
+            late,
+            (*plays, "first_slip"),
+            ranges={
+                "slip_distance": (SLIDES * moved.reach, np.inf),
+                "exponent": (-np.inf, STEEPEST),
+                "first_slip": (0.0, LATEST),
+            },
+        )
 
     def vanishing(self, form: str) -> Mapping[str, float]:
         """Without a loop it is a spring."""

@@ -90,7 +90,8 @@ def parameters_of(
             value = getattr(block, key)
             if key in SETTINGS or value == () or (numbers and key not in numbers):
                 continue
-            if value == usual[key] and (place, key) not in fitted:
+            unused = value == usual[key] and (place, key) not in fitted
+            if unused and not numbers:
                 continue  # no law that was named has it
             error = _errors_of(place, key, value, state, errors)
             count = 1 + sum(name.partition("#")[0] == key for name in found)

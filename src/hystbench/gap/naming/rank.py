@@ -42,7 +42,6 @@ BEHIND = 0.75
 EXACT = 3
 """Of the finalists, those that are simulated exactly before one is taken."""
 FITTED_WITH_IT = "the shape of a hysteresis whose weights are free is fitted with it"
-REFUSED = "fits best where"
 AT_AN_END = "fits best at the end of what it can be"
 ALIKE_WITHOUT = "the same curves fit alike without"
 
@@ -134,6 +133,7 @@ def rank(
         and not any(trial is item for item in likely)
         and (not state.added or trial.variant.effect in shown)
     ]
+    likely += _of_fewer_numbers(refined, [of_effect[x] for x in sorted(shown)], now)
     # A form that bends far on all records may still foretell none of them.
     judged = best_forms(
         _each_judged(likely, refined, state, score, now, folds),
@@ -240,7 +240,7 @@ def _each_judged(
     wanted = np.inf
     for trial in likely:
         item = _judged(trial, state, score, now, wanted)
-        for other in every if item.declined.startswith(REFUSED) else ():
+        for other in every if item.refused else ():
             if _is_other_law(other.variant, trial.variant):
                 next_law = _judged(other, state, score, now, wanted)
                 if not next_law.declined:
@@ -249,6 +249,24 @@ def _each_judged(
         if not folds and item.state is not None:
             wanted = min(wanted, item.score + CERTAIN + NEAR)
         yield item
+
+
+def _of_fewer_numbers(
+    every: Sequence[Trial], best: Sequence[Trial], now: float
+) -> list[Trial]:
+    """Give laws of fewer numbers that may catch up with the best one of their effect.
+
+    A step of a grid takes more from a law of few numbers than from one of many. A refit
+    makes up for that, where no other effect would be told apart from it.
+    """
+    found: dict[tuple[str, str], Trial] = {}
+    for one in best:
+        for trial in every:
+            few = trial.variant.freedom < one.variant.freedom
+            near = now - trial.score > STILL * (now - one.score)
+            if few and near and _is_other_law(trial.variant, one.variant):
+                found.setdefault((trial.variant.effect, trial.variant.form), trial)
+    return list(found.values())
 
 
 def _is_other_law(variant: Variant, of: Variant) -> bool:
@@ -271,7 +289,7 @@ def _judged(
     try:
         after, value = added(state, trial, score, wanted)
     except InputError as error:
-        return declined(f"{REFUSED} {error}")
+        return replace(declined(f"fits best where {error}"), refused=True)
     if end := at_end(after):
         return declined(f"{AT_AN_END}: {end}")
     if does_without_itself(after, after.added[-1], value, score):

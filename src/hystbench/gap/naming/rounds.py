@@ -41,6 +41,8 @@ class Candidate:
     """With the effect, jointly refitted; finalists have it."""
     declined: str = ""
     """Why it could not be judged, if so."""
+    refused: bool = False
+    """Whether that is a block that refuses the numbers of this law."""
     held_back: float | None = None
     """What a finalist that pays gains on folds."""
     variants: tuple[TriedVariant, ...] = ()

@@ -41,6 +41,8 @@ THRESHOLDS = (0.05, 0.15, 0.3, 0.5, 0.75)
 TURNS = (0.03, 0.3, 1.0)
 #: Points about which radial basis functions lie.
 LANDMARKS = 80
+#: Share by which two mean squares differ that are the same.
+ALIKE = 1e-9
 #: Singular value below which a direction of these functions is none.
 LEAST = 1e-12
 
@@ -57,8 +59,9 @@ class BlackBox:
     ----------
     explained_on_folds : float or None
         Share of the residual's power above the floor that is gone on samples held
-        out from the fit; below zero where the black box makes it worse; None where
-        there is no power above the floor.
+        out from the fit, or of all its power where the floor is what it leaves there;
+        below zero where the black box makes it worse; None where there is no power
+        above the floor.
     """
 
     signals: BoxInputs
@@ -107,6 +110,8 @@ class BlackBox:
         after = float(counts @ squares[np.arange(len(folds)), best] / counts.sum())
         before = float(np.mean(target**2))
         above = before - floor_rms**2
+        if abs(floor_rms**2 / max(after, LEAST) - 1.0) < ALIKE:
+            above = before  # a floor that it tells itself is no measure of it
         inputs = np.concatenate([record.u for record in records])
         return cls(
             signals,

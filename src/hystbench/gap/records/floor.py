@@ -19,6 +19,7 @@ import numpy as np
 from scipy import fft
 
 from hystbench.gap.records.black_box import black_box
+from hystbench.gap.records.folds import LEAST
 from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import FloatArray, Record
 
@@ -78,11 +79,13 @@ def noise_floor(compared: Sequence[Compared], declared: float | None = None) -> 
     # The noise is one: the median over the records shrugs off a spoilt one.
     if repeated:
         return Floor(float(np.median(repeated)), "repeats")
-    bounds = [_from_residual(item) for item in compared]
+    bound = float(np.median([_from_residual(item) for item in compared]))
+    if sum(len(item.record) for item in compared) < LEAST:
+        return Floor(bound, "upper-bound")
     # What the input foretells is no noise: a broad gap reaches above the band too.
     foretold = black_box(compared, 0.0).left_on_folds
     least = min(_at_least(item.record.y, foretold) for item in compared)
-    return Floor(min(float(np.median(bounds)), least), "upper-bound")
+    return Floor(min(bound, least), "upper-bound")
 
 
 def _from_repeats(record: Record) -> float | None:

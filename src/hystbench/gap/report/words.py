@@ -36,7 +36,7 @@ NO_NAME = "No effect of the vocabulary accounts for what differs."
 FLOORS = {
     "repeats": "measured from repeated periods",
     "declared": "declared by the dataset",
-    "upper-bound": "only an upper bound, read off the residual's spectrum or a black box",
+    "upper-bound": "only an upper bound, by the residual's spectrum and a black box",
 }
 
 
