@@ -147,6 +147,29 @@ def test_friction_of_bristles_is_found_with_its_numbers():
     assert law.stribeck_velocity == pytest.approx(3.0, rel=0.05)
 
 
+def test_plays_that_slip_from_a_first_way_on_are_a_hysteretic_force():
+    """Rubber, as five stops of unequal stiffness, written without a block."""
+    given, ways = [], np.array([0.05, 0.12, 0.25, 0.5, 1.0])
+    for seed, size in enumerate((0.3, 1.2)):
+        x = size * (np.sin(4.4 * TIME) + 0.4 * np.sin(13.1 * TIME))
+        held, force = np.zeros(5), []
+        for step in np.diff(x, prepend=x[0]):
+            held = np.clip(held + step, -ways, ways)
+            force.append(np.array([9.0, 6.0, 3.5, 2.0, 1.0]) @ held)
+        noise = 10 * NOISE * np.random.default_rng(seed).standard_normal(len(x))
+        given.append(record(f"{seed}", x, np.array(force) + 18.0 * x + noise))
+    begun = one_coordinate(tuple(given), Quantities("position", "force"), "linear")
+    sample = ScoredSamples.of(tuple(given))
+    score = Score(sample, np.zeros((len(sample), 0)), (10 * NOISE) ** 2)
+    known = ["friction", "hysteretic-force", "slider-with-gap"]
+    found = search(best_host(list(begun), score), score, offered=known)
+    best = min(found, key=lambda item: item.score)
+    assert best.effects == ("hysteretic-force",)
+    assert best.forms == ("plays from a first slip on",)
+    law = next(x for x in best.state.chain if x.name == "iwan-force")
+    assert law.first_slip * law.slip_distance == pytest.approx(0.05, rel=0.5)
+
+
 def test_a_host_without_a_force_stands_first(found):
     assert found[0].effects == ()
     assert found[0].score > min(item.score for item in found) + 100

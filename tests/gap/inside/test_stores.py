@@ -14,6 +14,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Filled
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import Fitted, judged
+from hystbench.gap.fitting.parameters import parameters_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside import store_hosts as of_stores
@@ -316,6 +317,9 @@ def test_a_base_that_is_the_tangent_of_the_outflow_lacks_its_root(about):
     assert store.rate == pytest.approx(rate, rel=0.02)
     assert store.exponent == pytest.approx(0.5, abs=0.02)
     assert np.sqrt(np.mean(best.state.residual**2)) < 1.1 * NOISE
+    # The root is what was found, although it is what a store has unless it says.
+    told = parameters_of(best.state.added[0], best.state, np.zeros(9))
+    assert told["exponent"]["value"] == pytest.approx(0.5, abs=0.02)
     # Without the root its rate is known as well as before.
     short = without_effect(best.state, 0)
     assert sorted(short.free) == sorted(host.fitted.state.free)
