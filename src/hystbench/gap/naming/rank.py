@@ -194,10 +194,20 @@ def _loop_is_free(state: ModelState) -> bool:
 def _refined(found: Sequence[Tried], now: float, least: float) -> list[Trial]:
     """Search around the best points of grids that gain enough; the least score first.
 
-    Of the effect that then does best, its other laws too, whatever they gain: a grid's
-    step may miss most of what the right one does.
+    A grid's step may miss most of what the right law does. So of their effects the laws
+    of fewer numbers are searched as well, whatever they gain, as a step misses more of
+    a law of few numbers; and of the effect that then does best, all its laws.
     """
     near = [now - trial.score > least for _, trial in found]
+    most: dict[str, float] = {}
+    for (attempt, _), enough in zip(found, near, strict=True):
+        own = attempt.variant
+        if enough:
+            most[own.effect] = max(most.get(own.effect, 0.0), own.freedom)
+    near = [
+        enough or attempt.variant.freedom < most.get(attempt.variant.effect, 0.0)
+        for (attempt, _), enough in zip(found, near, strict=True)
+    ]
     every = [
         fine(attempt, trial) if enough else trial
         for (attempt, trial), enough in zip(found, near, strict=True)
@@ -256,8 +266,8 @@ def _of_fewer_numbers(
 ) -> list[Trial]:
     """Give laws of fewer numbers that may catch up with the best one of their effect.
 
-    A step of a grid takes more from a law of few numbers than from one of many. A refit
-    makes up for that, where no other effect would be told apart from it.
+    A refit makes up for what steps of a search miss of them; else another effect that
+    does the same would be told apart from theirs.
     """
     found: dict[tuple[str, str], Trial] = {}
     for one in best:
