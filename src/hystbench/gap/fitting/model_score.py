@@ -13,7 +13,7 @@ import numpy as np
 from hystbench.gap.fitting.score import Score, Shared
 from hystbench.gap.fitting.state import ROUNDING, ModelState
 from hystbench.gap.records.scored_samples import rms
-from hystbench.gap.simulation.reshape import orthonormal
+from hystbench.gap.simulation.reshape import closing_reshapings, orthonormal
 from hystbench.gap.simulation.shared import Same
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray
@@ -44,7 +44,7 @@ def score_of_numbers(state: ModelState, floor_rms: float) -> Score:
     It is flat below its floor. Noise that is an upper bound may lie above what the
     model leaves, so the floor is at most half of what it leaves of any record: no few
     numbers take more of noise away. Those of another shape of the hysteresis are found
-    without sparing what a shape could do.
+    without sparing what a shape could do; all others without sparing loops that forget.
 
     Parameters
     ----------
@@ -57,7 +57,8 @@ def score_of_numbers(state: ModelState, floor_rms: float) -> Score:
     floor = max(floor, rounded, LEAST)
     if state.has_shape:
         return Score.plain(state.sample, floor)
-    return Score(state.sample, state.wrong_shape, floor)
+    shape = closing_reshapings(state.simulation, state.sample)
+    return Score(state.sample, orthonormal(shape), floor)
 
 
 def directions_of(wrong_shape: FloatArray, state: ModelState) -> FloatArray:

@@ -68,6 +68,15 @@ def reshapings(simulation: Simulation, sample: ScoredSamples) -> FloatArray:
     return _behind(simulation, sample, _ways)
 
 
+def closing_reshapings(simulation: Simulation, sample: ScoredSamples) -> FloatArray:
+    """Give the same but for loops that forget, so of loops whose small ones close.
+
+    A loop that forgets is much like one that lags: beside it the numbers of a lag are
+    hardly known.
+    """
+    return _behind(simulation, sample, _that_close)
+
+
 def products(simulation: Simulation, sample: ScoredSamples) -> FloatArray:
     """Give what a hysteresis could add that is no sum of curves of play operators.
 
@@ -151,10 +160,16 @@ def _ways(
 
     They are made of what enters it and, where its inside is not seen, of what it gives.
     """
+    return [*_that_close(block, v, given, sample), *_that_forget(v, sample)]
+
+
+def _that_close(
+    block: Block, v: Signals, given: Signals, sample: ScoredSamples | None
+) -> list[Signals]:
+    """Give those whose small loops close."""
     ways: list[Signals] = [tuple(np.ones(len(z)) for z in _at(v, sample))]
     for signals in filter(None, (v, given)):
         ways += _powers(signals, sample)
-    ways += _that_forget(v, sample)
     own: list[Signals] = []
     if isinstance(block, GeneralizedPrandtlIshlinskii):
         own = [_at(x, sample) for x in _own(block, v)]
