@@ -24,7 +24,7 @@ class Lags(Effect):
         self.refused = refused
 
     def variants(self, simulation):
-        (lag,) = effects()["drive-lag"].variants(simulation)
+        lag, *_ = effects()["drive-lag"].variants(simulation)
 
         def refuse(values):
             raise InputError(f"time_constant_s: {values['time_constant_s']:g} is not")

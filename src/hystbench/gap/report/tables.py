@@ -39,7 +39,7 @@ def write_table(name: str, contents: Sequence[Told], path: Path) -> None:
 
 
 def write_adds(model: Model, path: Path) -> None:
-    """Write what a model adds behind its hysteresis: one row a parameter.
+    """Write what a model adds behind its hysteresis: one row a stated parameter.
 
     Beside what was named on the model's records it shows which of it was found.
     """
@@ -53,7 +53,7 @@ def write_adds(model: Model, path: Path) -> None:
         for k, (label, block) in enumerate(model.labelled())
         if not block.hysteretic
         for name, about in block.parameters().items()
-        if name not in SETTINGS
+        if name not in SETTINGS and name in block.to_mapping()
     ]
     write_csv(path, ("block", "parameter", "value", "unit"), rows)
 
