@@ -76,6 +76,13 @@ def alike():
     return base, start, floor, found
 
 
+def test_what_is_new_in_every_record_is_not_free_in_the_model(alike):
+    """Its numbers are of these records; another has its own."""
+    base, _, _, found = alike
+    assert augmented(base, found["mains-pickup"]).free == ()
+    assert augmented(base, found["sensor-lag"]).free == ("sensor-lag.time_constant_s",)
+
+
 def candidates_of(found, *names):
     return tuple(
         Candidate(name, "drive", score=-100.0 + k, gain=90.0, state=found[name])

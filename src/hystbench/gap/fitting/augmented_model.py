@@ -26,7 +26,6 @@ def augmented(base: Model, state: ModelState) -> Model:
     model = Model(*about, exact=base.exact)
     names = list(model.parameter_names())
     own = state.places_added
-    beside = range(len(state.chain), len(chain))
     labels = [label for label, _ in model.labelled()]
     # What nobody freed but the search is known now.
     given = as_it_was(base) is base
@@ -41,7 +40,7 @@ def augmented(base: Model, state: ModelState) -> Model:
         for k in item.blocks
         for name, usual in defaults(chain[k]).items()
         if getattr(chain[k], name) != usual or effects()[item.effect].numbers
-    } | {f"{labels[k]}.{name}" for k in beside for name in defaults(chain[k])}
+    }
     free = tuple(name for name in names if name in left | stated)
     free = tuple(name for name in free if _numeric(model, name))
     now = _names_now(base, state, labels)
