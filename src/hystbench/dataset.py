@@ -34,6 +34,9 @@ from hystbench.yaml_files import load_yaml
 RECORD_NAME = re.compile(r"[^.\-\s{}*?\\\x00-\x1f][^{}*?\\\x00-\x1f]*")
 
 
+InputHold = Literal["zero-order", "linear", "band-limited"]
+
+
 @dataclass(frozen=True)
 class Dataset:
     """What dataset.yaml says; the samples stay in their files until they are read."""
@@ -61,6 +64,12 @@ class Dataset:
     def stands_still(self, name: str) -> tuple[str, ...]:
         """Tell which channels of a record, input or output, really stand still."""
         return tuple(self.entry(name).get("stands_still", ()))
+
+    @property
+    def input_hold(self) -> InputHold:
+        """How the input moves between samples."""
+        hold: InputHold = self.about["input"].get("hold", "band-limited")
+        return hold
 
     def meant(self, name: str) -> tuple[str, ...]:
         """Tell what of a record is meant as it is, and no longer warned of."""

@@ -181,7 +181,7 @@ def _fastest_hz(record: Record) -> float:
 
 def _staircases(dataset: Dataset, records: Sequence[Record]) -> Iterator[str]:
     """Tell of inputs that stand still and jump, where the input is said to move."""
-    hold = dataset.about["input"].get("hold", "band-limited")
+    hold = dataset.input_hold
     for record in records:
         if hold == "zero-order" or "hold" in dataset.meant(record.name):
             continue

@@ -1,10 +1,8 @@
 """Block ``drive-lag``: low-pass of amplifier and coil."""
 
-import numpy as np
-
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.parameter import number
-from hystbench.blocks.state_space import StateSpace, lag
+from hystbench.blocks.state_space import StateSpace, lag, mode
 from hystbench.errors import InputError
 
 LEAST = 0.05
@@ -41,10 +39,4 @@ class DriveLag(LinearBlock, name="drive-lag", place="drive"):
         """Return the lag with its output, and that one's scaled rate, as states."""
         if not self.damping_ratio:
             return lag(self.time_constant_s)
-        rate = 1.0 / self.time_constant_s
-        return StateSpace(
-            np.array([[0.0, rate], [-rate, -2.0 * self.damping_ratio * rate]]),
-            np.array([0.0, rate]),
-            np.array([1.0, 0.0]),
-            0.0,
-        )
+        return mode(1.0 / self.time_constant_s, self.damping_ratio)

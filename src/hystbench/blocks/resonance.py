@@ -4,7 +4,7 @@ import numpy as np
 
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.parameter import number
-from hystbench.blocks.state_space import StateSpace
+from hystbench.blocks.state_space import StateSpace, mode
 
 
 class Resonance(LinearBlock, name="resonance", place="mechanics"):
@@ -30,9 +30,4 @@ class Resonance(LinearBlock, name="resonance", place="mechanics"):
     def continuous(self) -> StateSpace:
         """Return the mode with displacement and scaled velocity as states."""
         wn = 2.0 * np.pi * self.frequency_hz
-        return StateSpace(
-            np.array([[0.0, wn], [-wn, -2.0 * self.damping_ratio * wn]]),
-            np.array([0.0, wn]),
-            np.array([self.participation, 0.0]),
-            1.0 - self.participation,
-        )
+        return mode(wn, self.damping_ratio, self.participation)

@@ -36,6 +36,27 @@ def lag(time_constant_s: float) -> StateSpace:
     return StateSpace(np.array([[-rate]]), np.array([rate]), np.array([1.0]), 0.0)
 
 
+def mode(rate: float, damping_ratio: float, share: float = 1.0) -> StateSpace:
+    """Mode of second order beside what follows at once, of static gain one together.
+
+    Its states are its output and that one's scaled rate.
+
+    Parameters
+    ----------
+    rate : float
+        Undamped, in rad/s.
+    damping_ratio : float
+    share : float
+        Of the static gain.
+    """
+    return StateSpace(
+        np.array([[0.0, rate], [-rate, -2.0 * damping_ratio * rate]]),
+        np.array([0.0, rate]),
+        np.array([share, 0.0]),
+        1.0 - share,
+    )
+
+
 def discretise(
     system: StateSpace, dt: float, hold: Hold
 ) -> tuple[FloatArray, FloatArray, FloatArray]:

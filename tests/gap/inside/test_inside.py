@@ -92,6 +92,15 @@ def test_friction_of_a_device_that_is_moved_is_found_with_its_numbers(found):
     assert rms == pytest.approx(NOISE, rel=0.1)
 
 
+def best_of_moved(given, noise, offered):
+    """Give the best that is found in a device that is moved."""
+    begun = one_coordinate(tuple(given), Quantities("position", "force"), "linear")
+    sample = ScoredSamples.of(tuple(given))
+    score = Score(sample, np.zeros((len(sample), 0)), noise**2)
+    found = search(best_host(list(begun), score), score, offered=offered)
+    return min(found, key=lambda item: item.score)
+
+
 def test_smooth_friction_may_fall_with_the_speed():
     """Stribeck's curve of a device that is moved, written without a block."""
     given = []
@@ -101,11 +110,7 @@ def test_smooth_friction_may_fall_with_the_speed():
         level = 2.0 + 1.5 * np.exp(-((v / 4.0) ** 2))
         noise = NOISE * np.random.default_rng(seed).standard_normal(len(x))
         given.append(record(f"{seed}", x, 0.03 * v + level * np.tanh(v / 2) + noise))
-    begun = one_coordinate(tuple(given), Quantities("position", "force"), "linear")
-    sample = ScoredSamples.of(tuple(given))
-    score = Score(sample, np.zeros((len(sample), 0)), NOISE**2)
-    found = search(best_host(list(begun), score), score, offered=["friction", "drag"])
-    best = min(found, key=lambda item: item.score)
+    best = best_of_moved(given, NOISE, ["friction", "drag"])
     assert best.effects == ("friction",)
     law = next(x for x in best.state.chain if x.name == "smooth-friction")
     assert law.coulomb == pytest.approx(2.0, rel=0.1)
@@ -132,12 +137,9 @@ def test_friction_of_bristles_is_found_with_its_numbers():
         given.append(
             record(f"{seed}", x, 100.0 * z + 0.03 * np.gradient(x, DT) + noise)
         )
-    begun = one_coordinate(tuple(given), Quantities("position", "force"), "linear")
-    sample = ScoredSamples.of(tuple(given))
-    score = Score(sample, np.zeros((len(sample), 0)), NOISE**2)
-    known = ["friction", "hysteretic-force", "slider-with-gap"]
-    found = search(best_host(list(begun), score), score, offered=known)
-    best = min(found, key=lambda item: item.score)
+    best = best_of_moved(
+        given, NOISE, ["friction", "hysteretic-force", "slider-with-gap"]
+    )
     assert best.effects == ("friction",)
     assert best.forms == ("LuGre",)
     law = next(x for x in best.state.chain if x.name == "lugre-force")
@@ -158,12 +160,9 @@ def test_plays_that_slip_from_a_first_way_on_are_a_hysteretic_force():
             force.append(np.array([9.0, 6.0, 3.5, 2.0, 1.0]) @ held)
         noise = 10 * NOISE * np.random.default_rng(seed).standard_normal(len(x))
         given.append(record(f"{seed}", x, np.array(force) + 18.0 * x + noise))
-    begun = one_coordinate(tuple(given), Quantities("position", "force"), "linear")
-    sample = ScoredSamples.of(tuple(given))
-    score = Score(sample, np.zeros((len(sample), 0)), (10 * NOISE) ** 2)
-    known = ["friction", "hysteretic-force", "slider-with-gap"]
-    found = search(best_host(list(begun), score), score, offered=known)
-    best = min(found, key=lambda item: item.score)
+    best = best_of_moved(
+        given, 10 * NOISE, ["friction", "hysteretic-force", "slider-with-gap"]
+    )
     assert best.effects == ("hysteretic-force",)
     assert best.forms == ("plays from a first slip on",)
     law = next(x for x in best.state.chain if x.name == "iwan-force")

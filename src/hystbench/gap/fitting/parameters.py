@@ -90,8 +90,7 @@ def parameters_of(
             value = getattr(block, key)
             if key in SETTINGS or value == () or (numbers and key not in numbers):
                 continue
-            unused = value == usual[key] and (place, key) not in fitted
-            if unused and not numbers:
+            if not numbers and value == usual[key] and (place, key) not in fitted:
                 continue  # no law that was named has it
             error = _errors_of(place, key, value, state, errors)
             count = 1 + sum(name.partition("#")[0] == key for name in found)

@@ -250,12 +250,10 @@ def _each_judged(
     wanted = np.inf
     for trial in likely:
         item = _judged(trial, state, score, now, wanted)
-        for other in every if item.refused else ():
-            if _is_other_law(other.variant, trial.variant):
-                next_law = _judged(other, state, score, now, wanted)
-                if not next_law.declined:
-                    item = next_law
-                    break
+        if item.refused:
+            others = (x for x in every if _is_other_law(x.variant, trial.variant))
+            judged = (_judged(x, state, score, now, wanted) for x in others)
+            item = next((x for x in judged if not x.declined), item)
         if not folds and item.state is not None:
             wanted = min(wanted, item.score + CERTAIN + NEAR)
         yield item

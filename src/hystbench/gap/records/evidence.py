@@ -104,7 +104,6 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
         _check_length(file, record)
         check_usable(file, record, dataset.stands_still(record.name))
     about = dataset.about
-    hold: Hold = about["input"].get("hold", "band-limited")
     named = about.get("identification")
     if named is not None and dataset.use(named) != "fit":
         raise InputError(
@@ -122,7 +121,7 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
         dataset.name,
         fit,
         hold_out,
-        hold,
+        dataset.input_hold,
         about.get("noise_rms"),
         named,
         dataset.simulated_column,

@@ -65,7 +65,8 @@ def reshapings(simulation: Simulation, sample: ScoredSamples) -> FloatArray:
     ndarray, shape (scored samples, k)
         Without anything in the chain that holds a hysteresis, no column.
     """
-    return _behind(simulation, sample, _ways)
+    closing = closing_reshapings(simulation, sample)
+    return np.hstack([closing, _behind(simulation, sample, _that_forget)])
 
 
 def closing_reshapings(simulation: Simulation, sample: ScoredSamples) -> FloatArray:
@@ -115,7 +116,7 @@ def _behind(
     )
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=8)
 def _made(
     make: Maker, block: Block, v: Same, given: Same, sample: Same
 ) -> list[Signals]:
@@ -123,7 +124,7 @@ def _made(
     return make(block, v.objects, given.objects, *sample.objects)
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=4)
 def _all_sent(simulation: Simulation, given: Same) -> list[tuple[Signals, float]]:
     """Send each way on; kept, as more than one choice of samples is asked for."""
     behind = simulation.chain[simulation.behind_hysteresis :]
@@ -153,20 +154,13 @@ def orthonormal(columns: FloatArray) -> FloatArray:
     return np.asarray(columns[:, usable] @ turned)
 
 
-def _ways(
-    block: Block, v: Signals, given: Signals, sample: ScoredSamples | None
-) -> list[Signals]:
-    """Give ways in which the output of a hysteresis could differ.
-
-    They are made of what enters it and, where its inside is not seen, of what it gives.
-    """
-    return [*_that_close(block, v, given, sample), *_that_forget(v, sample)]
-
-
 def _that_close(
     block: Block, v: Signals, given: Signals, sample: ScoredSamples | None
 ) -> list[Signals]:
-    """Give those whose small loops close."""
+    """Give ways in which the output of a hysteresis could differ, of loops that close.
+
+    They are made of what enters it and, where its inside is not seen, of what it gives.
+    """
     ways: list[Signals] = [tuple(np.ones(len(z)) for z in _at(v, sample))]
     for signals in filter(None, (v, given)):
         ways += _powers(signals, sample)
@@ -222,14 +216,16 @@ def _powers(signals: Signals, sample: ScoredSamples | None) -> list[Signals]:
     return ways
 
 
-def _that_forget(signals: Signals, sample: ScoredSamples | None) -> list[Signals]:
+def _that_forget(
+    block: Block, v: Signals, given: Signals, sample: ScoredSamples | None
+) -> list[Signals]:
     """Give loops that forget along the way, and products of them with the signal.
 
     Dahl's operator, ``dh = dz - |dz| h / way``, for a few ways. Their small loops do
     not close: no sum of play operators does so, while Duhem's equation does.
     """
-    amplitude = max(float(np.abs(z).max()) for z in signals) or 1.0
-    scaled = tuple(np.concatenate([[0.0], z / amplitude]) for z in signals)
+    amplitude = max(float(np.abs(z).max()) for z in v) or 1.0
+    scaled = tuple(np.concatenate([[0.0], z / amplitude]) for z in v)
     at = _at(tuple(z[1:] for z in scaled), sample)
     found: list[Signals] = []
     for way in WAYS:
