@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -216,24 +216,70 @@ def _retuned(state: ModelState, score: Score) -> Shared:
 def best_points(look: Attempt) -> list[tuple[float, Point]]:
     """Give the points of a grid that score least, with their scores, best first.
 
+    A grid of two axes is not tried whole: its long axis is swept at the middle of the
+    short one, and the valley that is found there is followed to both sides.
+
     Raises
     ------
     Declined
         If the blocks refuse every point of the grid: with what the last one said.
     """
-    axes = look.variant.grids.values()
-    trials: list[tuple[float, Point]] = []
-    refused: InputError | None = None
-    for point in itertools.product(*(axis.tolist() for axis in axes)):
+    axes = [axis.tolist() for axis in look.variant.grids.values()]
+    grid = _Grid(look, axes)
+    if len(axes) == 2:
+        grid.follow_valley(0 if len(axes[0]) >= len(axes[1]) else 1)
+    if not grid.scores:
+        for place in itertools.product(*(range(len(axis)) for axis in axes)):
+            grid.at(place)
+    if not grid.scores:
+        raise Declined(str(grid.refused)) from grid.refused
+    best = sorted((score, point) for point, score in grid.scores.items())
+    return best[: 1 + len(best) // MANY]
+
+
+class _Grid:
+    """Points of a grid that were scored."""
+
+    def __init__(self, look: Attempt, axes: Sequence[Sequence[float]]) -> None:
+        self.look, self.axes = look, axes
+        self.scores: dict[Point, float] = {}
+        self.refused: InputError | None = None
+        """What the blocks said of the last point that they refuse."""
+
+    def at(self, place: Sequence[int]) -> float:
+        """Score one point; infinite where the blocks refuse its values."""
+        point = tuple(axis[k] for axis, k in zip(self.axes, place, strict=True))
         try:
-            trials.append((look.at(tuple(point)).score, point))
+            self.scores[point] = self.look.at(point).score
         except CallsUsedUp as error:  # half a grid may miss what is best
             raise Declined(str(error)) from error
         except InputError as error:
-            refused = error  # values that the block itself refuses are no candidates
-    if not trials:
-        raise Declined(str(refused)) from refused
-    return sorted(trials)[: 1 + len(trials) // MANY]
+            self.refused = error
+            return np.inf
+        return self.scores[point]
+
+    def follow_valley(self, along: int) -> None:
+        """Sweep one of two axes whole, and walk from line to line of the other."""
+        size, lines = len(self.axes[along]), len(self.axes[1 - along])
+
+        def at(k: int, line: int) -> float:
+            return self.at((k, line) if along == 0 else (line, k))
+
+        middle = lines // 2
+        first = min(range(size), key=lambda k: at(k, middle))
+        for side in (range(middle + 1, lines), range(middle - 1, -1, -1)):
+            lowest = first
+            for line in side:
+                lowest = _walked(partial(at, line=line), lowest, size)
+
+
+def _walked(score: Callable[[int], float], start: int, size: int) -> int:
+    """Give where a line is lowest, walking from a place for as long as it falls."""
+    best, least = start, score(start)
+    for step in (1, -1):
+        while 0 <= best + step < size and (there := score(best + step)) < least:
+            best, least = best + step, there
+    return best
 
 
 def best_of(attempt: Attempt, points: Sequence[Point]) -> Trial:
