@@ -139,6 +139,10 @@ def test_a_bad_file_is_told_in_one_line(write_dataset, text, expected):
         (("name: bench", "nmae: bench"), "'name'"),
         (("input:", "imput:"), "did you mean 'input'?"),
         (("unit: A", "untis: A"), "input: unknown key 'untis'; did you mean 'unit'?"),
+        (
+            ("unit: A", "unit: A, noise_rms: 1"),
+            "input: unknown key 'noise_rms'; it is a key of the file, not of 'input'",
+        ),
         (("r.csv", "rr.csv"), "no file 'rr.csv'; did you mean 'r.csv'?"),
         (("use: fit", "use: hold"), "did you mean 'hold-out'?"),
         (("use: fit", "use: hold-out"), "at least one with 'use: fit'"),

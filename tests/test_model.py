@@ -310,6 +310,15 @@ def test_a_free_parameter_may_have_a_tolerance():
     assert model().tolerances == {}
 
 
+def test_a_number_of_several_is_told_by_what_it_belongs_to():
+    envelope = dict.fromkeys([f"a{k}" for k in range(8)], 1.0)
+    block = {"gpi": {"envelope": envelope, "thresholds": [0.0], "weights": [1.0]}}
+    with pytest.raises(InputError, match=r"it is one of gpi\.envelope"):
+        Model.from_mapping(
+            content() | {"chain": [block], "free": ["gpi.a0"], "provenance": {}}, "x"
+        )
+
+
 @pytest.mark.parametrize(
     ("free", "expected"),
     [

@@ -297,12 +297,15 @@ class Model:
 
     def _find(self, name: str) -> tuple[int, str]:
         label, _, parameter = str(name).rpartition(".")
+        told = nearest(name, self.parameter_names())
         for position, (known, block) in enumerate(self.labelled()):
-            if known == label and parameter in block.parameters():
+            parameters = block.parameters()
+            if known == label and parameter in parameters:
                 return position, parameter
-        raise InputError(
-            f"unknown parameter {name!r}; {nearest(name, self.parameter_names())}"
-        )
+            for whole, about in parameters.items():
+                if known == label and parameter in about.names:
+                    told = f"it is one of {known}.{whole}, which goes as a whole"
+        raise InputError(f"unknown parameter {name!r}; {told}")
 
 
 def load_model(path: str | Path) -> Model:

@@ -45,7 +45,10 @@ def check_against_schema(content: Any, schema: Mapping[str, Any], place: str) ->
     if rule == "additionalProperties":
         known = list(error.schema["properties"])
         unknown = next(key for key in value if key not in known)
-        raise InputError(f"{where}: unknown key {unknown!r}; {nearest(unknown, known)}")
+        told = nearest(unknown, known)
+        if error.absolute_path and unknown in schema.get("properties", {}):
+            told = f"it is a key of the file, not of {error.absolute_path[0]!r}"
+        raise InputError(f"{where}: unknown key {unknown!r}; {told}")
     if rule == "enum":
         near = nearest(value, error.validator_value)
         raise InputError(f"{where}: {short(value)} is unknown; {near}")

@@ -17,10 +17,15 @@ from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.excitations import Limits
 from hystbench.gap.fitting.augmented_model import augmented
+from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.own_values import NONE, OwnValues
-from hystbench.gap.fitting.re_tuned import could_gain, re_tuned_words
+from hystbench.gap.fitting.re_tuned import (
+    least_re_tuned,
+    re_tuned_score,
+    re_tuned_words,
+)
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.named_inside import (
@@ -84,12 +89,12 @@ def search(
     limits = Limits.of(evidence.fit, asked.limits) if asked.limits else None
     found = _beside(base, evidence, asked, quantities)
     about = None if is_identified(base) else known_about(base, evidence.fit)
-    if about is not None and found.may_be_simpler(asked.unnamed_share):
+    if about is not None and found.may_be_simpler():
         asked.say("the base's numbers or timing may be off: naming beside that")
         again = _beside(about, evidence, asked, quantities)
         score = found.score_beside(again)
         alike = len(again.start.sample) == len(found.start.sample)
-        if alike and again.value(score) + FURTHER < found.value(score):
+        if alike and again.value(score, re_tuned=True) < found.value(score):
             found = again
         else:
             asked.say("that explains no more: they stay as they are")
@@ -132,9 +137,10 @@ class _Searched:
         return found
 
     @property
-    def re_tuned(self) -> bool:
-        """Whether numbers were fitted that nobody set free."""
-        return self.inside is not None and self.inside.counts > 0
+    def counts(self) -> int:
+        """Effects named; numbers of a host that nobody set free count as one."""
+        host = self.inside is not None and self.inside.counts > 0
+        return len(self.named.state.added) + host
 
     def score_beside(self, other: _Searched) -> Score:
         """Give the score that this answer and another one are compared by.
@@ -146,32 +152,43 @@ class _Searched:
             return Score.plain(self.start.sample, self.floor.rms**2)
         return make_score(self.start, self.floor.rms, forms=False)
 
-    def value(self, score: Score) -> float:
-        """Score it, with what its effects and re-tuned numbers have to pay."""
+    def value(self, score: Score, re_tuned: bool = False) -> float:
+        """Score it, with what its effects and its numbers have to pay.
+
+        A re-tuned base is to pay as an effect does.
+        """
         state = self.named.state
         own = state.places_added
-        cost = self.own.charge + FURTHER * self.re_tuned
-        if state.added:
-            cost += PAYS + FURTHER * (len(state.added) - 1)
-        for free in state.free:
-            if free.block not in own:
-                cost += PARAMETER
+        numbers = sum(free.block not in own for free in state.free)
+        cost = self.own.charge + PARAMETER * numbers + _pay(self.counts + re_tuned)
         return cost + score_of(state, score)
 
-    def may_be_simpler(self, share: float) -> bool:
+    def may_be_simpler(self) -> bool:
         """Tell whether there may be a better answer beside a re-tuned base.
 
-        That is to pay as an effect does. So one effect and the base re-tuned would be
-        fewer; or more is left than noise and than may stay unnamed, and re-tuning could
-        gain as much.
+        It may do in place of an effect, or change what they are: if it pays for its
+        numbers beside them, they may stand for a base that is off.
         """
-        square, state = self.floor.rms**2, self.named.state
-        if len(state.added) + self.re_tuned > 2:
+        if self.counts > 2:
             return True
-        most = max(square, share * self.start.power(square))
-        if state.power(square) <= most:
-            return False
-        return could_gain(state, self.score_beside(self)) > FURTHER
+        state, score = self.named.state, self.score_beside(self)
+        now = score_of(state, score)
+        if least_re_tuned(state, score) >= now:
+            return False  # slopes are dear, and could only tell less
+        shorter = (
+            without_effect(state, number)
+            for number in range(len(state.added))
+            if removable(state, number)
+        )
+        beside = now if state.added else now - FURTHER
+        return re_tuned_score(state, score) < beside or any(
+            re_tuned_score(short, score) < now for short in shorter
+        )
+
+
+def _pay(effects: int) -> float:
+    """Give by how much so many effects are to lower a score."""
+    return PAYS + FURTHER * (effects - 1) if effects > 0 else 0.0
 
 
 def _beside(

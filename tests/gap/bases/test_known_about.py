@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.signal import lsim
+from scipy.signal import lfilter, lsim
 
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.input_delay import InputDelay
@@ -108,11 +108,52 @@ def test_it_simulates_the_same_until_it_is_re_tuned():
     assert "gain.offset" not in about.free  # nobody stated it
 
 
-def test_of_a_hysteresis_only_the_timing_is_free():
+def test_the_numbers_of_a_hysteresis_are_free_as_well():
     loop = PrandtlIshlinskii(thresholds=(0.1, 0.2), weights=(1.0, 0.5))
     about = known_about(base(loop, SensorLag(time_constant_s=0.01)), [record([0, 1])])
-    assert about.free == ("sensor-lag.time_constant_s", "input-delay.delay_s")
+    assert about.free == (
+        "prandtl-ishlinskii.thresholds",
+        "prandtl-ishlinskii.weights",
+        "sensor-lag.time_constant_s",
+        "input-delay.delay_s",
+    )
     assert as_it_was(about) == base(*about.chain[1:])
+
+
+THRESHOLDS = np.linspace(0.05, 1.0, 8)
+WEIGHTS = np.exp(-2 * THRESHOLDS)
+
+
+def loops(seed, lag):
+    """Plays, written here, whose numbers are up to 5 % off; a sensor may lag."""
+    rng = np.random.default_rng(seed)
+    off = 1 + rng.uniform(-0.05, 0.05, (2, 8))
+    thresholds, weights = off * (THRESHOLDS, WEIGHTS)
+    time = np.arange(COUNT) * DT
+    kept = np.exp(-DT / lag) if lag else 0.0
+    for k, use in enumerate(["fit", "fit", "fit", "hold-out"]):
+        lines = np.column_stack([rng.uniform(0.5, 12, 10), rng.uniform(0, 6, 10)])
+        u = 0.5 + sum(np.sin(2 * np.pi * f * time + p) for f, p in lines) / 4
+        u *= np.clip(time / 0.1, 0, 1)
+        play, y = np.zeros(8), np.empty(COUNT)
+        for n, x in enumerate(u):
+            play = np.clip(play, x - thresholds, x + thresholds)
+            y[n] = x + weights @ play
+        y = lfilter([1 - kept], [1, -kept], y)
+        y += NOISE * np.std(y) * rng.standard_normal(COUNT)
+        yield record(u, y, name=f"run-{k}", dt=DT, use=use)
+
+
+@pytest.mark.parametrize(("lag", "names"), [(0.0, []), (4e-3, ["sensor-lag"])])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_hysteresis_that_is_a_little_off_is_no_effect(seed, lag, names):
+    *fit, held = loops(seed, lag)
+    plays = PrandtlIshlinskii(thresholds=tuple(THRESHOLDS), weights=tuple(WEIGHTS))
+    evidence = Evidence("made", tuple(fit), (held,))
+    content = closed_gap(evidence, base(plays)).decision.content
+    assert [item["name"] for item in content["effects"]] == names
+    assert content["verdict"] == ("named" if names else "parameters")
+    assert content["gap"]["after"] < 1.2 * NOISE * np.std(held.y)
 
 
 def of_a_column():

@@ -189,6 +189,20 @@ def test_a_law_promises_what_its_numbers_do_that_start_at_zero():
     assert promised["square and cube",] < promised["cube",] - 200
 
 
+def test_a_law_whose_slopes_run_away_is_left_out(monkeypatch):
+    """It may run as it begins, and diverge at a step beside that."""
+    x = 5.0 * np.sin(7 * TIME)
+    given = (record("one", x, 2.0 * x + 0.05 * x**3 + NOISE * np.sin(TIME**2 * 99)),)
+    begun = list(one_coordinate(given, Quantities("position", "force"), "linear"))
+    score = Score(begun[0].sample, np.zeros((len(begun[0].sample), 0)), NOISE**2)
+    host = best_host(begun, score)
+    laws = laws_for(host)["stiffness-hardening"]
+    whole = Beginnings.all_of(host.state, score)
+    slopes = "hystbench.gap.inside.combine_forces.of_zeros"
+    monkeypatch.setattr(slopes, lambda state: np.full((len(state.sample), 1), np.inf))
+    assert list(starts(host, host.state, "stiffness-hardening", laws, whole)) == []
+
+
 def test_a_store_has_no_impedance():
     level = Quantities("position", "level")
     assert list(one_coordinate((damper(2, 1.3, 0),), level, "linear")) == []

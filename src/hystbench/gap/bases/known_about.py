@@ -95,11 +95,10 @@ def defaults(block: Block) -> dict[str, Any]:
 def stated(block: Block) -> list[str]:
     """Give the numbers of a block that are not what they are where nobody states them.
 
-    None of a hysteresis, a wrong shape of which is looked for anyway, nor of a delay,
-    as timing is free. Of many poles a small step of one coefficient alone may make a
-    model unstable.
+    None of a delay, as timing is free. Of many poles a small step of one coefficient
+    alone may make a model unstable.
     """
-    if block.hysteretic or isinstance(block, InputDelay):
+    if isinstance(block, InputDelay):
         return []
     found = []
     for name, usual in defaults(block).items():

@@ -1,4 +1,4 @@
-"""What re-tuning a base that is known about could gain, and how far it went."""
+"""What re-tuning a base that is known about could do, and how far it went."""
 
 from __future__ import annotations
 
@@ -11,15 +11,17 @@ from hystbench.blocks.input_delay import InputDelay
 from hystbench.gap.bases.known_about import LATE, in_time, stated
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.thresholds import ABOUT
+from hystbench.gap.thresholds import ABOUT, PARAMETER
 from hystbench.sentences import finely, shortly
 
 LEAST = 5e-3
 """Share by which a number has to move to be told."""
 
 
-def could_gain(state: ModelState, score: Score) -> float:
-    """Give what re-tuning a base could lower a score by, as slopes tell.
+def re_tuned_score(state: ModelState, score: Score) -> float:
+    """Give the score of a model whose base is re-tuned, as slopes tell.
+
+    Each number that is freed is charged.
 
     Parameters
     ----------
@@ -30,9 +32,19 @@ def could_gain(state: ModelState, score: Score) -> float:
     loose = _loosened(state)
     columns = loose.tangents
     if not np.isfinite(columns).all():
-        return np.inf
+        return -np.inf
     found = score.amplitudes(loose.residual, columns, state.freedom, loose.held)
-    return score.of(state.residual, state.freedom) + state.moved_charge - found.score
+    return found.score + PARAMETER * _numbers(state, loose)
+
+
+def least_re_tuned(state: ModelState, score: Score) -> float:
+    """Give what the same can be at best: where noise alone is left."""
+    numbers = _numbers(state, _loosened(state))
+    return score.least(state.freedom) + PARAMETER * numbers
+
+
+def _numbers(state: ModelState, loose: ModelState) -> int:
+    return len(loose.free) - len(state.free)
 
 
 def _loosened(state: ModelState) -> ModelState:

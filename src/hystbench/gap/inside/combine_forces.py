@@ -209,10 +209,10 @@ def starts(
         if isinstance(law, Law) and not (law.stands_for or of_stores(before)):
             begun = evened(begun)
         own = beginnings.cut(begun)
-        if not np.all(np.isfinite(own.residual)):
-            continue
         does = short.residual - own.residual
         columns = np.column_stack([tangents, does, of_zeros(own)])
+        if not np.isfinite(columns).all():
+            continue  # it runs away, or would at the next step
         sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
         scaled = columns / sizes
         found, *_ = np.linalg.lstsq(
