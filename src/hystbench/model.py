@@ -297,7 +297,7 @@ class Model:
 
     def _find(self, name: str) -> tuple[int, str]:
         label, _, parameter = str(name).rpartition(".")
-        told = nearest(name, self.parameter_names())
+        told = ""
         for position, (known, block) in enumerate(self.labelled()):
             parameters = block.parameters()
             if known == label and parameter in parameters:
@@ -305,6 +305,7 @@ class Model:
             for whole, about in parameters.items():
                 if known == label and parameter in about.names:
                     told = f"it is one of {known}.{whole}, which goes as a whole"
+        told = told or nearest(name, self.parameter_names())
         raise InputError(f"unknown parameter {name!r}; {told}")
 
 

@@ -42,6 +42,8 @@ class Parameter:
     """Whether a sequence may have no numbers at all."""
     as_many_as: str = ""
     """Another sequence of the block, of as many numbers; none for any count."""
+    whole: bool = False
+    """Whether a number counts something: no fit may change it."""
 
     def check(self, name: str, value: object) -> Value:
         """Return the value as float, tuple of float or text.
@@ -99,6 +101,8 @@ class Parameter:
                 f"{name}: {value:g} is out of bounds, "
                 f"expected {self.low:g} to {self.high:g} {self.unit}"
             )
+        if self.whole and value != int(value):
+            raise InputError(f"{name}: expected a whole number, got {value:g}")
         return float(value)
 
 
@@ -111,6 +115,13 @@ def number(
 ) -> Any:
     """Declare a parameter that is one number; without bounds it may be any."""
     return _declare(Parameter("number", unit, meaning, low, high), default)
+
+
+def count(
+    meaning: str, low: float = -HUGE, high: float = HUGE, default: object = MISSING
+) -> Any:
+    """Declare a parameter that counts something: a whole number."""
+    return _declare(Parameter("number", "-", meaning, low, high, whole=True), default)
 
 
 def numbers(

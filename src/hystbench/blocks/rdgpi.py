@@ -6,10 +6,9 @@ from typing import Any
 import numpy as np
 
 from hystbench.blocks.curve import CENTRAL, about_sample
-from hystbench.blocks.parameter import choice, number
+from hystbench.blocks.parameter import choice, count, number
 from hystbench.blocks.step import PASSED, Sampling, Step, foretold
 from hystbench.blocks.wrapping import HystereticBlock
-from hystbench.errors import InputError
 from hystbench.rdgpi.model import STARTS, RateDependentGPI
 from hystbench.record import FloatArray
 
@@ -38,13 +37,11 @@ class RateDependentPrandtlIshlinskii(HystereticBlock, name="rdgpi", place="base"
     tau: float = number("1/U", "decay of the weights over the thresholds")
     envelope_gain: float = number("-", "the paper's xi", -1e6, 1e6)
     envelope_offset: float = number("U", "the paper's mu")
-    order: float = number("-", "N, one less than the operators", 0, 1000, default=30.0)
+    order: float = count("N, one less than the operators", 0, 1000, 30.0)
     start: str = choice("operators before the first sample", STARTS, "rest")
 
     def check(self) -> None:
-        """Refuse an order that is no integer, and what the model itself refuses."""
-        if self.order != int(self.order):
-            raise InputError(f"order: expected a whole number, got {self.order:g}")
+        """Refuse what the model itself refuses."""
         self._model()
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:

@@ -22,7 +22,7 @@ from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.re_tuned import (
-    least_re_tuned,
+    charge_of_base,
     re_tuned_score,
     re_tuned_words,
 )
@@ -42,7 +42,7 @@ from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence, own_offsets
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.thresholds import FURTHER, LOOSE, PARAMETER, PAYS
+from hystbench.gap.thresholds import FURTHER, LOOSE, PAYS
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Record
@@ -67,9 +67,9 @@ def search(
 ) -> Decision:
     """Locate the gap, name what is missing and add it.
 
-    A given base is first taken as it is. If much is left then, its numbers and timing
-    may be off: effects are sought again beside it with these free, each by what it may
-    be off, and what explains the records better stands.
+    A given base is first taken as it is. Where re-tuning it may replace an effect or
+    pay beside one, effects are sought again with its numbers and timing free, each by
+    what it may be off. What explains the records better stands.
 
     Parameters
     ----------
@@ -158,31 +158,27 @@ class _Searched:
         A re-tuned base is to pay as an effect does.
         """
         state = self.named.state
-        own = state.places_added
-        numbers = sum(free.block not in own for free in state.free)
-        cost = self.own.charge + PARAMETER * numbers + _pay(self.counts + re_tuned)
-        return cost + score_of(state, score)
+        cost = self.own.charge + _pay(self.counts + re_tuned)
+        return cost + charge_of_base(state, score) + score_of(state, score)
 
     def may_be_simpler(self) -> bool:
         """Tell whether there may be a better answer beside a re-tuned base.
 
-        It may do in place of an effect, or change what they are: if it pays for its
-        numbers beside them, they may stand for a base that is off.
+        Re-tuning may replace an effect. And where it pays for its numbers beside the
+        effects, these may stand for a base that is off.
         """
         if self.counts > 2:
             return True
         state, score = self.named.state, self.score_beside(self)
         now = score_of(state, score)
-        if least_re_tuned(state, score) >= now:
-            return False  # slopes are dear, and could only tell less
         shorter = (
             without_effect(state, number)
             for number in range(len(state.added))
             if removable(state, number)
         )
-        beside = now if state.added else now - FURTHER
-        return re_tuned_score(state, score) < beside or any(
-            re_tuned_score(short, score) < now for short in shorter
+        beside = now if state.added else now - PAYS
+        return re_tuned_score(state, score, beside) < beside or any(
+            re_tuned_score(short, score, now) < now for short in shorter
         )
 
 

@@ -9,6 +9,7 @@ from scipy.signal import lfilter, lsim
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.prandtl_ishlinskii import PrandtlIshlinskii
+from hystbench.blocks.preisach import Preisach
 from hystbench.blocks.sensor_lag import SensorLag
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.transfer_function import TransferFunction
@@ -120,12 +121,28 @@ def test_the_numbers_of_a_hysteresis_are_free_as_well():
     assert as_it_was(about) == base(*about.chain[1:])
 
 
+def test_a_count_is_no_number_that_may_be_off():
+    density = {"centre_spreads": (1.0,), "half_widths": (1.0,)}
+    relays = Preisach(
+        reversible=0.5,
+        limit=5.0,
+        weights=(1.0,),
+        centres=(0.0,),
+        half_width_spreads=(0.5,),
+        cells=32,
+        **density,
+    )
+    about = known_about(base(relays), [record([0.0, 1.0])])
+    assert "preisach.limit" in about.free
+    assert "preisach.cells" not in about.free
+
+
 THRESHOLDS = np.linspace(0.05, 1.0, 8)
 WEIGHTS = np.exp(-2 * THRESHOLDS)
 
 
-def loops(seed, lag):
-    """Plays, written here, whose numbers are up to 5 % off; a sensor may lag."""
+def loops(seed, lag, hum=0.0):
+    """Plays, written here, whose numbers are up to 5 % off; a sensor may lag or hum."""
     rng = np.random.default_rng(seed)
     off = 1 + rng.uniform(-0.05, 0.05, (2, 8))
     thresholds, weights = off * (THRESHOLDS, WEIGHTS)
@@ -140,20 +157,34 @@ def loops(seed, lag):
             play = np.clip(play, x - thresholds, x + thresholds)
             y[n] = x + weights @ play
         y = lfilter([1 - kept], [1, -kept], y)
+        y += hum * np.sin(2 * np.pi * 50.03 * time + k)
         y += NOISE * np.std(y) * rng.standard_normal(COUNT)
         yield record(u, y, name=f"run-{k}", dt=DT, use=use)
 
 
 @pytest.mark.parametrize(("lag", "names"), [(0.0, []), (4e-3, ["sensor-lag"])])
 @pytest.mark.parametrize("seed", range(3))
-def test_a_hysteresis_that_is_a_little_off_is_no_effect(seed, lag, names):
+@pytest.mark.parametrize("parts", [1, 5])
+def test_a_hysteresis_that_is_a_little_off_is_no_effect(seed, lag, names, parts):
+    """Into how many plays of the same thresholds it is split does not matter."""
     *fit, held = loops(seed, lag)
-    plays = PrandtlIshlinskii(thresholds=tuple(THRESHOLDS), weights=tuple(WEIGHTS))
+    plays = PrandtlIshlinskii(
+        thresholds=tuple(np.repeat(THRESHOLDS, parts)),
+        weights=tuple(np.repeat(WEIGHTS, parts) / parts),
+    )
     evidence = Evidence("made", tuple(fit), (held,))
     content = closed_gap(evidence, base(plays)).decision.content
     assert [item["name"] for item in content["effects"]] == names
     assert content["verdict"] == ("named" if names else "parameters")
     assert content["gap"]["after"] < 1.2 * NOISE * np.std(held.y)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_beside_a_hum_a_base_that_is_off_is_re_tuned_too(seed):
+    *fit, held = loops(seed, 0.0, hum=0.05)
+    plays = PrandtlIshlinskii(thresholds=tuple(THRESHOLDS), weights=tuple(WEIGHTS))
+    content = closed_gap(Evidence("made", tuple(fit), (held,)), base(plays)).decision
+    assert [x["name"] for x in content.content["effects"]] == ["mains-pickup"]
 
 
 def of_a_column():

@@ -246,6 +246,28 @@ def test_a_tolerance_holds_an_amplitude_back(seed, stiffness):
     assert found.score < best + 0.5
 
 
+@given(SEEDS, st.floats(0.1, 1e4))
+def test_what_is_held_counts_by_how_far_samples_tell_it(seed, stiffness):
+    """By the second difference of the score, at a residual that the column leaves."""
+    rng = np.random.default_rng(seed)
+    column, residual = rng.standard_normal((2, 60))
+    column -= residual * (residual @ column) / (residual @ residual)
+    score = Score(sample_of([60]), np.zeros((60, 0)), 1e-9)
+    step = 1e-3
+    told = (score.of(residual + step * column) - score.of(residual)) / step**2
+
+    def counted(columns, held):
+        return score.numbers_told(residual, columns, Held.here(np.array(held)))
+
+    one = counted(column[:, None], [stiffness])
+    assert one == pytest.approx(told / (told + stiffness), rel=1e-3)
+    # A number that is split is told no better.
+    halves = np.column_stack([column, column]) / 2
+    assert counted(halves, [stiffness / 2] * 2) == pytest.approx(one)
+    assert counted(column[:, None], [0.0]) == pytest.approx(1.0)
+    assert counted(np.zeros((60, 1)), [stiffness]) == pytest.approx(0.0)
+
+
 def test_columns_that_are_nothing_or_run_away():
     score = Score(sample_of([30]), np.zeros((30, 0)), 1e-9)
     residual = np.random.default_rng(0).standard_normal(30)

@@ -27,7 +27,8 @@ def content(before=1.0, after=0.5, verdict="named", names=("creep",), **gap):
         "verdict": verdict,
         "unit": "um",
         "effects": [{"name": name} for name in names],
-        "gap": {"before": before, "after": after, "explained": 0.8} | gap,
+        "gap": {"before": before, "after": after, "noise_floor": 0.1, "explained": 0.8}
+        | gap,
         "records": [{"name": "a", "before": before, "after": after, "explained": 0}],
         "runs_away": [{"record": "a"}] if after is None else [],
     }
@@ -76,6 +77,8 @@ def test_the_first_figure_says_of_what_it_is_a_share():
     assert "46.0 % to 54.0 %" in first_figure(content(explained=[0.46, 0.54]))
     assert "%" not in first_figure(content(explained=None))
     assert "none of the gap's power" in first_figure(content(explained=-0.001))
+    # Less power than may stay unnamed is above the noise: a share of it says nothing.
+    assert "no more than noise" in first_figure(content(1.0, 1.0, noise_floor=0.999))
 
 
 def test_a_base_that_a_constant_beats_on_hold_out_records_is_told():

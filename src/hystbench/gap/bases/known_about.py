@@ -95,15 +95,15 @@ def defaults(block: Block) -> dict[str, Any]:
 def stated(block: Block) -> list[str]:
     """Give the numbers of a block that are not what they are where nobody states them.
 
-    None of a delay, as timing is free. Of many poles a small step of one coefficient
-    alone may make a model unstable.
+    None of a delay, as timing is free, and no count. Of many poles a small step of one
+    coefficient alone may make a model unstable.
     """
     if isinstance(block, InputDelay):
         return []
     found = []
     for name, usual in defaults(block).items():
-        value = getattr(block, name)
-        if isinstance(value, str) or value == usual:
+        value, about = getattr(block, name), block.parameters()[name]
+        if isinstance(value, str) or value == usual or about.whole:
             continue
         numbers = np.atleast_1d(np.asarray(value, dtype=float))
         poles = name == "denominator" and len(numbers) > HIGHEST + 1

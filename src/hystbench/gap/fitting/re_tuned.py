@@ -9,7 +9,8 @@ import numpy as np
 
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.gap.bases.known_about import LATE, in_time, stated
-from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.model_score import beside_of
+from hystbench.gap.fitting.score import Held, Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.thresholds import ABOUT, PARAMETER
 from hystbench.sentences import finely, shortly
@@ -18,33 +19,46 @@ LEAST = 5e-3
 """Share by which a number has to move to be told."""
 
 
-def re_tuned_score(state: ModelState, score: Score) -> float:
+def re_tuned_score(state: ModelState, score: Score, wanted: float) -> float:
     """Give the score of a model whose base is re-tuned, as slopes tell.
 
-    Each number that is freed is charged.
+    Each number that is freed is charged by how far the records tell it.
 
     Parameters
     ----------
     state : ModelState
         A model of a given base with effects.
     score : Score
+    wanted : float
+        Score that is of use: what cannot come below it is not computed.
     """
+    if score.least(state.freedom) >= wanted:
+        return np.inf
     loose = _loosened(state)
     columns = loose.tangents
     if not np.isfinite(columns).all():
         return -np.inf
-    found = score.amplitudes(loose.residual, columns, state.freedom, loose.held)
-    return found.score + PARAMETER * _numbers(state, loose)
+    found = score.amplitudes(
+        loose.residual,
+        columns,
+        state.freedom,
+        loose.held,
+        beside=beside_of(loose, score),
+    )
+    return found.score + charge_of_base(loose, score)
 
 
-def least_re_tuned(state: ModelState, score: Score) -> float:
-    """Give what the same can be at best: where noise alone is left."""
-    numbers = _numbers(state, _loosened(state))
-    return score.least(state.freedom) + PARAMETER * numbers
-
-
-def _numbers(state: ModelState, loose: ModelState) -> int:
-    return len(loose.free) - len(state.free)
+def charge_of_base(state: ModelState, score: Score) -> float:
+    """Charge the free numbers of a model's base, by how far the records tell them."""
+    own = state.places_added
+    base = [k for k, free in enumerate(state.free) if free.block not in own]
+    if not base:
+        return 0.0
+    held = Held(state.held.stiffness[base], state.held.moved[base])
+    rest = state.residual
+    if state.beside:
+        rest = rest - state.beside_columns @ state.beside_amplitudes
+    return PARAMETER * score.numbers_told(rest, state.tangents[:, base], held)
 
 
 def _loosened(state: ModelState) -> ModelState:

@@ -285,6 +285,35 @@ class Score:
         table = np.concatenate([self._directions, rows], axis=2)
         return Shared(own, held.form(turned / scale[:, None]), table, across)
 
+    def numbers_told(
+        self, residual: FloatArray, columns: FloatArray, held: Held
+    ) -> float:
+        """Count the amplitudes that samples tell, in place of what holds them.
+
+        Each combination of amplitudes counts by the share of what is known of it that
+        the samples say: the effective number of parameters [1]_.
+
+        Parameters
+        ----------
+        residual : ndarray, shape (scored samples,)
+        columns : ndarray, shape (scored samples, k)
+        held : Held
+            What holds the amplitudes; one that is not held counts as one.
+
+        References
+        ----------
+        .. [1] D. J. C. MacKay, "Bayesian interpolation", Neural Computation 4 (1992)
+           415-447, Sec. 4.4.
+        """
+        found = self._products(np.column_stack([residual, columns]))
+        squares = found.grams[:, 0, 0] / self._counts
+        weights = self.weight / (self._counts * np.maximum(squares, self.floor))
+        told = np.tensordot(weights, found.grams[:, 1:, 1:], 1)
+        whole = told + np.diag(held.stiffness)
+        size = np.sqrt(np.maximum(whole.diagonal(), APART))
+        told, whole = (each / np.outer(size, size) for each in (told, whole))
+        return float(np.trace(np.linalg.lstsq(whole, told, rcond=APART)[0]))
+
     def _products(self, columns: FloatArray, beside: Shared | None = None) -> Products:
         """Give products of columns with each other and with those beside, by record.
 

@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
@@ -216,8 +217,10 @@ def _retuned(state: ModelState, score: Score) -> Shared:
 def best_points(look: Attempt) -> list[tuple[float, Point]]:
     """Give the points of a grid that score least, with their scores, best first.
 
-    A grid of two axes is not tried whole: its long axis is swept at the middle of the
-    short one, and the valley that is found there is followed to both sides.
+    Of a grid of two axes with three points or more the long axis is swept at the middle
+    of the short one, and the valley that is found there is followed to both sides: a
+    line next to it has its own a step or two away. Any other grid is tried whole, and
+    so is one that shows nothing on its middle line.
 
     Raises
     ------
@@ -226,15 +229,15 @@ def best_points(look: Attempt) -> list[tuple[float, Point]]:
     """
     axes = [axis.tolist() for axis in look.variant.grids.values()]
     grid = _Grid(look, axes)
-    if len(axes) == 2:
-        grid.follow_valley(0 if len(axes[0]) >= len(axes[1]) else 1)
-    if not grid.scores:
+    sizes = sorted(map(len, axes))
+    walked = len(sizes) == 2 and sizes[0] > 2
+    if not (walked and grid.follow_valley(0 if len(axes[0]) >= len(axes[1]) else 1)):
         for place in itertools.product(*(range(len(axis)) for axis in axes)):
             grid.at(place)
     if not grid.scores:
         raise Declined(str(grid.refused)) from grid.refused
     best = sorted((score, point) for point, score in grid.scores.items())
-    return best[: 1 + len(best) // MANY]
+    return best[: 1 + prod(sizes) // MANY]
 
 
 class _Grid:
@@ -258,24 +261,37 @@ class _Grid:
             return np.inf
         return self.scores[point]
 
-    def follow_valley(self, along: int) -> None:
-        """Sweep one of two axes whole, and walk from line to line of the other."""
+    def follow_valley(self, along: int) -> bool:
+        """Sweep one of two axes whole, and walk from line to line of the other.
+
+        Returns
+        -------
+        bool
+            Whether there was a valley to follow.
+        """
         size, lines = len(self.axes[along]), len(self.axes[1 - along])
 
         def at(k: int, line: int) -> float:
             return self.at((k, line) if along == 0 else (line, k))
 
         middle = lines // 2
-        first = min(range(size), key=lambda k: at(k, middle))
+        scores = [at(k, middle) for k in range(size)]
+        first = int(np.argmin(scores))
+        if not np.isfinite(scores[first]):
+            return False
         for side in (range(middle + 1, lines), range(middle - 1, -1, -1)):
             lowest = first
             for line in side:
                 lowest = _walked(partial(at, line=line), lowest, size)
+        return True
 
 
 def _walked(score: Callable[[int], float], start: int, size: int) -> int:
     """Give where a line is lowest, walking from a place for as long as it falls."""
     best, least = start, score(start)
+    if not np.isfinite(least):  # nothing to walk along
+        best = min(range(size), key=score)
+        return best if np.isfinite(score(best)) else start
     for step in (1, -1):
         while 0 <= best + step < size and (there := score(best + step)) < least:
             best, least = best + step, there

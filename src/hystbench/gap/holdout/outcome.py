@@ -162,8 +162,8 @@ def first_figure(content: Mapping[str, Any]) -> str:
     """
     gap, unit = content["gap"], content["unit"]
     sizes = f"{gap['before']:.3g} to {sized(gap['after'], unit)} rms"
-    share = gap["explained"]
-    if share is None:
+    share, floor = gap["explained"], gap["noise_floor"]
+    if share is None or gap["before"] ** 2 <= (1 + AS_GOOD) * floor**2:
         return f"on the hold-out records the base leaves no more than noise: {sizes}"
     ends = share if isinstance(share, list | tuple) else [share]
     told = " to ".join(dict.fromkeys(f"{100 * end:.1f} %" for end in ends))

@@ -200,6 +200,7 @@ def starts(
     """
     state = before.state
     tangents, weights = short.tangents, record_weights(short)
+    tangents = tangents[:, np.isfinite(tangents).all(axis=0)]
     for law in laws:
         begun = (
             with_changed(state, effect, law)
@@ -210,9 +211,10 @@ def starts(
             begun = evened(begun)
         own = beginnings.cut(begun)
         does = short.residual - own.residual
-        columns = np.column_stack([tangents, does, of_zeros(own)])
-        if not np.isfinite(columns).all():
-            continue  # it runs away, or would at the next step
+        starts_at_zero = of_zeros(own)
+        if not (np.isfinite(does).all() and np.isfinite(starts_at_zero).all()):
+            continue  # the law runs away, or would at the next step
+        columns = np.column_stack([tangents, does, starts_at_zero])
         sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
         scaled = columns / sizes
         found, *_ = np.linalg.lstsq(

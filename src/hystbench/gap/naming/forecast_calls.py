@@ -56,7 +56,7 @@ def calls_of_a_round(state: ModelState) -> int:
         for item in variants:
             if item.beside is not None or item.start > places[-1]:
                 continue
-            points = prod(len(axis) for axis in item.grids.values())
+            points = prod(len(axis) for axis in item.grids.values())  # at most
             again = 0 if few == count else 1 + points // MANY
             grids += _runs(item) * (points * few + again * (count - few))
             before += 1
