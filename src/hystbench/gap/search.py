@@ -94,7 +94,8 @@ def search(
         again = _beside(about, evidence, asked, quantities)
         score = found.score_beside(again)
         alike = len(again.start.sample) == len(found.start.sample)
-        if alike and again.value(score, re_tuned=True) < found.value(score):
+        # What was given is believed unless as much speaks against it as makes a gap.
+        if alike and again.value(score, re_tuned=True) < found.value(score) - PAYS:
             found = again
         else:
             asked.say("that explains no more: they stay as they are")
@@ -176,9 +177,10 @@ class _Searched:
             for number in range(len(state.added))
             if removable(state, number)
         )
-        beside = now if state.added else now - PAYS
+        least = now - PAYS
+        beside = least if state.added else least - PAYS
         return re_tuned_score(state, score, beside) < beside or any(
-            re_tuned_score(short, score, now) < now for short in shorter
+            re_tuned_score(short, score, least) < least for short in shorter
         )
 
 
