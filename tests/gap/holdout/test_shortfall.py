@@ -2,7 +2,7 @@
 
 import pytest
 
-from hystbench.gap.holdout.outcome import no_surer_than_even, shortfall
+from hystbench.gap.holdout.shortfall import no_surer_than_even, shortfall
 
 
 def content(

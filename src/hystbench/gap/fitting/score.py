@@ -21,9 +21,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dpotrf, dpotrs
 
 from hystbench.errors import InputError
+from hystbench.gap.fitting.normal_equations import solve
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
 from hystbench.record import FloatArray
@@ -32,8 +32,6 @@ ROUNDS = 4
 """Of reweighting: amplitudes change little after."""
 STILL = 1e-3
 """A round that changes the score by less is the last."""
-KNOWN = 1e-5
-"""Least pivot of products of columns of size one that tell all of them apart."""
 APART = 1e-12
 """Least over largest power of combinations of columns that are solved for."""
 
@@ -250,7 +248,7 @@ class Score:
             normal = normal.reshape(k + 1, k + 1)
             matrix = normal[1:, 1:]
             matrix.flat[:: k + 1] *= 1 + 1e-12
-            beta = _solve(matrix, normal[1:, 0], positive)
+            beta = solve(matrix, normal[1:, 0], positive)
             full = np.concatenate([[1.0], -beta])
         return Amplitudes(-best[1][1 : own + 1] / scale, best[0])
 
@@ -393,38 +391,3 @@ def _place(part: NDArray[np.intp]) -> slice | NDArray[np.intp]:
     """Give a view's slice where samples stand in one piece, as they mostly do."""
     whole = part[-1] - part[0] + 1 == len(part)
     return slice(part[0], part[-1] + 1) if whole else part
-
-
-def _solve(
-    matrix: FloatArray, vector: FloatArray, positive: Sequence[int]
-) -> FloatArray:
-    """Solve normal equations; amplitudes that must not be negative are set to zero."""
-    if not positive:
-        return _solution(matrix, vector)
-    active = np.ones(len(vector), dtype=bool)
-    for _ in range(len(vector) + 1):
-        beta: FloatArray = np.zeros(len(vector))
-        if active.all():
-            beta[:] = _solution(matrix, vector)
-        elif active.any():
-            keep = np.flatnonzero(active)
-            beta[keep] = _solution(matrix[np.ix_(keep, keep)], vector[keep])
-        negative = [k for k in positive if active[k] and beta[k] < 0]
-        if not negative:
-            return beta
-        active[min(negative, key=lambda k: beta[k])] = False
-    return beta
-
-
-def _solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
-    """Solve a symmetric system; directions that it hardly knows stay at zero."""
-    if len(vector) == 1 and matrix[0, 0] > 0:  # as most are
-        return np.asarray(vector / matrix[0])
-    size = np.sqrt(np.maximum(matrix.diagonal(), 0.0))
-    size[size == 0] = 1.0
-    matrix, vector = matrix / (size[:, None] * size), vector / size
-    lower, failed = dpotrf(matrix, lower=1)
-    if not failed and (lower.diagonal() > KNOWN).all():  # elimination is quicker
-        found, _ = dpotrs(lower, vector, lower=1)
-        return np.asarray(found / size)
-    return np.asarray(np.linalg.lstsq(matrix, vector, rcond=1e-13)[0] / size)

@@ -10,21 +10,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from hystbench.gap.bases.known_about import as_it_was
-from hystbench.gap.effects import effects
-from hystbench.gap.effects.effect import Effect
 from hystbench.gap.fitting.on_records import run_base
+from hystbench.gap.holdout.shortfall import no_surer_than_even, shortfall
 from hystbench.gap.holdout.show import Outcome, as_recorded, nuisance_of, score_hold_out
 from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.nuisance import left_rms
-from hystbench.gap.thresholds import ABOVE_NOISE, AS_GOOD, MOST
+from hystbench.gap.thresholds import ABOVE_NOISE, AS_GOOD
 from hystbench.gap.vocabulary import Vocabulary, with_device
 from hystbench.units import sized
 
@@ -282,138 +280,3 @@ def _with_built_in(
         *rest,
     ]
     return {**content, "built_in": told, "ladder": ladder}
-
-
-LESS = 0.15
-"""Share of the gap's power that is gone on fit records alone, to be told."""
-WORTH_A_REASON = 0.05
-"""Share that what is new in every record takes, to be named as a reason."""
-
-
-def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
-    """Compare what is gone on the hold-out records with what is gone on the fit ones.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-
-    Returns
-    -------
-    dict or None
-        ``fit`` and ``hold_out``, the shares of the power above the floor that are
-        gone (None where there was none), and a ``sentence``; None where the hold-out
-        records keep the promise and no effect widens the gap there.
-    """
-    promised, kept = content["fit"]["explained"], content["gap"]["explained"]
-    if not isinstance(kept, int | float) and kept is not None:
-        kept = max(kept)  # a range keeps the promise if it may
-    sentences = [_less(content, promised, kept), *_widens(content)]
-    told = " ".join(sentence for sentence in sentences if sentence)
-    return {"fit": promised, "hold_out": kept, "sentence": told} if told else None
-
-
-def _less(
-    content: Mapping[str, Any], promised: float | None, kept: float | None
-) -> str:
-    """Say by how much less is gone than was promised, and why."""
-    names = [item["name"] for item in content["effects"]]
-    if not names or promised is None or kept is None or promised - kept < LESS:
-        return ""
-    sentence = (
-        f"On the fit records {100 * promised:.0f} % of the gap's power above the noise "
-        f"floor is gone, on the hold-out records {100 * kept:.0f} %"
-    )
-    reasons = [
-        *_runs_away(content),
-        *_new_in_every_record(content, names),
-        *_outside(content),
-    ]
-    if reasons:
-        sentence += f": {'; '.join(reasons)}"
-    return f"{sentence}."
-
-
-SPELLED = 3
-"""Records that are told by name, at most."""
-
-
-def _widens(content: Mapping[str, Any]) -> list[str]:
-    """Say which step down the ladder is a step up on the hold-out records."""
-    return [
-        f"On the hold-out records {step['name']} widens the gap, from "
-        f"{last['rms']:.3g} to {step['rms']:.3g} {content['unit']}."
-        for last, step in _steps_up(content)
-    ]
-
-
-def _steps_up(content: Mapping[str, Any]) -> list[tuple[Any, Any]]:
-    return [
-        (last, step)
-        for last, step in pairwise(content["ladder"])
-        if last["rms"]
-        and step["rms"]
-        and step["rms"] ** 2 > (1 + AS_GOOD) * last["rms"] ** 2
-    ]
-
-
-def no_surer_than_even(content: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Give the effects: a name that widens the gap there is no surer than even.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-    """
-    doubtful = {
-        name for _, step in _steps_up(content) for name in step["name"].split(" + ")
-    }
-    return [
-        item | {"confidence": min(item["confidence"], MOST)}
-        if item["name"] in doubtful
-        else item
-        for item in content["effects"]
-    ]
-
-
-def _runs_away(content: Mapping[str, Any]) -> list[str]:
-    found = []
-    for what, refused in (("diverges", False), ("cannot be run", True)):
-        names = [
-            item["record"]
-            for item in content.get("runs_away", [])
-            if (item["refused"] is not None) is refused
-        ]
-        found += [f"the model {what} on {' and '.join(names)}"] if names else []
-    return found
-
-
-def _new_in_every_record(content: Mapping[str, Any], names: list[str]) -> list[str]:
-    share = content["fit"]["new_in_every_record"]
-    beside = [name for name in names if _is_beside(effects().get(name))]
-    if share < WORTH_A_REASON or not beside:
-        return []
-    return [
-        f"{100 * share:.0f} % of it was taken by {' and '.join(beside)}, which is new "
-        "in every record and predicts no other"
-    ]
-
-
-def _is_beside(effect: Effect | None) -> bool:
-    """Tell whether an effect can be a signal beside the chain."""
-    return effect is not None and type(effect).describe is not Effect.describe
-
-
-def _outside(content: Mapping[str, Any]) -> list[str]:
-    records = (content.get("black_box") or {}).get("records", [])
-    alike: dict[str, list[str]] = {}
-    for item in records:
-        if item["outside"]:
-            alike.setdefault(" and ".join(item["outside"]), []).append(item["name"])
-    return [
-        f"{' and '.join(names)} {'lies' if len(names) == 1 else 'lie'} outside the fit "
-        f"records in {how}"
-        if len(names) <= SPELLED
-        else f"{len(names)} records lie outside the fit records in {how}"
-        for how, names in alike.items()
-    ]

@@ -15,7 +15,6 @@ from hystbench.gap.effects import among, effects
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.hysteresis import Hysteresis
 from hystbench.gap.effects.variant import Variant
-from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.refit import added, finished, refit
@@ -23,13 +22,14 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.fitting.tried import Seen, Tried, on_all_records, seen
 from hystbench.gap.fitting.variant_search import Trial, fine
+from hystbench.gap.naming.on_folds import first_on_folds, on_folds
 from hystbench.gap.naming.rivals import (
     beside_their_own_shapes,
     beyond_others,
     simplest_of_a_tie,
 )
 from hystbench.gap.naming.rounds import Candidate, TriedVariant, best_forms, in_order
-from hystbench.gap.thresholds import CERTAIN, LOOSE, PARAMETER, PAYS, SCALE, SHAPE
+from hystbench.gap.thresholds import CERTAIN, LOOSE, PAYS, SCALE, SHAPE
 
 NEAR = 80.0
 """Variants that score worse than the best by more are not searched further."""
@@ -365,39 +365,3 @@ def exactly(item: Candidate, score: Score, now: float) -> Candidate:
     if end := at_end(after):
         return Candidate(item.effect, item.place, declined=f"{AT_AN_END}: {end}")
     return replace(item, state=after, score=value, gain=now - value)
-
-
-def first_on_folds(
-    candidates: Sequence[Candidate], before: ModelState, score: Score
-) -> list[Candidate]:
-    """Judge candidates on folds, best first, while one may be the first.
-
-    A candidate can only lose there. So one that scores worse than the best judged so
-    far, beyond doubt, need not be judged.
-    """
-    best, found = np.inf, []
-    for item in candidates:
-        if item.held_back is None and item.score < best + CERTAIN:
-            item = on_folds(item, before, score)
-        if item.state is not None and not item.declined:
-            best = min(best, item.score)
-        found.append(item)
-    return found
-
-
-def on_folds(item: Candidate, before: ModelState, score: Score) -> Candidate:
-    """Judge a finalist that pays on records that did not fit it.
-
-    What it gained on all records, charged for its freedom, it can only lose: a fold
-    that fits better than all of them together shows no merit. What it gains there is
-    charged as well: of two that both leave noise alone, the one of fewer numbers leads.
-    """
-    if item.state is None or item.gain < PAYS:
-        return item
-    try:
-        held = gain_held_back(before, item.state, score)
-    except CallsUsedUp as error:
-        return Candidate(item.effect, item.place, declined=str(error))
-    charge = PARAMETER * (item.state.freedom - before.freedom)
-    lost = max(item.gain - (held - charge), 0.0)
-    return replace(item, score=item.score + lost, gain=item.gain - lost, held_back=held)

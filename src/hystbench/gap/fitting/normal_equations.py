@@ -1,0 +1,59 @@
+"""Normal equations of a few amplitudes, of which columns may say the same."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.linalg.lapack import dpotrf, dpotrs
+
+from hystbench.record import FloatArray
+
+KNOWN = 1e-5
+"""Least pivot of products of columns of size one that tell all of them apart."""
+
+
+def solve(
+    matrix: FloatArray, vector: FloatArray, positive: Sequence[int]
+) -> FloatArray:
+    """Solve normal equations; amplitudes that must not be negative are set to zero.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (k, k)
+        Symmetric, no eigenvalue negative.
+    vector : ndarray, shape (k,)
+    positive : sequence of int
+        Places of those that may not be negative.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+    """
+    if not positive:
+        return _solution(matrix, vector)
+    active = np.ones(len(vector), dtype=bool)
+    for _ in range(len(vector) + 1):
+        beta: FloatArray = np.zeros(len(vector))
+        if active.all():
+            beta[:] = _solution(matrix, vector)
+        elif active.any():
+            keep = np.flatnonzero(active)
+            beta[keep] = _solution(matrix[np.ix_(keep, keep)], vector[keep])
+        negative = [k for k in positive if active[k] and beta[k] < 0]
+        if not negative:
+            return beta
+        active[min(negative, key=lambda k: beta[k])] = False
+    return beta
+
+
+def _solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
+    """Solve a symmetric system; directions that it hardly knows stay at zero."""
+    if len(vector) == 1 and matrix[0, 0] > 0:  # as most are
+        return np.asarray(vector / matrix[0])
+    size = np.sqrt(np.maximum(matrix.diagonal(), 0.0))
+    size[size == 0] = 1.0
+    matrix, vector = matrix / (size[:, None] * size), vector / size
+    lower, failed = dpotrf(matrix, lower=1)
+    if not failed and (lower.diagonal() > KNOWN).all():  # elimination is quicker
+        found, _ = dpotrs(lower, vector, lower=1)
+        return np.asarray(found / size)
+    return np.asarray(np.linalg.lstsq(matrix, vector, rcond=1e-13)[0] / size)
