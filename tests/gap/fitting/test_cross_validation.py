@@ -14,7 +14,8 @@ from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import refit
 from hystbench.gap.fitting.state import Free
 from hystbench.gap.naming import rank as ranked
-from hystbench.gap.naming.rank import on_folds, rank
+from hystbench.gap.naming.on_folds import on_folds
+from hystbench.gap.naming.rank import rank
 from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.records.folds import make_folds
 from hystbench.gap.thresholds import CERTAIN, PARAMETER, PAYS, SCALE

@@ -65,7 +65,7 @@ ROUNDING = 16 * float(np.finfo(float).eps)
 FORMS = (0.3, 0.6, 1.6, 3.0)
 """Factors on a number of an added effect: what other forms of it could do."""
 
-MANY = 4
+MANY_NUMBERS = 4
 """An effect of more numbers has no other forms."""
 
 
@@ -175,7 +175,7 @@ class ModelState:
         columns = []
         for item in self.added:
             own = [k for k, free in enumerate(self.free) if free.block in item.blocks]
-            for k in own if len(own) <= MANY else ():
+            for k in own if len(own) <= MANY_NUMBERS else ():
                 value = self.value(self.free[k])
                 for factor in FORMS:
                     change = (factor - 1) * value

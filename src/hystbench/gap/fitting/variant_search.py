@@ -30,10 +30,10 @@ NEWTON = 3
 NUDGE = 1e-3
 """Relative change by which they are found."""
 
-SLIGHT = 3.0
+LAST_STEP = 3.0
 """Of a step of the search: what lowers the score by less is the last."""
 
-MANY = 15
+POINTS_EACH = 15
 """Points of a grid for each of which one more is looked at on all records."""
 
 Point = tuple[float, ...]
@@ -237,7 +237,7 @@ def best_points(look: Attempt) -> list[tuple[float, Point]]:
     if not grid.scores:
         raise Declined(str(grid.refused)) from grid.refused
     best = sorted((score, point) for point, score in grid.scores.items())
-    return best[: 1 + prod(sizes) // MANY]
+    return best[: 1 + prod(sizes) // POINTS_EACH]
 
 
 class _Grid:
@@ -365,7 +365,7 @@ def _fine(attempt: Attempt, start: Trial) -> Trial:
             if trial is not None and trial.score < best.score:
                 best = trial
                 break
-        if before - best.score < SLIGHT:
+        if before - best.score < LAST_STEP:
             break
     return best
 

@@ -19,7 +19,7 @@ from hystbench.gap.fitting.model_score import (
 from hystbench.gap.fitting.refit import finished, finished_to_the_end, ready
 from hystbench.gap.fitting.scan import scanned
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import MANY, ModelState
+from hystbench.gap.fitting.state import MANY_NUMBERS, ModelState
 from hystbench.gap.naming.forecast_calls import foretell, foretell_rest
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.naming.removal import (
@@ -122,7 +122,7 @@ def _of_few_numbers(
         return found
     (one,), name = found.state.added, found.state.added[0].effect
     score = make_score(start, floor_rms, forms=False)
-    is_many = bool(one.blocks) and one.charge > MANY
+    is_many = bool(one.blocks) and one.charge > MANY_NUMBERS
     if not is_many or above_floor(found.state, score) < FURTHER:
         return found
     say(f"{name} has many numbers and leaves more than noise: naming without it")

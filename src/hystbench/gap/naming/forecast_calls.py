@@ -13,7 +13,7 @@ from hystbench.gap.effects.variant import Variant
 from hystbench.gap.fitting.scan import LOOKS
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.tried import records_at_a_glance
-from hystbench.gap.fitting.variant_search import MANY
+from hystbench.gap.fitting.variant_search import POINTS_EACH
 from hystbench.gap.naming.rank import FINALISTS
 from hystbench.gap.naming.rounds import MOST_EFFECTS
 from hystbench.gap.progress import Say
@@ -57,7 +57,7 @@ def calls_of_a_round(state: ModelState) -> int:
             if item.beside is not None or item.start > places[-1]:
                 continue
             points = prod(len(axis) for axis in item.grids.values())  # at most
-            again = 0 if few == count else 1 + points // MANY
+            again = 0 if few == count else 1 + points // POINTS_EACH
             grids += _runs(item) * (points * few + again * (count - few))
             before += 1
             names.add(item.effect)
