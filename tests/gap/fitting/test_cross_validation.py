@@ -129,7 +129,7 @@ def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
     def told(before, after, score):
         return 1e3 if after.added[-1].effect == last.effect else -1e3
 
-    monkeypatch.setattr(ranked, "gain_held_back", told)
+    monkeypatch.setattr("hystbench.gap.naming.on_folds.gain_held_back", told)
     monkeypatch.setattr(ranked, "finished", noted)
     monkeypatch.setattr(ranked, "EXACT", 1)
     ranking = rank(before, score)
