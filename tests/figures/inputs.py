@@ -163,7 +163,13 @@ def write_gap(folder: Path, record: Record) -> None:
     columns = ["time_s", "measured", "before", "after"]
     rows = [[t, y, y + 1.0, y] for t, y in zip(record.time, record.y, strict=True)]
     _write(folder / "holdout" / TABLE, columns, rows)
-    write_json(folder / "gap.json", {"effects": [{"name": "sensor-lag"}]})
+    write_json(
+        folder / "gap.json",
+        {
+            "effects": [{"name": "sensor-lag"}],
+            "base_parameters": {"gpi.weights": {"before": [1.0], "after": [1.1]}},
+        },
+    )
 
 
 def write_identified(path: Path, record: Record) -> None:

@@ -289,4 +289,4 @@ def test_a_gap_is_drawn_before_and_after_with_the_name(inputs):
     ]
     assert [off.tolist() for off in offs] == [[1.0], [0.0]]
     assert "1 µm rms off" in before.get_title(loc="left") + before.get_title()
-    assert "sensor-lag" in after.get_title(loc="left") + after.get_title()
+    assert "sensor-lag, re-tuned" in after.get_title(loc="left") + after.get_title()

@@ -39,6 +39,9 @@ def draw(*, records: Sequence[Path], table: Path) -> Figure:
         )
     gap = read_json(table.parents[1] / "gap.json")
     names = " and ".join(item["name"] for item in gap["effects"]) or "nothing added"
+    numbers = gap.get("base_parameters", {}).values()
+    if any(number["after"] != number["before"] for number in numbers):
+        names += ", re-tuned"
     part = last_cycles(record, 1)
     figure = Figure(figsize=(style.PAGE, 3.0))
     panels = figure.subplots(1, 2, sharex=True, sharey=True)
