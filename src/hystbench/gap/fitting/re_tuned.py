@@ -55,10 +55,7 @@ def charge_of_base(state: ModelState, score: Score) -> float:
     if not base:
         return 0.0
     held = Held(state.held.stiffness[base], state.held.moved[base])
-    rest = state.residual
-    if state.beside:
-        rest = rest - state.beside_columns @ state.beside_amplitudes
-    return PARAMETER * score.numbers_told(rest, state.tangents[:, base], held)
+    return PARAMETER * score.numbers_told(state.left, state.tangents[:, base], held)
 
 
 def _loosened(state: ModelState) -> ModelState:

@@ -242,7 +242,7 @@ class Score:
             if abs(last - value) < STILL:
                 break
             last = value
-            weights = self.weight / (self._counts * np.maximum(squares, self.floor))
+            weights = self._weights(squares)
             of_inside = d / max(power, d * self.floor)
             normal = np.concatenate([weights, [of_inside, 1.0]]) @ forms
             normal = normal.reshape(k + 1, k + 1)
@@ -305,7 +305,7 @@ class Score:
         """
         found = self._products(np.column_stack([residual, columns]))
         squares = found.grams[:, 0, 0] / self._counts
-        weights = self.weight / (self._counts * np.maximum(squares, self.floor))
+        weights = self._weights(squares)
         told = np.tensordot(weights, found.grams[:, 1:, 1:], 1)
         whole = told + np.diag(held.stiffness)
         size = np.sqrt(np.maximum(whole.diagonal(), APART))
@@ -364,6 +364,10 @@ class Score:
         for own, part in zip(out, self.parts, strict=True):
             own[: len(part)] = table[_place(part)]
         return out
+
+    def _weights(self, squares: FloatArray) -> FloatArray:
+        """Give what a sum of squares counts, by record, beside such mean squares."""
+        return self.weight / (self._counts * np.maximum(squares, self.floor))
 
     def _value(self, squares: FloatArray, power: float, freedom: float) -> float:
         d = self.directions.shape[1]

@@ -257,11 +257,14 @@ class ModelState:
 
     @cached_property
     def squares(self) -> FloatArray:
-        """Mean squares of what it leaves, by record, with what lies beside it."""
-        rest = self.residual
-        if self.beside:
-            rest = rest - self.beside_columns @ self.beside_amplitudes
-        return np.array([np.mean(rest[part] ** 2) for part in self.sample.slices])
+        """Mean squares of what it leaves, by record."""
+        return np.array([np.mean(self.left[part] ** 2) for part in self.sample.slices])
+
+    @cached_property
+    def left(self) -> FloatArray:
+        """Scored samples of what it leaves, with what lies beside it."""
+        beside = self.beside_columns @ self.beside_amplitudes if self.beside else 0.0
+        return self.residual - beside
 
     def power(self, floor: float) -> float:
         """Mean square of the residual above the floor, of the records alike."""
