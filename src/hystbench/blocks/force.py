@@ -215,6 +215,10 @@ class Driven:
         """Let another force act beside those that are there."""
         return replace(self, forces=(*self.forces, force))
 
+    def in_pieces(self, pieces: float) -> Driven:
+        """Take so many steps in place of each."""
+        return replace(self, pieces=pieces)
+
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output, as :meth:`Block.simulate` does."""
         return self.host.driven(z, dt, self.forces, self.pieces)

@@ -58,6 +58,14 @@ class Superposed:
         """
         return replace(self, by=force.attach(self.by))
 
+    def in_pieces(self, pieces: float) -> Superposed:
+        """Take so many steps in place of each, wherever forces act."""
+        inner, by = (
+            part.in_pieces(pieces) if hasattr(part, "in_pieces") else part
+            for part in (self.inner, self.by)
+        )
+        return replace(self, inner=inner, by=by)
+
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output, as :meth:`Block.simulate` does."""
         return _kept(self.inner, z, u, dt) + _kept(self.by, z, u, dt)

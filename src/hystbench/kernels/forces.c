@@ -50,8 +50,8 @@ static double hb_phi(double y, double *twice)
         *twice = (once - 1) / y;
         return once;
     }
-    double sum = 0;
-    for (int k = 11; k >= 0; k--) sum = sum * y + share[k];
+    double sum = 0; /* as many terms as are more than rounding: most ways are short */
+    for (int k = fabs(y) < 0.02 ? 6 : 11; k >= 0; k--) sum = sum * y + share[k];
     *twice = sum;
     return 1 + y * sum;
 }
@@ -60,7 +60,7 @@ static double hb_phi(double y, double *twice)
 static double hb_integral_of(double *x, double a, double way)
 {
     const double slope = 1 + a * *x, from = *x;
-    if (!(slope > 0)) return from * way; /* it rests there */
+    if (!(slope > 0) || way == 0) return from * way; /* it rests there */
     double twice;
     *x += slope * way * hb_phi(a * way, &twice);
     return way * (from + slope * way * twice);

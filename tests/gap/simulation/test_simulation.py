@@ -192,6 +192,27 @@ def test_a_mode_that_is_not_linear_takes_longer_steps_where_models_are_compared(
         assert 0.0 < missed < 1e-3
 
 
+@pytest.mark.parametrize("steps", ["quick", "fine"])
+def test_a_mode_beside_others_takes_the_steps_that_it_takes_alone(steps):
+    """Forces in a mode are simulated alike, whatever is added to its output."""
+    mode = block("mechanism", mass=1e-3, damping=0.2, stiffness=4e3, hold="linear")
+    force = block("stiffness", quadratic=0.0, cubic=5e7)
+    modes = block(
+        "other-modes", numerator=[2.0], denominator=[1.0, 3.0, 900.0], hold="linear"
+    )
+    how = {steps: True}
+
+    def simulated(*chain):
+        return Simulation(chain, records(), "linear", **how).output
+
+    alone = simulated(mode, force)
+    bare = [a - b for a, b in zip(simulated(mode, modes), simulated(mode), strict=True)]
+    expected = [a + b for a, b in zip(alone, bare, strict=True)]
+    same(simulated(mode, force, modes), expected)
+    other = Simulation((mode, force), records(), "linear").output
+    assert max(np.abs(a - b).max() for a, b in zip(alone, other, strict=True)) > 0.0
+
+
 def test_models_of_a_chain_share_its_simulation():
     given = records()
     state = state_of((hysteresis(),), given)

@@ -19,6 +19,7 @@ from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.stiffness_hardening import StiffnessHardening
 from hystbench.blocks.store import Store
+from hystbench.blocks.superposed import Superposed
 from hystbench.blocks.wrapping import Hysteresis, Wrapped, WrappingBlock
 from hystbench.gap.simulation.memory import may_have_hysteresis
 from hystbench.record import FloatArray, Record
@@ -106,8 +107,8 @@ class Simulation:
         """Send one signal through one step."""
         if finely and (isinstance(step, Wrapped) or step.hysteretic):
             return _finely(step, z, record.dt, SHORT_STEPS)
-        if self.fine and isinstance(step, Driven):
-            return replace(step, pieces=PIECES).simulate(z, record.u, record.dt)
+        if self.fine and isinstance(step, Driven | Superposed):
+            return step.in_pieces(PIECES).simulate(z, record.u, record.dt)
         if self.quick and _takes_short_steps(step):
             return _finely(step, z, record.dt, QUICK)
         return self._known(step, z).simulate(z, record.u, record.dt)
@@ -117,7 +118,9 @@ class Simulation:
             return attached(blocks)
         steps = attached([cast(Block, _quick(block)) for block in blocks])
         return [
-            replace(step, pieces=LONG_PIECES) if isinstance(step, Driven) else step
+            step.in_pieces(LONG_PIECES)
+            if isinstance(step, Driven | Superposed)
+            else step
             for step in steps
         ]
 
