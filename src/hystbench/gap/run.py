@@ -17,6 +17,7 @@ from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import is_identified
+from hystbench.gap.bases.own_steps import too_long_steps
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.on_records import compared_records, run_base, start_state
 from hystbench.gap.fitting.own_values import OwnValues
@@ -128,6 +129,8 @@ def closed_gap(
     run_base(base, evidence.hold_out, evidence.input_hold)
     reserve_calls(evidence)
     decision, decided = decide(evidence, base, asked)
+    steps = too_long_steps(base, evidence.fit, evidence.input_hold)
+    evidence = replace(evidence, warnings=(*evidence.warnings, *steps))
     evidence, result = show(evidence, decided, asked.say)
     decision = replace(decision, model=result.model, content=result.content)
     return Closed(decision, result, evidence)
