@@ -184,6 +184,23 @@ def test_times_that_no_test_has(tmp_path, unit, likely, dt, told):
     assert warned(say(folder, time={"meant": True})) == ()
 
 
+def test_a_tank_or_a_heated_body_may_be_slow(tmp_path):
+    u = sine(2.5, count=1200)
+    made = [
+        record(u, 5 * u, name="a", dt=10.0),
+        record(0.5 * u + 0.1 * u**2, 2 * u, name="h", dt=10.0, use="hold-out"),
+    ]
+    folder = write_folder(tmp_path / "d", made)
+    (line,) = warned(folder)
+    assert "3.33 hours" in line
+    for file in folder.glob("*.csv"):
+        file.write_text(file.read_text().replace("_um", "_degC"))
+    output = {"name": "temperature", "unit": "degC"}
+    content = yaml.safe_load((folder / "dataset.yaml").read_text())
+    column = content["output"]["column"].replace("_um", "_degC")
+    assert warned(say(folder, output={**output, "column": column})) == ()
+
+
 @pytest.mark.parametrize(
     ("channel", "factor", "likely"),
     [("input", 1000, "mA"), ("input", 1e-3, "kA"), ("output", 1000, "nm")],

@@ -133,6 +133,8 @@ def _strange_time(dataset: Dataset, records: Sequence[Record]) -> Iterator[str]:
         return
     if named_otherwise(about["column"], about["unit"]) is not None:
         return  # the column's name has told it
+    if dataset.quantities.causality == "storage":
+        return  # tanks and heated bodies are slow
     # Slow records beside fast ones are what creep is measured with.
     fastest = max(records, key=_fastest_hz)
     factor = seconds(f"{dataset.path}: time: unit", about["unit"])

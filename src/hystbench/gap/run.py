@@ -184,7 +184,7 @@ def as_found(
     They are asked for beside the base, and again beside forces that stand for it.
     """
     about = base, evidence.input_hold, evidence.quantities, say
-    records = without_leads(evidence.hold_out, *about)
+    records = without_leads(evidence.hold_out, *about, count=len(evidence.fit))
     if any(isinstance(block, Mechanism) for block in found.base.chain):
         model = augmented(found.base, found.state)
         records = without_leads(records, *about, model)

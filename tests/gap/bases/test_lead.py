@@ -67,9 +67,21 @@ def test_a_base_that_was_given_starts_as_it_says():
     assert leads(linear(free=()), record(537)) == [0]
 
 
+STORE = Quantities("power", "temperature")
+
+
 def test_a_store_has_a_level_to_start_from():
-    kinds = Quantities("power", "temperature")
-    assert leads(linear(), record(537), quantities=kinds) == [0]
+    assert leads(linear(), record(537), quantities=STORE) == [0]
+
+
+def test_one_level_is_no_start_of_several_records_of_a_store():
+    several = record(537), record(850)
+    assert leads(linear(), *several, quantities=STORE) == [200, 200]
+    held_out = (record(537, "hold-out"),)
+    about = (linear(), "band-limited", STORE)
+    (found,) = without_leads(held_out, *about, count=3)
+    assert found.lead == 200
+    assert without_leads(held_out, *about, count=1) is held_out
 
 
 def test_a_window_of_a_free_mass_knows_its_start_otherwise():

@@ -379,3 +379,31 @@ def test_a_drift_is_told_beside_the_outflow_of_a_tank():
     content = decided("tank", made, base, "zero-order", quantities=level).content
     assert content["verdict"] == "named"
     assert {x["name"] for x in content["effects"]} == {"outflow", "drift"}
+
+
+def heated(start, seed):
+    """A body that loses heat with its temperature, which it begins with; Euler."""
+    rng = np.random.default_rng(seed)
+    power = np.repeat(rng.uniform(1.0, 4.0, COUNT // 20), 20)
+    warm, y = start, np.empty(COUNT)
+    for k, watts in enumerate(power):
+        y[k] = warm
+        for _ in range(FINE):
+            warm += DT / FINE * (0.1 * watts - 0.04 * warm)
+    noise = NOISE * rng.standard_normal(COUNT)
+    channels = Channel("heater", "W"), Channel("temperature", "degC")
+    return Record(f"run-{seed}", DT, power, y + noise, *channels, "measured", "fit")
+
+
+def test_where_a_linear_store_begins_is_no_effect():
+    """No start of a transfer function gives it: it was named hysteresis, at .98."""
+    record = heated(start=25.0, seed=1)
+    base, _ = load_base("linear", Evidence("body", (record,), (), "zero-order"))
+    thermal = Quantities("power", "temperature")
+    found = decided("body", (record,), base, "zero-order", quantities=thermal)
+    assert found.content["verdict"] == "no-gap"
+    assert not found.content["effects"]
+    assert "a store stands in place of the base, and leaves" in found.content["reason"]
+    (store,) = (x for x in found.base.chain if isinstance(x, Store))
+    assert store.exponent == 1.0
+    assert store.rate == pytest.approx(0.04, rel=0.02)

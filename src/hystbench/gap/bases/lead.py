@@ -33,6 +33,7 @@ def without_leads(
     quantities: Quantities,
     say: Say = silent,
     found: Model | None = None,
+    count: int | None = None,
 ) -> tuple[Record, ...]:
     """Leave out of the score the leads of records that begin in the middle of a motion.
 
@@ -47,18 +48,21 @@ def without_leads(
         Of one use; one that has no lead already stays as it is. Hold-out records are
         looked at when the search is over.
     base : Model
-        Where it was given and not identified, nothing is left out; nor of stores,
-        whose level at the start is a number of the model.
+        Where it was given and not identified, nothing is left out.
     hold : {"zero-order", "linear", "band-limited"}
     quantities : Quantities
-        What the device takes and gives.
+        What the device takes and gives. The level of a store at the start of its only
+        record is a number of the model.
     say : callable
         Told of how many records the lead is left out.
     found : Model, optional
         The base with what was found: it is asked in the place of the base, whose own
         error may hide a start.
+    count : int, optional
+        Records that the model is fitted to; by default those given.
     """
-    if not is_identified(base) or quantities.causality == "storage":
+    only = (len(records) if count is None else count) == 1
+    if not is_identified(base) or (only and quantities.causality == "storage"):
         return records
     held = base.with_hold(hold)
     asked = held if found is None else found.with_hold(hold)

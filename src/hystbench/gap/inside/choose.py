@@ -95,6 +95,13 @@ def as_rounds(start: ModelState, best: Fitted, found: Sequence[Fitted]) -> list[
     return rounds
 
 
+def not_taken(start: ModelState, found: Sequence[Fitted]) -> Round:
+    """Write effects of which none pays beside a model as a round that adds nothing."""
+    now, single = found[0].score, [x for x in found if len(x.effects) == 1]
+    best = min(single, key=lambda item: item.score).effects[0]
+    return Round(start, now, _ranked(best, frozenset(), found, now), False)
+
+
 def _look(
     effect: str, best: Fitted, found: Sequence[Fitted], alone: float
 ) -> SecondLook:

@@ -6,7 +6,7 @@ Whether they do better than those in the chain is asked afterwards
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -21,7 +21,7 @@ from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.choose import as_rounds, charged, chosen, way_to
+from hystbench.gap.inside.choose import as_rounds, charged, chosen, not_taken, way_to
 from hystbench.gap.inside.combine_forces import may_gain, singles, together
 from hystbench.gap.inside.fewer import OnAll, on_fewer
 from hystbench.gap.inside.further_modes import (
@@ -143,6 +143,8 @@ def named_inside(
     best, alone = chosen(found, score.floor, share), host.alone
     if not best.effects:
         say("inside: no force pays")
+        if identified and fewer is start and not may_gain(best, score):
+            return without_forces(base, start, host, found, floor_rms)
         return None
     wider, modes = in_further_modes(best, offer, score, say, share)
     found, best = [wider if x is best else x for x in found], wider
@@ -156,8 +158,7 @@ def named_inside(
     re_tuned = found[0].state
     state = in_short_steps(replace(best.state, offered=start.offered), score_of_all)
     alone = with_modes(replace(alone, offered=start.offered), modes).settled()
-    left = (float(np.sqrt(max(x.power(floor_rms**2), 0.0))) for x in (start, alone))
-    before, after = (sized(rms, base.output.unit) for rms in left)
+    before, after = lefts((start, alone), floor_rms, base.output.unit)
     sentence = (
         f"{host.words}{further_words(alone)}, and effects act inside it (without them "
         f"it leaves {after} rms of the fit records above the noise floor, the base "
@@ -171,16 +172,45 @@ def named_inside(
         sentence += re_tuning(alone, state)
     # The first rung is the host re-tuned, so that no effect has the credit of that.
     rounds = as_rounds(replace(re_tuned, offered=start.offered).settled(), best, found)
+    model = of_free_numbers(base, alone)
+    return Inside(model, alone, Named(state, tuple(rounds)), sentence, host.counts)
+
+
+def without_forces(
+    base: Model,
+    start: ModelState,
+    host: Host,
+    found: Sequence[Fitted],
+    floor_rms: float,
+) -> Inside:
+    """Give a host that leaves nothing but noise in place of an identified base.
+
+    It may begin as the base cannot: a store has a level of its own at the first sample,
+    where a transfer function is at rest or settled.
+    """
+    alone = found[0].state.settled()
+    before, after = lefts((start, alone), floor_rms, base.output.unit)
+    sentence = (
+        f"{host.words}, and leaves {after} rms of the fit records above the noise "
+        f"floor, the base {before}"
+    )
+    rounds = (not_taken(alone, found),) if len(found) > 1 else ()
+    model = of_free_numbers(base, alone)
+    return Inside(model, alone, Named(alone, rounds), sentence, host.counts)
+
+
+def lefts(states: Iterable[ModelState], floor_rms: float, unit: str) -> list[str]:
+    """Give in words what models leave above the noise floor."""
+    powers = (state.power(floor_rms**2) for state in states)
+    return [sized(float(np.sqrt(max(power, 0.0))), unit) for power in powers]
+
+
+def of_free_numbers(base: Model, alone: ModelState) -> Model:
+    """Write what stands for a base as a model, its fitted numbers free."""
     model = Model(base.name, base.input, base.output, alone.chain)
     labels = [label for label, _ in model.labelled()]
     free = [f"{labels[item.block]}.{item.parameter}" for item in alone.free]
-    return Inside(
-        replace(model, free=tuple(dict.fromkeys(free))),
-        alone,
-        Named(state, tuple(rounds)),
-        sentence,
-        host.counts,
-    )
+    return replace(model, free=tuple(dict.fromkeys(free)))
 
 
 def in_short_steps(state: ModelState, score: Score) -> ModelState:
