@@ -112,6 +112,32 @@ def test_folds_lower_a_gain_and_never_raise_it():
     assert judged.score == item.score
 
 
+@pytest.mark.parametrize("sizes", [(1, 1, 1, 3), (1, 3, 1, 1), (1, 3, 1, 3)])
+def test_a_limit_is_foretold_whichever_records_come_to_it(sizes):
+    """Of one record that alone comes to it, blocks are held back: no other shows it."""
+    inputs = [k * u for k, u in zip(sizes, lines(4), strict=True)]
+    limit = 1.2 * max(np.abs(u).max() for u in lines(4))
+    rng = np.random.default_rng(5)
+    given = tuple(
+        record(
+            u,
+            np.clip(u, -limit, limit) + NOISE * rng.standard_normal(len(u)),
+            name=f"r{k}",
+        )
+        for k, u in enumerate(inputs)
+    )
+    gain = block("gain", value=1.0)
+    before = state_of((gain,), given)
+    score = plain_score(before, NOISE**2)
+    stop = block("drive-saturation", limit=1.02 * limit)
+    after = replace(before, chain=(stop, gain), free=(Free(0, "limit"),))
+    after, _ = refit(after, score)
+    assert after.chain[0].limit == pytest.approx(limit, rel=0.02)
+    gained = score_of(before, score) - score_of(after, score)
+    assert gained > CERTAIN
+    assert gain_held_back(before, after, score) > gained / 2
+
+
 def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
     """Folds may put one first that was too far behind to be simulated exactly."""
     given = measured(lines(6), [1.0] * 6, bend=0.03)

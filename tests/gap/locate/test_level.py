@@ -87,6 +87,26 @@ def test_what_moves_tells_the_class(oscillators, kind, unit):
     assert WORDS[mode.kind] in mode.sentence
 
 
+@pytest.mark.parametrize(("left", "kind"), [(0.9, "hardening"), (0.1, "Coulomb")])
+def test_a_stiffness_that_moves_more_than_the_damping_is_no_friction(
+    oscillators, left, kind
+):
+    """Of a stop that a sweep meets, the damping by power falls as well."""
+    (mode,) = moving(records(oscillators["hardening"]))
+    rate = mode.modes[0].power_damping * mode.modes[0].frequency
+    fallen = [
+        replace(
+            x,
+            power_damping=rate / x.frequency * left ** (k / 2),
+            errors=np.full(4, 0.01),
+        )
+        for k, x in enumerate(mode.modes)
+    ]
+    found = replace(mode, modes=tuple(fallen))
+    assert found.moved[:2] == (1, -1)
+    assert found.kind.startswith(kind)
+
+
 def test_levels_are_in_the_order_of_what_they_move(oscillators):
     """An input that is strong beside the mode moves it no farther."""
     compared = records(oscillators["hardening"])

@@ -14,6 +14,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.serialize import remembered_of, state_key
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.folds import make_folds
+from hystbench.gap.thresholds import SCALE
 from hystbench.record import FloatArray
 
 ROUNDS = 1
@@ -39,12 +40,13 @@ def gain_held_back(before: ModelState, after: ModelState, score: Score) -> float
     """Lower the score of held-back records by how much, with an effect fitted without.
 
     The fit records are dealt out in folds; where there are fewer than three, blocks of
-    them are, with a guard gap. On each fold the model with the effect is refitted to
-    the rest; what reshaping could do is fitted to all of it, with the effect and
-    without alike. A signal beside the chain has amplitudes of its own in every record,
-    which no other record knows: they are solved for in each, so that folds tell little
-    of it. The model without the effect stays as it was fitted to all records, to its
-    advantage.
+    them are, with a guard gap. So they are where the effect shows only in the record
+    that goes farthest, as a stop does: the others cannot foretell it. On each fold the
+    model with the effect is refitted to the rest; what reshaping could do is fitted to
+    all of it, with the effect and without alike. A signal beside the chain has
+    amplitudes of its own in every record, which no other record knows: they are solved
+    for in each, so that folds tell little of it. The model without the effect stays as
+    it was fitted to all records, to its advantage.
 
     Parameters
     ----------
@@ -67,7 +69,8 @@ def gain_held_back(before: ModelState, after: ModelState, score: Score) -> float
 
 
 def _gain(before: ModelState, after: ModelState, score: Score) -> float:
-    folds, inside = _folds(before, score)
+    whole = False if _shows_in_the_farthest_alone(before, after, score) else None
+    folds, inside = _folds(before, score, whole)
     gain = 0.0
     for fold in folds:
         fitted, _ = refit(after, fold.train, ROUNDS)
@@ -78,15 +81,35 @@ def _gain(before: ModelState, after: ModelState, score: Score) -> float:
     return max(RUNS_AWAY, gain)
 
 
-@lru_cache(maxsize=1)
-def _folds(before: ModelState, score: Score) -> tuple[tuple[_Fold, ...], float]:
+def _shows_in_the_farthest_alone(
+    before: ModelState, after: ModelState, score: Score
+) -> bool:
+    """Tell whether an effect gains in one record alone, in which the device went far.
+
+    That is the record of the largest input or of the largest output.
+    """
+    records = before.records
+    every = tuple(np.ones(len(x), dtype=bool) for x in before.sample.positions)
+    was, now = (_terms(_split(x, score)[0], score, every) for x in (before, after))
+    (shows,) = np.nonzero(was - now > SCALE)
+    far = [
+        np.argmax([np.ptp(x.u) for x in records]),
+        np.argmax([np.ptp(x.y) for x in records]),
+    ]
+    return len(shows) == 1 and shows[0] in far
+
+
+@lru_cache(maxsize=2)
+def _folds(
+    before: ModelState, score: Score, whole: bool | None
+) -> tuple[tuple[_Fold, ...], float]:
     """Give the folds, and the term of the directions without the effect.
 
     All effects of a round share them.
     """
     rest, inside = _split(before, score)
     found = []
-    for fold in make_folds(before.records):
+    for fold in make_folds(before.records, whole):
         train, held = (
             tuple(
                 mask[places]

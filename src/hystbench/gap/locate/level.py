@@ -138,7 +138,7 @@ class Moving:
     def kind(self) -> str:
         """The class that follows from what moves."""
         frequency, damping, gain = self.moved
-        if damping < 0:
+        if damping < 0 and not (frequency > 0 and self.stiffens):
             return "Coulomb friction"
         if frequency > 0:
             return "clearance" if self.bend > BENDS else "hardening"
@@ -147,6 +147,19 @@ class Moving:
         if damping > 0:
             return "damping that grows with speed"
         return "a static curve before or behind" if gain else "none"
+
+    @property
+    def stiffens(self) -> bool:
+        """Whether the stiffness changes by a larger factor than the damping.
+
+        Sliding more freely makes no spring stiffer; but of a motion that meets a stop
+        the damping is not well known.
+        """
+        values, _ = self.told
+        change = np.abs(
+            np.log(np.maximum(values[-1], 1e-3 * values.max(axis=0)) / values[0])
+        )
+        return bool(2 * change[0] > change[1])
 
     @property
     def bend(self) -> float:
