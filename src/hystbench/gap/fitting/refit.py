@@ -77,7 +77,10 @@ def refit(
                 value = score_beside(moved, score, beside)
             except InputError:
                 continue  # out of what the blocks accept together: go less far
-            if value <= best:  # at the floor the score is flat, the step still right
+            # At the floor the score is flat, and a short step still right. What a fold
+            # does not tell would go anywhere.
+            idle = value > best - ENOUGH and np.any(np.abs(found.values) > size)
+            if value <= best and not idle:
                 state, best = moved, value
                 break
         gained = before - best
