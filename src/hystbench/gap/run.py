@@ -17,9 +17,9 @@ from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import is_identified
-from hystbench.gap.bases.own_steps import too_long_steps
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.on_records import compared_records, run_base, start_state
+from hystbench.gap.fitting.own_steps import too_long_steps
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.holdout.outcome import outcome
@@ -184,7 +184,7 @@ def as_found(
     They are asked for beside the base, and again beside forces that stand for it.
     """
     about = base, evidence.input_hold, evidence.quantities, say
-    records = without_leads(evidence.hold_out, *about, count=len(evidence.fit))
+    records = without_leads(evidence.hold_out, *about, fit=evidence.fit)
     if any(isinstance(block, Mechanism) for block in found.base.chain):
         model = augmented(found.base, found.state)
         records = without_leads(records, *about, model)

@@ -35,6 +35,7 @@ from hystbench.gap.inside.named_inside import (
     beats_chain,
     named_inside,
 )
+from hystbench.gap.inside.timing import better_timed, in_time_words, timed_in_chain
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.naming.beside_forces import beside_forces
@@ -88,17 +89,21 @@ def search(
     """
     limits = Limits.of(evidence.fit, asked.limits) if asked.limits else None
     found = _beside(base, evidence, asked, quantities)
-    about = None if is_identified(base) else known_about(base, evidence.fit)
+    identified = is_identified(base)
+    shifted = _in_better_time(found) if identified else None
+    if shifted is not None:
+        asked.say("the input may be taken at another time: naming beside that")
+        again = _beside(shifted, evidence, asked, quantities)
+        found = found if _stays(found, again) else again
+        asked.say("it is" if found is again else "that explains no more: it is not")
+    about = None if identified else known_about(base, evidence.fit)
     if about is not None and found.may_be_simpler():
         asked.say("the base's numbers or timing may be off: naming beside that")
         again = _beside(about, evidence, asked, quantities)
-        score = found.score_beside(again)
-        alike = len(again.start.sample) == len(found.start.sample)
-        # What was given is believed unless as much speaks against it as makes a gap.
-        if alike and again.value(score, re_tuned=True) < found.value(score) - PAYS:
-            found = again
-        else:
+        if _stays(found, again):
             asked.say("that explains no more: they stay as they are")
+        else:
+            found = again
     found = _apart(found, asked)
     base, start, inside = found.base, found.start, found.inside
     if inside is not None:
@@ -109,6 +114,8 @@ def search(
     more = [told.content["reason"]]
     if inside is not None:
         more.append(inside.sentence)
+    if identified and (late := in_time_words(found.named.state)):
+        more.append(late)
     if found.base is about:
         more.append(f"{NOT_EXACT} ({EXACT})")
         if inside is None:
@@ -182,6 +189,24 @@ class _Searched:
         return re_tuned_score(state, score, beside) < beside or any(
             re_tuned_score(short, score, least) < least for short in shorter
         )
+
+
+def _stays(found: _Searched, again: _Searched) -> bool:
+    """Tell whether a base stays as it was, and not with numbers that were re-tuned.
+
+    What was given is believed unless as much speaks against it as makes a gap.
+    """
+    score = found.score_beside(again)
+    alike = len(again.start.sample) == len(found.start.sample)
+    value = again.value(score, re_tuned=True)
+    return not alike or value >= found.value(score) - PAYS
+
+
+def _in_better_time(found: _Searched) -> Model | None:
+    """Give an identified base with the timing that effects show, if that is another."""
+    if found.inside is not None:
+        return better_timed(found.base, found.named.state, found.floor.rms)
+    return timed_in_chain(found.base, found.named.state)
 
 
 def _pay(effects: int) -> float:

@@ -74,14 +74,15 @@ def test_a_store_has_a_level_to_start_from():
     assert leads(linear(), record(537), quantities=STORE) == [0]
 
 
-def test_one_level_is_no_start_of_several_records_of_a_store():
+def test_one_level_is_no_start_of_records_that_begin_at_several():
     several = record(537), record(850)
     assert leads(linear(), *several, quantities=STORE) == [200, 200]
+    assert leads(linear(), record(537), record(537), quantities=STORE) == [0, 0]
     held_out = (record(537, "hold-out"),)
     about = (linear(), "band-limited", STORE)
-    (found,) = without_leads(held_out, *about, count=3)
+    (found,) = without_leads(held_out, *about, fit=several)
     assert found.lead == 200
-    assert without_leads(held_out, *about, count=1) is held_out
+    assert without_leads(held_out, *about, fit=several[:1]) is held_out
 
 
 def test_a_window_of_a_free_mass_knows_its_start_otherwise():

@@ -7,6 +7,7 @@ it remembers of the time before is no effect.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -25,6 +26,9 @@ from hystbench.record import FloatArray, Record
 SETTLES = 5.0
 """Time constants in which a state is forgotten: less than a hundredth is left of it."""
 
+ALIKE = 0.1
+"""Share of the rms of an output about its mean that is no other place to begin at."""
+
 
 def without_leads(
     records: tuple[Record, ...],
@@ -33,7 +37,7 @@ def without_leads(
     quantities: Quantities,
     say: Say = silent,
     found: Model | None = None,
-    count: int | None = None,
+    fit: Sequence[Record] | None = None,
 ) -> tuple[Record, ...]:
     """Leave out of the score the leads of records that begin in the middle of a motion.
 
@@ -51,18 +55,20 @@ def without_leads(
         Where it was given and not identified, nothing is left out.
     hold : {"zero-order", "linear", "band-limited"}
     quantities : Quantities
-        What the device takes and gives. The level of a store at the start of its only
-        record is a number of the model.
+        What the device takes and gives. The level that a store begins with is a number
+        of the model, where all records to fit begin alike.
     say : callable
         Told of how many records the lead is left out.
     found : Model, optional
         The base with what was found: it is asked in the place of the base, whose own
         error may hide a start.
-    count : int, optional
+    fit : sequence of Record, optional
         Records that the model is fitted to; by default those given.
     """
-    only = (len(records) if count is None else count) == 1
-    if not is_identified(base) or (only and quantities.causality == "storage"):
+    if not is_identified(base) or (
+        quantities.causality == "storage"
+        and begin_alike(records if fit is None else fit)
+    ):
         return records
     held = base.with_hold(hold)
     asked = held if found is None else found.with_hold(hold)
@@ -77,6 +83,12 @@ def without_leads(
             "do"
         )
     return shorter if cut else records
+
+
+def begin_alike(records: Sequence[Record]) -> bool:
+    """Tell whether records begin at one output, to a tenth of how far it moves."""
+    moves = min(float(np.std(record.y)) for record in records)
+    return float(np.ptp([record.y[0] for record in records])) < ALIKE * moves
 
 
 def _without(record: Record, base: Model, asked: Model) -> Record:

@@ -69,6 +69,7 @@ def likeliest(states: Iterable[ModelState], score: Score) -> Fitted | None:
 def with_a_zero(best: Fitted, score: Score) -> Fitted:
     """Fit a host whose output also has a share of the next derivative."""
     block, free = best.state.chain[0], best.state.free
-    if not (isinstance(block, Mechanism) and block.output != "force"):
+    zero = Free(0, "blend")
+    if not (isinstance(block, Mechanism) and block.output != "force") or zero in free:
         return best
-    return fitted(replace(best.state, free=(*free, Free(0, "blend"))), score)
+    return fitted(replace(best.state, free=(*free, zero)), score)

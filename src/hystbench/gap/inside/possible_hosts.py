@@ -31,8 +31,9 @@ from hystbench.gap.inside.modes import frequency_of, modes
 from hystbench.gap.inside.one_coordinate import MOTIONS, free_masses, one_coordinate
 from hystbench.gap.inside.same_as import same_as
 from hystbench.gap.inside.store_hosts import store_hosts
+from hystbench.gap.inside.timing import with_free_timing
 from hystbench.gap.inside.two_masses import further_modes_of, two_masses
-from hystbench.gap.thresholds import FURTHER, PAYS
+from hystbench.gap.thresholds import FURTHER, PARAMETER, PAYS
 from hystbench.quantities import Quantities
 
 TRIED = 2
@@ -83,6 +84,7 @@ def hosts(
         if best is not None and is_seen_moving(best.state):
             words = "a model of one coordinate stands in place of the linear base"
             yield Host(best.state, best, words)
+            yield from _in_time(best, score)
             yield from _loose(best.state, score, words)
             yield from _of_two(best, further_modes_of(start), score)
     if not identified and all(isinstance(block, Store) for block in start.chain):
@@ -165,6 +167,25 @@ def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
     for begun in free_masses(state.records, block.output, state.hold):
         alone = fitted(begun, score)
         yield Host(alone.state, alone, words)
+
+
+def _in_time(one: Fitted, score: Score) -> Iterator[Host]:
+    """Give a model of one coordinate that may take its input late, where that fits.
+
+    An output with a share of the next derivative turns the phase as a delay does, but
+    a force beside the wrong one of the two is not told right: so it is one or the
+    other.
+    """
+    state, block = one.state, one.state.chain[0]
+    if isinstance(block, Mechanism):
+        free = tuple(x for x in state.free if x.parameter != "blend")
+        chain = (replace(block, blend=0.0), *state.chain[1:])
+        state = replace(state.with_chain(chain), free=free)
+    late = fitted(with_free_timing(state), score)
+    more = len(late.state.free) - len(one.state.free)
+    if late.score < one.score - PARAMETER * more:
+        words = "a model of one coordinate and its timing stand for the linear base"
+        yield Host(late.state, late, words)
 
 
 def _of_two(one: Fitted, frequencies: Sequence[float], score: Score) -> Iterator[Host]:

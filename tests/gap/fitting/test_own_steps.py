@@ -6,7 +6,7 @@ from scipy.signal import lfilter
 
 from hystbench.blocks.external import External
 from hystbench.blocks.gain import Gain
-from hystbench.gap.bases.own_steps import too_long_steps
+from hystbench.gap.fitting.own_steps import too_long_steps
 from hystbench.model import Model
 from hystbench.record import Channel, Record
 

@@ -1,0 +1,108 @@
+"""Timing of an identified base's input, which effects show better than the base does.
+
+A base is identified with the gap in it. What follows too late by part of a sample is
+then taken up by its poles and zeros, and stays beside the effects.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.input_delay import InputDelay
+from hystbench.gap.fitting.least_squares import fitted_to_the_end
+from hystbench.gap.fitting.model_score import score_of
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.thresholds import PAYS
+from hystbench.model import Model
+
+MOST = 1.0
+"""Samples by which a record of the input may be early or late. What comes later than
+that is no matter of sampling: it is an effect."""
+
+
+def better_timed(base: Model, found: ModelState, floor_rms: float) -> Model | None:
+    """Give an identified base with another timing, if that pays beside effects.
+
+    Parameters
+    ----------
+    base : Model
+    found : ModelState
+        What stands for the base, with the effects that were found.
+    floor_rms : float
+
+    Returns
+    -------
+    Model or None
+        None where the score falls by less than an effect has to gain.
+    """
+    score = Score.plain(found.sample, floor_rms**2)
+    now = score_of(found, score)
+    if now - score.least(found.freedom) < PAYS:
+        return None
+    best = fitted_to_the_end(with_free_timing(found), score)
+    if not best.score < now - PAYS:
+        return None
+    return timed(base, _shift(best.state.chain[0]) - _given(base))
+
+
+def timed_in_chain(base: Model, found: ModelState) -> Model | None:
+    """Give a base with the delay that is named beside another effect in a chain.
+
+    None without one, or where it is longer than a sample.
+    """
+    step = MOST * min(record.dt for record in found.records)
+    shift = sum(_shift(x) for x in found.chain) - sum(_shift(x) for x in base.chain)
+    if shift == 0.0 or abs(shift) > step or len(found.added) < 2:
+        return None
+    return timed(base, shift)
+
+
+def in_time_words(found: ModelState) -> str:
+    """Say by how much a base takes its input late; nothing where it does not."""
+    samples = _shift(found.chain[0]) / min(record.dt for record in found.records)
+    if 0 in found.places_added or not samples:
+        return ""
+    when = "late" if samples > 0 else "early"
+    return f"the linear base takes its input {abs(samples):.2g} of a sample {when}"
+
+
+def timed(base: Model, later_s: float) -> Model:
+    """Give a base that takes its input so many seconds later, or earlier."""
+    behind = base.chain[1:] if _is_late(base) else base.chain
+    hold = next((x.hold for x in behind if hasattr(x, "hold")), "default")
+    delay = InputDelay.by(_given(base) + later_s, hold)
+    return replace(base, chain=(delay, *behind))
+
+
+def _is_late(base: Model) -> bool:
+    return isinstance(base.chain[0], InputDelay)
+
+
+def _given(base: Model) -> float:
+    """Give how late a base takes its input already, in seconds."""
+    return _shift(base.chain[0])
+
+
+def _shift(block: Block) -> float:
+    return block.delay_s - block.lead_s if isinstance(block, InputDelay) else 0.0
+
+
+def with_free_timing(found: ModelState) -> ModelState:
+    """Let a model take its input earlier or later, by a sample at most.
+
+    The delay cannot be negative: a lead allows for both.
+    """
+    step = MOST * min(record.dt for record in found.records)
+    first = found.chain[0]
+    if isinstance(first, InputDelay):
+        late = replace(first, delay_s=first.delay_s + step, lead_s=first.lead_s + step)
+        state = found.with_chain((late, *found.chain[1:]))
+    else:
+        late = InputDelay(delay_s=step, lead_s=step, hold=found.hold)
+        moved = {k: k + 1 for k in range(len(found.chain))}
+        state = found.rearranged((late, *found.chain), moved)
+    free = tuple(x for x in state.free if (x.block, x.parameter) != (0, "delay_s"))
+    own = Free(0, "delay_s", low=late.delay_s - step, high=late.delay_s + step)
+    return replace(state, free=(own, *free)).settled()
