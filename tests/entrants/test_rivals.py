@@ -14,7 +14,7 @@ from hystbench.gap.schema import SCHEMA
 from hystbench.plain_fits import Task, effects, fit, within_noise
 from hystbench.schema import check_against_schema
 
-LEFT_OUT = {"kept": 2}
+LEFT_OUT = {"group": 2}
 """A case does not change with the group that the next score leaves out."""
 SPEC = CaseSpec(150_001, "single", ("thermal-drift",), "gpi", 20.0, **LEFT_OUT)
 

@@ -6,7 +6,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from hystbench.challenge.excitation import CAMPAIGNS
-from hystbench.challenge.kept import KEPT, group_of
+from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP, group_of
 from hystbench.challenge.plant import inside
 from hystbench.challenge.plant.effects import APART, UNLISTED, VOCABULARY
 from hystbench.challenge.plant.hysteresis import DRAWS
@@ -55,9 +55,9 @@ class CaseSpec:
     """Multiplies the ranges of time constants, frequencies and sizes."""
     campaign: str = "standard"
     """Which laboratory took the records."""
-    kept: int = KEPT
+    group: int = LEFT_OUT_GROUP
     """The group of forms that is left out, as ``kept.yaml`` has it."""
-    of_kept: bool = False
+    of_group: bool = False
     """Whether an effect takes the group's own forms instead, where it has any."""
 
     def __post_init__(self) -> None:
@@ -77,7 +77,7 @@ class CaseSpec:
                     f"effect: {name!r} beside the family {self.family!r}; expected "
                     "the family 'gpi', as the base's loop is wrong beside any other"
                 )
-        group_of(self.kept)
+        group_of(self.group)
         known = effects_of(self.kind, self.family)
         for name in self.effects:
             refuse_unknown(
@@ -105,7 +105,7 @@ class CaseSpec:
 
     def forms(self, kind: Kind) -> tuple[str, ...]:
         """Give the forms of an effect that may be drawn."""
-        return group_of(self.kept).allowed(kind, self.of_kept)
+        return group_of(self.group).allowed(kind, self.of_group)
 
     def random(self, stream: int) -> np.random.Generator:
         """Source of random numbers for one purpose; purposes do not disturb others."""
@@ -113,16 +113,16 @@ class CaseSpec:
 
 
 def effects_of(
-    kind: str, family: str, kept: int | None = None, of_kept: bool = False
+    kind: str, family: str, group: int | None = None, of_group: bool = False
 ) -> list[str]:
     """Give the names of what a case of a kind may hide in a family.
 
     Parameters
     ----------
     kind, family : str
-    kept : int, optional
+    group : int, optional
         Group whose sorts outside the vocabulary are left out; by default none are.
-    of_kept : bool
+    of_group : bool
         Whether it is those alone instead.
     """
     if family in inside.MACHINES:
@@ -136,9 +136,9 @@ def effects_of(
         names = list(UNLISTED)
     else:
         names = [name for name in VOCABULARY if name not in GPI_ONLY or family == "gpi"]
-    if kind == "unlisted" and kept is not None:
-        left_out = group_of(kept).unlisted
-        names = [name for name in names if (name in left_out) == of_kept]
+    if kind == "unlisted" and group is not None:
+        left_out = group_of(group).unlisted
+        names = [name for name in names if (name in left_out) == of_group]
     return names
 
 
@@ -167,14 +167,14 @@ def draw_spec(
     *,
     spread: float = 1.0,
     campaign: str = "standard",
-    kept: int = KEPT,
-    of_kept: bool = False,
+    group: int = LEFT_OUT_GROUP,
+    of_group: bool = False,
 ) -> CaseSpec:
     """Draw which effects a case hides, each as likely as any other.
 
     Parameters
     ----------
-    seed, kind, family, ratio_db, spread, campaign, kept, of_kept
+    seed, kind, family, ratio_db, spread, campaign, group, of_group
         As in :class:`CaseSpec`. The group's sorts outside the vocabulary are left out
         too, or drawn alone.
 
@@ -184,7 +184,7 @@ def draw_spec(
         As :class:`CaseSpec`.
     """
     refuse_unknown(kind, CASE_KINDS, f"kind: {kind!r}")
-    names = effects_of(kind, family, kept, of_kept)
+    names = effects_of(kind, family, group, of_group)
     if len(names) < COUNTS[kind]:
         raise InputError(
             f"kind: {kind!r} of the family {family!r}; expected a kind of at most "
@@ -196,5 +196,5 @@ def draw_spec(
         effects = tuple(names[int(place)] for place in chosen)
         if _may_meet(effects, family):
             break
-    about = (spread, campaign, kept, of_kept)
+    about = (spread, campaign, group, of_group)
     return CaseSpec(seed, kind, effects, family, ratio_db, *about)

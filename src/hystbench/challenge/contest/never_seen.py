@@ -13,7 +13,7 @@ import pandas as pd
 
 from hystbench.challenge.contest.frames import sure
 from hystbench.challenge.contest.tables import how_often, names_that_count, wilson
-from hystbench.challenge.kept import KEPT, group_of
+from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP, group_of
 from hystbench.challenge.spec import NAMELESS
 
 LEFT_OUT = ("left_out", "cases", "no_name", "low", "high", "confident", "called")
@@ -42,14 +42,16 @@ def left_out(cases: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(found, columns=list(LEFT_OUT)).round(4)
 
 
-def never_seen(cases: pd.DataFrame, kept: int = KEPT) -> Iterator[tuple[Any, ...]]:
-    """Sum up cases of one hidden effect, or none, by what was kept from all other sets.
+def never_seen(
+    cases: pd.DataFrame, group: int = LEFT_OUT_GROUP
+) -> Iterator[tuple[Any, ...]]:
+    """Sum up cases of one hidden effect, or none, by what all other sets leave out.
 
     Parameters
     ----------
     cases : DataFrame
         Judged cases of one solver on the transfer set.
-    kept : int
+    group : int
         The group that all other sets left out.
 
     Yields
@@ -61,7 +63,7 @@ def never_seen(cases: pd.DataFrame, kept: int = KEPT) -> Iterator[tuple[Any, ...
         interval; in what share a wrong name is stated with more than .8; and which
         wrong names were given how often.
     """
-    held = group_of(kept)
+    held = group_of(group)
     single = cases[cases["kind"] == "single"]
     forms = single["truth"] + ": " + single["form"]
     ours = cases["family"].isin(held.families)

@@ -31,7 +31,7 @@ def further(
     """
     about = {
         "set": summary["set"],
-        "group": summary["kept"],
+        "group": summary["kept"],  # its name in the file since the first round
         "first_seed": summary["seeds"][0],
     }
     there = {tuple(str(row[name]) for name in ROUND) for row in before}
