@@ -16,6 +16,7 @@ from hystbench.challenge.plant.kind import HiddenEffect
 from hystbench.challenge.plant.kind import draw as draw_effect
 from hystbench.challenge.spec import CaseSpec
 from hystbench.challenge.where import where
+from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record, Use
 
@@ -83,7 +84,7 @@ def make_case(spec: CaseSpec) -> Case:
     commands = CAMPAIGNS[spec.campaign](spec.random(EXCITATION))
     plant, drawn = _draw(spec, commands)
     bare = Readings(plant.actuator(()), commands)
-    size = rms(bare.of("fit"))
+    size = rms(*bare.of("fit"))
     effects = tuple(_resized(plant, effect, bare, size) for effect in drawn)
     full = Readings(plant.actuator(effects), commands)
     without = [
@@ -96,7 +97,7 @@ def make_case(spec: CaseSpec) -> Case:
     random = spec.random(NOISE)
     noise = float(np.exp(random.uniform(*np.log(PLAIN_NOISE))))
     if effects:
-        noise = min(map(rms, differences)) / 10.0 ** (spec.ratio_db / 20.0)
+        noise = min(rms(*each) for each in differences) / 10.0 ** (spec.ratio_db / 20.0)
     records = tuple(
         _record(full, number, noise, random) for number in range(len(commands))
     )
@@ -112,8 +113,8 @@ def make_case(spec: CaseSpec) -> Case:
             effect_told(effect)
             | {
                 "resized": effect is not first,
-                "rms": rms(difference),
-                "ratio_db": _decibel(rms(difference), noise),
+                "rms": rms(*difference),
+                "ratio_db": _decibel(rms(*difference), noise),
                 "ratio_retuned_db": _decibel(_retuned(difference, output), noise),
                 "where": where(effect.kind, fit_records, difference, output),
             }
@@ -121,11 +122,11 @@ def make_case(spec: CaseSpec) -> Case:
                 effects, drawn, differences, outputs, strict=True
             )
         ],
-        "ratio_all_db": _decibel(rms(gap), noise) if effects else None,
+        "ratio_all_db": _decibel(rms(*gap), noise) if effects else None,
         "ratio_all_retuned_db": _decibel(_retuned(gap, bare.of("fit")), noise),
         "hold_out": {
             "gap_rms": full.beside(model, "hold-out"),
-            "explainable_rms": rms(full.minus(bare, "hold-out")),
+            "explainable_rms": rms(*full.minus(bare, "hold-out")),
             "base_error_rms": bare.beside(model, "hold-out"),
         },
         "base_error_fit_rms": bare.beside(model, "fit"),
@@ -171,7 +172,7 @@ class Readings:
         """RMS of the difference to a model's output."""
         chosen = [item for item in self.commands if item.use == use]
         simulated = [model.simulate(item.sampled(), item.dt) for item in chosen]
-        return rms([a - b for a, b in zip(self.of(use), simulated, strict=True)])
+        return rms(*(a - b for a, b in zip(self.of(use), simulated, strict=True)))
 
 
 def _draw(
@@ -233,7 +234,7 @@ def _resized(
 
     def share(changed: HiddenEffect) -> float:
         readings = Readings(plant.actuator((changed,)), bare.commands)
-        return rms(readings.minus(bare, "fit")) / size
+        return rms(*readings.minus(bare, "fit")) / size
 
     within = SMALLEST_EFFECT[plant.loop.family], LARGEST_EFFECT
     return effect.resized(share, within, margin=0.1, most=16.0)
@@ -290,13 +291,7 @@ def _retuned(difference: list[FloatArray], output: list[FloatArray]) -> float:
     """What is left of a difference after the best gain and offset of the base."""
     d, y = np.concatenate(difference), np.concatenate(output)
     design = np.stack([y, np.ones_like(y)], axis=1)
-    return float(np.sqrt(np.mean((d - design @ np.linalg.lstsq(design, d)[0]) ** 2)))
-
-
-def rms(parts: list[FloatArray]) -> float:
-    """RMS of all parts together."""
-    pooled = np.concatenate(parts)
-    return float(np.sqrt(np.mean(pooled**2)))
+    return rms(d - design @ np.linalg.lstsq(design, d)[0])
 
 
 def _decibel(size: float, noise: float) -> float | None:

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.challenge.case import Case, effect_told, rms, told_of
+from hystbench.challenge.case import Case, effect_told, told_of
 from hystbench.challenge.machine import (
     InputsAndOutputs,
     Machine,
@@ -15,6 +15,7 @@ from hystbench.challenge.machine import (
 from hystbench.challenge.plant.inside import IN_MACHINE
 from hystbench.challenge.plant.kind import HiddenEffect, Reach, draw
 from hystbench.challenge.spec import CaseSpec
+from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.record import Record
 
@@ -42,7 +43,7 @@ def make_machine_case(spec: CaseSpec) -> Case:
     fit = machine.read(hidden, reach, "fit")
     held_out = machine.read(hidden, reach, "hold-out")
     signals = [*fit, *held_out]
-    output = rms([y - y.mean() for _, y in fit])
+    output = rms(*(y - y.mean() for _, y in fit))
     sizes = []
     for k in range(len(hidden)):
         others = (*hidden[:k], *hidden[k + 1 :])
@@ -94,7 +95,7 @@ def _resized(machine: Machine, effect: HiddenEffect, reach: Reach) -> HiddenEffe
 
     def share(changed: HiddenEffect) -> float:
         signals = machine.read((changed,), reach, "fit")
-        output = rms([y - y.mean() for _, y in signals])
+        output = rms(*(y - y.mean() for _, y in signals))
         return _size(machine, signals, (), reach) / output
 
     return effect.resized(share, WITHIN, margin=0.2, most=8.0)
@@ -115,11 +116,11 @@ def _size(
     if not others and machine.family != "free-mass":
         return _left(machine, full)
     pairs = zip(full, machine.read(others, reach, "fit"), strict=True)
-    return rms([y - other for (_, y), (_, other) in pairs])
+    return rms(*(y - other for (_, y), (_, other) in pairs))
 
 
 def _left(machine: Machine, signals: InputsAndOutputs) -> float:
-    return rms([y - fitted for y, fitted in linear_parts(machine, signals)])
+    return rms(*(y - fitted for y, fitted in linear_parts(machine, signals)))
 
 
 def _model(machine: Machine, spec: CaseSpec) -> Model | None:

@@ -11,12 +11,11 @@ from itertools import combinations
 from statistics import median
 from typing import Any, get_args
 
-import numpy as np
-
 from hystbench.compare.beside import Edge, Ranking
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.claims.claim import Basis, Judgement, Verdict
 from hystbench.compare.evidence import Cell, ClaimEvidence
+from hystbench.metrics import rms
 from hystbench.published import FILTERS
 from hystbench.published.consistency import check
 
@@ -278,7 +277,7 @@ def rms_error_percent(evidence: ClaimEvidence) -> dict[str, float]:
         record = evidence.records.get(signal)
         if record is None or record.origin != "twin":
             continue
-        ours = float(np.sqrt(np.mean(record.y**2)))
+        ours = rms(record.y)
         if signal in evidence.drawn:
             ours = median(evidence.drawn[signal].rms)
         errors[signal] = 100 * (ours / checked.implied_rms - 1)

@@ -15,10 +15,11 @@ from hystbench.errors import InputError
 from hystbench.flat import flats
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.floor import Floor, noise_floor
-from hystbench.gap.records.scored_samples import Compared, rms
+from hystbench.gap.records.scored_samples import Compared
 from hystbench.inspection.entries import entry_text
 from hystbench.inspection.facts import Facts, facts_of, late
 from hystbench.inspection.visible import SmallestSeen, seen_effects
+from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.operators import play
 from hystbench.record import Record
@@ -104,7 +105,7 @@ def check(dataset: Dataset, effects: bool = True) -> Check:
     ]
     to_fit = [item for item in compared if item.record.use == "fit"]
     floor = noise_floor(to_fit, dataset.about.get("noise_rms"))
-    left = rms(np.concatenate([x.residual[x.record.counted] for x in to_fit]))
+    left = rms(*(x.residual[x.record.counted] for x in to_fit))
     return Check(
         dataset,
         tuple(item.record for item in compared),

@@ -24,6 +24,7 @@ from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.nuisance import left_rms
 from hystbench.gap.thresholds import ABOVE_NOISE, AS_GOOD
 from hystbench.gap.vocabulary import Vocabulary, with_device
+from hystbench.metrics import rms
 from hystbench.units import sized
 
 
@@ -124,7 +125,7 @@ def worse_than_a_constant(before: float, evidence: Evidence, floor: float) -> li
     """
     mean = np.mean(np.concatenate([record.y for record in evidence.fit]))
     outputs = np.concatenate([record.y for record in evidence.hold_out])
-    still = float(np.sqrt(np.mean((outputs - mean) ** 2)))
+    still = rms(outputs - mean)
     noisy = still**2 <= (1 + AS_GOOD) * floor**2
     if noisy or before**2 <= (1 + AS_GOOD) * still**2:
         return []

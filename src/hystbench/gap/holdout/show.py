@@ -23,8 +23,8 @@ from hystbench.gap.records.nuisance import (
     left_rms,
     path_and_mains,
 )
-from hystbench.gap.records.scored_samples import rms
 from hystbench.gap.simulation.simulation import Simulation
+from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 

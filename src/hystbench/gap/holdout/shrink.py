@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.gap.records.nuisance import Nuisance, left_over
-from hystbench.gap.records.scored_samples import rms
+from hystbench.metrics import rms
 from hystbench.record import FloatArray, Mask, Record
 
 #: Draws of the bootstrap, and the part of them that its interval holds.
@@ -121,13 +121,13 @@ def shrink(
         for item in shrunk
         if item.residual_after is not None
     ]
-    size = rms(np.concatenate(olds))
+    size = rms(*olds)
     if len(news) < len(olds):
         (drawn,) = resampled_rms([(old,) for old in olds])
         whole = (size, None, noise_floor, floor_method, 0.0)
         return Shrink(*whole, rms_interval(drawn), None, None, tuple(shrunk))
     drawn, left_drawn = resampled_rms(list(zip(olds, news, strict=True)))
-    left = rms(np.concatenate(news))
+    left = rms(*news)
     return Shrink(
         size,
         left,

@@ -11,8 +11,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from hystbench.gap.records.scored_samples import rms
 from hystbench.gap.thresholds import LOOSE
+from hystbench.metrics import rms
 from hystbench.record import FloatArray, Mask, Record
 
 #: Part of a hold-out record that estimates what is new in it.
@@ -107,7 +107,7 @@ def left_rms(
         if output is not None
         for residual, scored in [left_over(record, output, nuisance)]
     ]
-    return rms(np.concatenate(left)) if len(left) == len(records) else None
+    return rms(*left) if len(left) == len(records) else None
 
 
 def path_and_mains(degree: int | None, mains_hz: Sequence[float] = ()) -> Nuisance:

@@ -167,11 +167,6 @@ class Compared:
         return without(self.record.y - self.simulated, self.record.of_start)
 
 
-def rms(values: FloatArray) -> float:
-    """Give the root of the mean square."""
-    return float(np.sqrt(np.mean(np.square(values))))
-
-
 def whole_periods(values: FloatArray, period: int) -> FloatArray:
     """Give the whole periods at the end of signals, one behind the other.
 
