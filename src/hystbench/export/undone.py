@@ -17,7 +17,7 @@ from hystbench.blocks.rate_dependent_hysteresis import RateDependentHysteresis
 from hystbench.blocks.starts import PASTS
 from hystbench.blocks.state_space import StateSpace
 from hystbench.blocks.step import Sampling, Step, polynomial
-from hystbench.blocks.wrapping import Hysteresis
+from hystbench.blocks.wrapping import Wrappable
 from hystbench.record import FloatArray
 
 Ends = tuple[float, float]
@@ -91,7 +91,7 @@ def curve(block: Block, ends: Ends, sampling: Sampling) -> Step:
 
 
 def hysteresis(
-    inner: Hysteresis, ends: Ends, by: RateDependentHysteresis | None = None
+    inner: Wrappable, ends: Ends, by: RateDependentHysteresis | None = None
 ) -> Making:
     """Find the input of hysteresis by trial, its thresholds growing with a rate or not.
 

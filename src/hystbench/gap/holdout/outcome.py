@@ -28,7 +28,7 @@ from hystbench.metrics import rms
 from hystbench.units import sized
 
 
-def outcome(
+def show_on_hold_out(
     fitted: FitResult,
     decided: Mapping[str, Any],
     evidence: Evidence,

@@ -19,7 +19,7 @@ from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.stiffness_hardening import StiffnessHardening
 from hystbench.blocks.store import Store
-from hystbench.blocks.wrapping import Hysteresis, Wrapped, WrappingBlock
+from hystbench.blocks.wrapping import Wrappable, Wrapped, WrappingBlock
 from hystbench.gap.simulation.memory import may_have_hysteresis
 from hystbench.record import FloatArray, Record
 
@@ -147,13 +147,13 @@ class Simulation:
         inner = step.inner
         if isinstance(inner, Wrapped):
             return Wrapped(cast(Wrapped, self._known(inner, z)), step.by)
-        if all(inner is not cast(Hysteresis, block) for block in self.chain):
+        if all(inner is not cast(Wrappable, block) for block in self.chain):
             return step
         known = self._outputs.setdefault((id(z), inner), _Known(inner, z))
         return Wrapped(known, step.by)
 
     @cached_property
-    def _outputs(self) -> dict[tuple[int, Hysteresis], _Known]:
+    def _outputs(self) -> dict[tuple[int, Wrappable], _Known]:
         return {}
 
     @cached_property
@@ -275,7 +275,7 @@ class Simulation:
 class _Known:
     """A hysteresis that keeps what it gave for one input."""
 
-    def __init__(self, inner: Hysteresis, v: FloatArray) -> None:
+    def __init__(self, inner: Wrappable, v: FloatArray) -> None:
         self.inner, self.v = inner, v
         self.output: FloatArray | None = None
 
@@ -362,7 +362,7 @@ def _finely(step: Block | Wrapped, z: FloatArray, dt: float, factor: int) -> Flo
 def _plain(step: Block | Wrapped) -> Block | Wrapped:
     """Let what takes shorter steps by itself take those that it is given."""
     if isinstance(step, Wrapped):
-        inner = cast(Hysteresis, _plain(cast(Block, step.inner)))
+        inner = cast(Wrappable, _plain(cast(Block, step.inner)))
         if "hold" in step.by.parameters():
             straight: dict[str, Any] = {"hold": "linear"}
             return Wrapped(inner, replace(step.by, **straight))
