@@ -180,7 +180,7 @@ def _findings(
         _finding("late", name=x.name, ms=1e3 * x.delay_s, samples=x.delay_s / x.dt)
         for x in late(facts)
     ]
-    fit = [item.excitation for item in facts if item.use == "fit"]
+    fit = [item.input for item in facts if item.use == "fit"]
     rates, spans = ([x.rate for x in fit], [round(x.span, 12) for x in fit])
     on_the_whole = {
         "none held out": all(item.use == "fit" for item in facts),
@@ -206,7 +206,7 @@ def _still(dataset: Dataset, record: Record, item: Facts) -> Iterator[Finding]:
         yield _finding("stuck", paste=[line], **vars(item))
     given = ("input", record.input, record.u), ("output", record.output, record.y)
     for key, channel, values in given:
-        on_purpose = key == "input" and item.excitation.kind in ("steps", "ramps")
+        on_purpose = key == "input" and item.input.kind in ("steps", "ramps")
         if item.stuck or on_purpose or key in dataset.stands_still(item.name):
             continue
         for flat in flats(values):

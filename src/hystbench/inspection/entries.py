@@ -16,7 +16,7 @@ from hystbench.dataset import RECORD_NAME
 from hystbench.errors import InputError, refuse_unknown
 from hystbench.inspection.clocks import Ticks, ticks_of
 from hystbench.inspection.columns import LEAST, Ask, ChosenColumns, Flags, RecordColumns
-from hystbench.inspection.excitation import InputSummary, excitation_of
+from hystbench.inspection.input_summary import InputSummary, summary_of
 from hystbench.inspection.missing import cannot_be_bridged, runs
 from hystbench.inspection.names import split_unit
 from hystbench.periods import find_period
@@ -268,7 +268,7 @@ def with_roles(
             raise InputError("--hold-out: all records; expected at least one to fit")
     else:
         held, why = propose(
-            {record.name: excitation_of(record.u, record.dt) for record in records}
+            {record.name: summary_of(record.u, record.dt) for record in records}
         )
     notes.append(f"roles: {why}")
     return [

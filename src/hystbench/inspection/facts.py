@@ -11,7 +11,7 @@ from hystbench.errors import InputError
 from hystbench.formats import read_table
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.records.usable import REAL, check_usable
-from hystbench.inspection.excitation import InputSummary, excitation_of
+from hystbench.inspection.input_summary import InputSummary, summary_of
 from hystbench.inspection.missing import cannot_be_bridged
 from hystbench.periods import find_period
 from hystbench.record import FloatArray, Record, Use
@@ -47,7 +47,7 @@ class Facts:
     """Samples, as the dataset says or as it was found."""
     declared: bool
     """Whether the dataset says it."""
-    excitation: InputSummary
+    input: InputSummary
     low: float
     high: float
     """Range of the output."""
@@ -92,7 +92,7 @@ def facts_of(dataset: Dataset, item: Compared) -> Facts:
         jitter,
         record.period_samples or found,
         record.period_samples is not None,
-        excitation_of(record.u, record.dt),
+        summary_of(record.u, record.dt),
         float(record.y.min()),
         float(record.y.max()),
         _stuck(file, record, dataset.stands_still(record.name)),
@@ -141,7 +141,7 @@ def late(facts: Sequence[Facts]) -> list[Facts]:
     that grows with the rate: each record's phase, its delay times its rate, is held
     against a straight line over the rate through those of the others.
     """
-    rates = np.array([item.excitation.relative_rate for item in facts])
+    rates = np.array([item.input.relative_rate for item in facts])
     phases = rates * [item.delay_s for item in facts]
     found = []
     for k, item in enumerate(facts):

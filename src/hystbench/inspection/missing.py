@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hystbench.inspection.excitation import excitation_of
+from hystbench.inspection.input_summary import summary_of
 from hystbench.record import FloatArray, Mask
 
 QUARTER = 0.25
@@ -38,7 +38,7 @@ def cannot_be_bridged(u: FloatArray) -> Mask:
         return marked
     there = np.flatnonzero(~lost)
     bridged = np.interp(np.arange(len(u)), there, u[there])
-    fastest = excitation_of(bridged, 1.0).high_hz  # in periods a sample
+    fastest = summary_of(bridged, 1.0).high_hz  # in periods a sample
     for first, behind in runs(lost):
         marked[first:behind] = (behind - first) * fastest > QUARTER
     return marked

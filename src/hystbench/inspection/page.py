@@ -47,14 +47,14 @@ def _records(found: Check) -> PageTable:
         Heading("samples", True): lambda x: number(x.samples, str(x.samples)),
         Heading("rate (Hz)", True): lambda x: number(1 / x.dt, f"{1 / x.dt:.6g}"),
         Heading("jitter (%)", True): lambda x: number(x.jitter, _jitter(x)),
-        Heading("input"): attrgetter("excitation.kind"),
+        Heading("input"): attrgetter("input.kind"),
         Heading("period (samples)", True): lambda x: number(
             x.period, str(x.period or "none")
         ),
         Heading("periods", True): lambda x: number(x.periods, f"{x.periods:.3g}"),
         Heading("band"): words.band,
         Heading(f"input ({unit_text(record.input.unit)})"): lambda x: (
-            f"{x.excitation.low:.3g} to {x.excitation.high:.3g}"
+            f"{x.input.low:.3g} to {x.input.high:.3g}"
         ),
         Heading(f"output ({unit_text(record.output.unit)})"): lambda x: (
             f"{x.low:.3g} to {x.high:.3g}"

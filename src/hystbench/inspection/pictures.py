@@ -44,7 +44,7 @@ def bands(axes: Sequence[Axes], found: Check) -> None:
     """Draw each record's band, over the swing of its input."""
     (ax,) = axes
     for use, colour in (("fit", BLUE), ("hold-out", VERMILION)):
-        inputs = [item.excitation for item in found.facts if item.use == use]
+        inputs = [item.input for item in found.facts if item.use == use]
         for k, given in enumerate(inputs):
             ax.plot(
                 [given.low_hz, given.high_hz],

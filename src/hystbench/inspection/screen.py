@@ -96,7 +96,7 @@ def _each(facts: Sequence[Facts], unit: str) -> list[str]:
         jitter = "" if item.jitter is None else f", jitter {jitter_text(item.jitter)}"
         told += _lines(
             f"{item.name:{width}} {item.use:8} {item.samples} at {1 / item.dt:.5g} Hz"
-            f"{jitter}, {item.excitation.kind}, {period}, {band(item)}, "
+            f"{jitter}, {item.input.kind}, {period}, {band(item)}, "
             f"{level(item, unit)}"
         )
     return told
@@ -106,13 +106,13 @@ def _grouped(facts: Sequence[Facts], unit: str) -> list[str]:
     """Tell records of one use, kind of input and rate together."""
 
     def key(item: Facts) -> tuple[str, str, str]:
-        return item.use, item.excitation.kind, f"{1 / item.dt:.5g}"
+        return item.use, item.input.kind, f"{1 / item.dt:.5g}"
 
     told = []
     for (use, kind, rate), group in groupby(sorted(facts, key=key), key):
         items = list(group)
         jitter = max(item.jitter or 0.0 for item in items)
-        inputs = [item.excitation for item in items]
+        inputs = [item.input for item in items]
         low, high = min(x.low for x in inputs), max(x.high for x in inputs)
         said = [
             f"{len(items)} {use}, {kind}",

@@ -70,13 +70,13 @@ def headline(found: Check) -> str:
 
 def level(facts: Facts, unit: str) -> str:
     """Write the range of an input."""
-    item = facts.excitation
+    item = facts.input
     return f"{item.low:.3g} to {quantity(item.high, unit)}"
 
 
 def band(facts: Facts) -> str:
     """Write the band of an input."""
-    item = facts.excitation
+    item = facts.input
     return f"{item.low_hz:.3g} to {item.high_hz:.3g} Hz"
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from hystbench.blocks import registry
 from hystbench.errors import InputError
-from hystbench.gap.experiment.excitations import Limits, candidates
+from hystbench.gap.experiment.candidates import Limits, candidates
 from hystbench.gap.experiment.separation import Rival, RivalPair, separation
 from hystbench.gap.experiment.tell_apart import CLEAR, Experiment, next_experiment
 from hystbench.gap.schema import EXPERIMENT

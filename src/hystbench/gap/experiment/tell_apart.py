@@ -12,7 +12,7 @@ from itertools import combinations
 from typing import Any
 
 from hystbench.errors import InputError
-from hystbench.gap.experiment.excitations import Excitation, Limits, candidates
+from hystbench.gap.experiment.candidates import Excitation, Limits, candidates
 from hystbench.gap.experiment.separation import Rival, RivalPair, Sets, separations
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.state import ModelState
@@ -166,7 +166,7 @@ def next_experiment(
         RMS in output units, above zero.
     limits : Limits, optional
     excitations : sequence of Excitation, optional
-        Instead of :func:`~hystbench.gap.experiment.excitations.candidates`.
+        Instead of :func:`~hystbench.gap.experiment.candidates.candidates`.
 
     Returns
     -------

@@ -7,7 +7,7 @@ import numpy as np
 
 from hystbench.record import FloatArray
 
-ExcitationKind = Literal["sine", "sum of sines", "sweep", "steps", "ramps", "broadband"]
+InputKind = Literal["sine", "sum of sines", "sweep", "steps", "ramps", "broadband"]
 
 STANDS = 0.8
 """Share of samples at which the input stands still, of steps."""
@@ -26,7 +26,7 @@ IN_BAND = 0.99
 class InputSummary:
     """An input in a few numbers."""
 
-    kind: ExcitationKind
+    kind: InputKind
     low_hz: float
     high_hz: float
     """Band that holds 99 % of the power of its changes about the mean."""
@@ -49,7 +49,7 @@ class InputSummary:
         return 2 * self.rate / self.span
 
 
-def excitation_of(u: FloatArray, dt: float) -> InputSummary:
+def summary_of(u: FloatArray, dt: float) -> InputSummary:
     """Describe an input.
 
     Parameters
@@ -74,7 +74,7 @@ def excitation_of(u: FloatArray, dt: float) -> InputSummary:
     )
 
 
-def _kind(u: FloatArray, power: FloatArray) -> ExcitationKind:
+def _kind(u: FloatArray, power: FloatArray) -> InputKind:
     steps = np.abs(np.diff(u))
     reach = float(np.ptp(u))
     if np.mean(steps < 1e-6 * reach) > STANDS:
