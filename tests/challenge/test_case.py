@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hystbench.challenge.campaigns import CAMPAIGNS, PERIOD_SAMPLES
 from hystbench.challenge.case import make_case
-from hystbench.challenge.excitation import CAMPAIGNS, PERIOD
 from hystbench.challenge.left_out_groups import GROUPS
 from hystbench.challenge.plant.actuator import Actuator, KnownMode
 from hystbench.challenge.plant.effects import APART, IN_ACTUATOR, UNLISTED, VOCABULARY
@@ -297,7 +297,7 @@ def test_records_as_a_laboratory_takes_them(campaign, seed):
 
 def test_a_multisine_has_the_lines_it_says():
     items = {i.name: i for i in CAMPAIGNS["other"](np.random.default_rng(0))}
-    u = items["pink"].sampled()[-PERIOD:]
+    u = items["pink"].sampled()[-PERIOD_SAMPLES:]
     lines = np.abs(np.fft.rfft(u))
     excited = lines > 1e-9 * lines.max()
     # odd lines of 2 Hz up to 400 Hz

@@ -8,7 +8,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.blocks.resonance import Resonance
-from hystbench.challenge.excitation import RecordCommand
+from hystbench.challenge.campaigns import RecordCommand
 from hystbench.challenge.plant.actuator import KnownMode
 from hystbench.challenge.plant.hysteresis import GeneralizedPlays, PlantLoop
 from hystbench.identification import identify

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from hystbench.challenge.base import INPUT, OUTPUT, base_model, quasi_static, slope
-from hystbench.challenge.excitation import CAMPAIGNS, RecordCommand
+from hystbench.challenge.campaigns import CAMPAIGNS, RecordCommand
 from hystbench.challenge.plant.actuator import Actuator, KnownMode
 from hystbench.challenge.plant.effects import IN_ACTUATOR
 from hystbench.challenge.plant.hysteresis import PlantLoop, draw
 from hystbench.challenge.plant.kind import HiddenEffect
 from hystbench.challenge.plant.kind import draw as draw_effect
-from hystbench.challenge.spec import CaseSpec
+from hystbench.challenge.spec import COMMANDS, EFFECTS, NOISE, PLANT, CaseSpec
 from hystbench.challenge.where import where
 from hystbench.metrics import rms
 from hystbench.model import Model
@@ -31,11 +31,9 @@ SMALLEST_EFFECT = {
 }
 LARGEST_EFFECT = 0.12
 #: Smallest step of what is written down, in um: a 16-bit converter over 65 um.
-RESOLUTION = 0.001
+RESOLUTION_UM = 0.001
 #: Where nothing is hidden the noise is drawn from this interval, in um.
-PLAIN_NOISE = (0.01, 0.1)
-#: Streams of random numbers.
-PLANT, EFFECTS, EXCITATION, NOISE = 1, 2, 3, 4
+PLAIN_NOISE_UM = (0.01, 0.1)
 
 
 @dataclass(frozen=True)
@@ -81,7 +79,7 @@ def make_case(spec: CaseSpec) -> Case:
     -------
     Case
     """
-    commands = CAMPAIGNS[spec.campaign](spec.random(EXCITATION))
+    commands = CAMPAIGNS[spec.campaign](spec.random(COMMANDS))
     plant, drawn = _draw(spec, commands)
     bare = Readings(plant.actuator(()), commands)
     size = rms(*bare.of("fit"))
@@ -95,7 +93,7 @@ def make_case(spec: CaseSpec) -> Case:
     ]
     differences = [full.minus(item, "fit") for item in without]
     random = spec.random(NOISE)
-    noise = float(np.exp(random.uniform(*np.log(PLAIN_NOISE))))
+    noise = float(np.exp(random.uniform(*np.log(PLAIN_NOISE_UM))))
     if effects:
         noise = min(rms(*each) for each in differences) / 10.0 ** (spec.ratio_db / 20.0)
     records = tuple(
@@ -104,7 +102,7 @@ def make_case(spec: CaseSpec) -> Case:
     fit_records = [record for record in records if record.use == "fit"]
     linear = "hysteresis" in spec.effects
     model = base_model(plant.loop, plant.mode, commands, linear)
-    noise_rms = float(np.hypot(noise, RESOLUTION / np.sqrt(12.0)))
+    noise_rms = float(np.hypot(noise, RESOLUTION_UM / np.sqrt(12.0)))
     outputs = [item.of("fit") for item in without]
     gap = full.minus(bare, "fit")
     truth = told_of(spec, OUTPUT.unit, noise_rms, size) | {
@@ -248,9 +246,9 @@ def _record(
     noisy = full.raw(number) + noise * random.standard_normal(item.samples)
     y = full.actuator.convert(noisy, item.dt, number)
     u = np.round(item.sampled(), 8)
-    rounded = np.round(y / RESOLUTION) * RESOLUTION
+    rounded = np.round(y / RESOLUTION_UM) * RESOLUTION_UM
     channels, period = (INPUT, OUTPUT), item.period_samples
-    return Record(item.name, item.dt, u, rounded, *channels, "twin", item.use, period)
+    return Record(item.name, item.dt, u, rounded, *channels, "plant", item.use, period)
 
 
 def told_of(

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hystbench.challenge.plant.kind import Kind
+from hystbench.challenge.plant.kind import EffectKind
 from hystbench.errors import InputError
 from hystbench.yaml_files import load_yaml
 
@@ -25,19 +25,19 @@ class LeftOutGroup:
     forms: tuple[str, ...]
     """``effect: form`` of effects that it has a word for."""
 
-    def allowed(self, kind: Kind, of_group: bool) -> tuple[str, ...]:
+    def allowed(self, effect: EffectKind, of_group: bool) -> tuple[str, ...]:
         """Give the forms of an effect that a set draws from.
 
         Parameters
         ----------
-        kind : Kind
+        effect : EffectKind
         of_group : bool
             Whether the set is of the group: then its own forms, if there are any.
         """
-        own = [form for form in kind.forms if f"{kind.name}: {form}" in self.forms]
+        own = [form for form in effect.forms if f"{effect.name}: {form}" in self.forms]
         if of_group and own:
             return tuple(own)
-        return tuple(form for form in kind.forms if form not in own)
+        return tuple(form for form in effect.forms if form not in own)
 
 
 _TABLE: Mapping[str, Any] = load_yaml(Path(__file__).with_name("kept.yaml"))

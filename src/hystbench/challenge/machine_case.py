@@ -14,21 +14,20 @@ from hystbench.challenge.machine import (
 )
 from hystbench.challenge.plant.inside import IN_MACHINE
 from hystbench.challenge.plant.kind import HiddenEffect, Reach, draw
-from hystbench.challenge.spec import CaseSpec
+from hystbench.challenge.spec import BASE, EFFECTS, NOISE, PLANT, CaseSpec
 from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.record import Record
 
 #: An effect is to be within these shares of the output's rms on the fit records;
 #: outside, its size is changed.
-WITHIN = (0.04, 0.4)
+EFFECT_SHARES = (0.04, 0.4)
 #: Where nothing is hidden the noise is drawn from this interval of shares.
-PLAIN_NOISE = (0.002, 0.02)
+PLAIN_NOISE_SHARES = (0.002, 0.02)
 #: Steps of the converter over both signs of the largest output, and a half more.
-STEPS = 65536
+CONVERTER_STEPS = 65536
 #: Of masses on a spring under a force so many are handed over as a model file.
-AS_MODEL = 0.25
-PLANT, EFFECT, NOISE, BASE = 1, 2, 4, 5
+SHARE_WITH_MODEL = 0.25
 
 
 def make_machine_case(spec: CaseSpec) -> Case:
@@ -36,7 +35,7 @@ def make_machine_case(spec: CaseSpec) -> Case:
     outer = any(IN_MACHINE[name].place != "inside" for name in spec.effects)
     machine = draw_machine(spec.family, spec.random(PLANT), False if outer else None)
     reach = reach_of(machine)
-    random = spec.random(EFFECT)
+    random = spec.random(EFFECTS)
     kinds = [IN_MACHINE[name] for name in spec.effects]
     hidden = tuple(draw(k, random, spec.spread, spec.forms(k)) for k in kinds)
     hidden = tuple(_resized(machine, item, reach) for item in hidden)
@@ -49,10 +48,10 @@ def make_machine_case(spec: CaseSpec) -> Case:
         others = (*hidden[:k], *hidden[k + 1 :])
         sizes.append(_size(machine, fit, others, reach))
     random = spec.random(NOISE)
-    noise = output * float(np.exp(random.uniform(*np.log(PLAIN_NOISE))))
+    noise = output * float(np.exp(random.uniform(*np.log(PLAIN_NOISE_SHARES))))
     if hidden:
         noise = min(sizes) / 10.0 ** (spec.ratio_db / 20.0)
-    step = 3.0 * max(float(np.max(np.abs(y))) for _, y in signals) / STEPS
+    step = 3.0 * max(float(np.max(np.abs(y))) for _, y in signals) / CONVERTER_STEPS
     records = []
     for item, (u, y) in zip(machine.records, signals, strict=True):
         noisy = y + noise * random.standard_normal(len(y))
@@ -63,7 +62,7 @@ def make_machine_case(spec: CaseSpec) -> Case:
                 np.array([float(f"{value:.8g}") for value in u]),
                 np.round(noisy / step) * step,
                 *machine.channels,
-                "twin",
+                "plant",
                 item.use,
                 item.period_samples,
             )
@@ -98,7 +97,7 @@ def _resized(machine: Machine, effect: HiddenEffect, reach: Reach) -> HiddenEffe
         output = rms(*(y - y.mean() for _, y in signals))
         return _size(machine, signals, (), reach) / output
 
-    return effect.resized(share, WITHIN, margin=0.2, most=8.0)
+    return effect.resized(share, EFFECT_SHARES, margin=0.2, most=8.0)
 
 
 def _size(
@@ -125,7 +124,7 @@ def _left(machine: Machine, signals: InputsAndOutputs) -> float:
 
 def _model(machine: Machine, spec: CaseSpec) -> Model | None:
     """The machine without its effects as a model file, of a quarter of the masses."""
-    asked = spec.random(BASE).uniform() < AS_MODEL
+    asked = spec.random(BASE).uniform() < SHARE_WITH_MODEL
     if not asked or machine.part is None or machine.family != "mass-spring":
         return None
     from hystbench.blocks.mechanism import Mechanism  # late: one of four wants it

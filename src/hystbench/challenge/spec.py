@@ -5,16 +5,17 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from hystbench.challenge.excitation import CAMPAIGNS
+from hystbench.challenge.campaigns import CAMPAIGNS
 from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP, group_of
 from hystbench.challenge.plant import inside
 from hystbench.challenge.plant.effects import APART, UNLISTED, VOCABULARY
 from hystbench.challenge.plant.hysteresis import DRAWS
-from hystbench.challenge.plant.kind import Kind
+from hystbench.challenge.plant.kind import EffectKind
 from hystbench.errors import InputError, refuse_unknown
 
 CaseKind = Literal["single", "pair", "triple", "none", "unlisted"]
 CASE_KINDS: tuple[str, ...] = get_args(CaseKind)
+#: How many effects a case of a kind hides.
 COUNTS = {"single": 1, "pair": 2, "triple": 3, "none": 0, "unlisted": 1}
 ACTUATORS = tuple(DRAWS)
 FAMILIES = (*ACTUATORS, *inside.MACHINES)
@@ -26,7 +27,10 @@ NAMELESS = (
     *UNLISTED,
     *(name for name, kind in inside.IN_MACHINE.items() if not kind.listed),
 )
+#: Of a case, in dB.
 RATIO_LIMITS = (-20.0, 60.0)
+#: Streams of random numbers: a case draws what is named here from a stream of its own.
+PLANT, EFFECTS, COMMANDS, NOISE, BASE = 1, 2, 3, 4, 5
 
 
 @dataclass(frozen=True)
@@ -103,9 +107,9 @@ class CaseSpec:
         if self.seed < 0:
             raise InputError(f"seed: {self.seed}; expected 0 or more")
 
-    def forms(self, kind: Kind) -> tuple[str, ...]:
+    def forms(self, effect: EffectKind) -> tuple[str, ...]:
         """Give the forms of an effect that may be drawn."""
-        return group_of(self.group).allowed(kind, self.of_group)
+        return group_of(self.group).allowed(effect, self.of_group)
 
     def random(self, stream: int) -> np.random.Generator:
         """Source of random numbers for one purpose; purposes do not disturb others."""

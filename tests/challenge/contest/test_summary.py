@@ -212,7 +212,7 @@ def test_the_confusion_counts_each_case_once():
 
 def test_what_was_confused_and_what_would_tell_it_apart():
     found = tables.confused(frame(a_contest()))
-    assert found == [("resonance", "creep", 1, 4, tables.UNKNOWN)]
+    assert found == [("resonance", "creep", 1, 4, tables.NO_EXPERIMENT)]
 
 
 @pytest.mark.parametrize(
@@ -222,7 +222,7 @@ def test_what_was_confused_and_what_would_tell_it_apart():
         ("eddy-diffusion", "input-delay", "a multisine up to half"),
         ("drift", "creep", "the same record again"),
         ("creep", "thermal-drift", "long holds"),
-        ("dropouts", "creep", tables.UNKNOWN),
+        ("dropouts", "creep", tables.NO_EXPERIMENT),
     ],
 )
 def test_experiments_go_both_ways(one, other, told):

@@ -16,9 +16,9 @@ from hystbench.challenge.contest.tables import how_often, names_that_count, wils
 from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP, group_of
 from hystbench.challenge.spec import NAMELESS
 
-LEFT_OUT = ("left_out", "cases", "no_name", "low", "high", "confident", "called")
+COLUMNS = ("left_out", "cases", "no_name", "low", "high", "confident", "called")
 """Columns of the table of what is left out."""
-EVERY = "all"
+ALL_NAMES = "all"
 """The last row of each sort."""
 
 
@@ -39,7 +39,7 @@ def left_out(cases: pd.DataFrame) -> pd.DataFrame:
     """
     nameless = cases.assign(truth="")
     found = list(_rows(nameless, cases["truth"]))
-    return pd.DataFrame(found, columns=list(LEFT_OUT)).round(4)
+    return pd.DataFrame(found, columns=list(COLUMNS)).round(4)
 
 
 def never_seen(
@@ -80,7 +80,7 @@ def never_seen(
 
 def _rows(cases: pd.DataFrame, names: pd.Series[Any]) -> Iterator[tuple[Any, ...]]:
     """Give ``name, cases, right, low, high, confidently_wrong, called`` by name."""
-    groups = [*cases.groupby(names), (EVERY, cases)] if len(cases) else []
+    groups = [*cases.groupby(names), (ALL_NAMES, cases)] if len(cases) else []
     for name, group in groups:
         said = names_that_count(group)
         hidden = [set(truth.split()) - set(NAMELESS) for truth in group["truth"]]

@@ -38,7 +38,7 @@ class Figure(NamedTuple):
     name: str
     column: str
     """The share of cases of which this is true; or, before the name of a column, what
-    is made of it, as :data:`MADE` has it."""
+    is made of it, as :data:`STATISTICS` has it."""
     kind: str = "all"
     family: str = "all"
     """``all``, or a kind of case (or of :data:`KINDS`) and one of :data:`FAMILIES`."""
@@ -78,10 +78,10 @@ class Figure(NamedTuple):
             return shares(cases, column)
         if made == "known median":
             made, cases = "median", cases.dropna(subset=column)
-        return Share(MADE[made](cases, column), None, None, len(cases))
+        return Share(STATISTICS[made](cases, column), None, None, len(cases))
 
 
-MADE: dict[str, Callable[[pd.DataFrame, str], Any]] = {
+STATISTICS: dict[str, Callable[[pd.DataFrame, str], Any]] = {
     "mean": mean,
     "median": middle,
     "distance": lambda cases, _: calibration_error(cases),
@@ -207,7 +207,7 @@ _SUMS: dict[str, Callable[[pd.DataFrame, str], Any]] = {
     "ratio": _by_ratio,
     "family": _by_family,
     "share": _share,
-    **MADE,
+    **STATISTICS,
 }
 
 

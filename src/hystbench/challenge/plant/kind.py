@@ -143,7 +143,7 @@ class Form:
 
 
 @dataclass(frozen=True)
-class Kind:
+class EffectKind:
     """A physical effect: where it acts, where it shows, how it may be written."""
 
     name: str
@@ -165,7 +165,7 @@ class Kind:
 class HiddenEffect:
     """An effect with its form and parameters drawn."""
 
-    kind: Kind
+    kind: EffectKind
     form: str
     parameters: Parameters
 
@@ -227,7 +227,7 @@ class HiddenEffect:
 
 
 def draw(
-    kind: Kind,
+    kind: EffectKind,
     random: np.random.Generator,
     spread: float,
     allowed: tuple[str, ...] = (),
@@ -242,7 +242,7 @@ def draw(
 
 def read_kinds(
     table: str, *modules: ModuleType
-) -> tuple[dict[str, Kind], list[set[str]]]:
+) -> tuple[dict[str, EffectKind], list[set[str]]]:
     """Read effects from a table beside this module, by name and in its order.
 
     Beside them stand pairs of effects that are never hidden together.
@@ -264,12 +264,12 @@ def read_kinds(
 
 def _kind(
     known: Mapping[str, Any], name: str, forms: Mapping[str, Any], **about: Any
-) -> Kind:
+) -> EffectKind:
     lists = {key: tuple(about.pop(key, ())) for key in ("views", "families")}
     about |= lists | {
         "forms": {form: _form(known, **said) for form, said in forms.items()}
     }
-    return Kind(name, **about)
+    return EffectKind(name, **about)
 
 
 def _form(
