@@ -25,11 +25,11 @@ from hystbench.operators import play
 from hystbench.record import Record
 from hystbench.yaml_files import load_yaml
 
-ALIKE = 2.0
+SAME_RATIO = 2.0
 """Ratio of the fastest rate to the slowest below which records are of one rate."""
-JITTERS = 0.01
+UNEVEN_SHARE = 0.01
 """Of a step: a clock that is less even than that is told."""
-OPERATORS = 10
+PLAY_OPERATORS = 10
 """Play operators, the first of threshold zero: the input itself."""
 
 
@@ -136,7 +136,7 @@ def loop_of_plays(records: Sequence[Record]) -> Model:
         A ``prandtl-ishlinskii`` block and a ``gain``.
     """
     amplitude = max(float(np.abs(record.u).max()) for record in records)
-    thresholds = amplitude * np.arange(OPERATORS) / OPERATORS
+    thresholds = amplitude * np.arange(PLAY_OPERATORS) / PLAY_OPERATORS
     tables, outputs = [], []
     for record in records:
         plays = play(record.u, thresholds)[0]
@@ -185,8 +185,8 @@ def _findings(
     on_the_whole = {
         "none held out": all(item.use == "fit" for item in facts),
         "no noise": floor.method == "upper-bound",
-        "one rate": max(rates) < ALIKE * min(rates),
-        "one amplitude": max(spans) < ALIKE * min(spans),
+        "one rate": max(rates) < SAME_RATIO * min(rates),
+        "one amplitude": max(spans) < SAME_RATIO * min(spans),
     }
     found += [_finding(topic) for topic, holds in on_the_whole.items() if holds]
     try:
@@ -220,7 +220,7 @@ def _holes(item: Facts) -> Iterator[Finding]:
     if item.missing:
         far = " too far" * item.bridged_too_far
         yield replace(_finding(f"bridged{far}", **vars(item)), topic="missing")
-    if item.jitter is not None and item.jitter > JITTERS:
+    if item.jitter is not None and item.jitter > UNEVEN_SHARE:
         yield _finding("jitter", name=item.name, percent=100 * item.jitter)
 
 

@@ -9,16 +9,17 @@ from hystbench.record import FloatArray
 
 InputKind = Literal["sine", "sum of sines", "sweep", "steps", "ramps", "broadband"]
 
-STANDS = 0.8
+STILL_SHARE = 0.8
 """Share of samples at which the input stands still, of steps."""
-STRAIGHT = 0.25
+RAMP_SPREAD = 0.25
 """Spread of the slope's size over its mean, of ramps; a sine has 0.48."""
-LINES = 0.95
+POWER_IN_LINES = 0.95
 """Share of the power that the lines of a sine, or of a sum of sines, have."""
 MOST_LINES = 20
-PARTS = 16
-"""That a record is cut into, to see how its frequency goes."""
-IN_BAND = 0.99
+"""Of a sum of sines: more are broadband."""
+LEAST_CROSSINGS = 16
+"""Crossings of the mean from which the way of the frequency can be told."""
+BAND_SHARE = 0.99
 """Share of the input's power in its band."""
 
 
@@ -60,7 +61,7 @@ def summary_of(u: FloatArray, dt: float) -> InputSummary:
     """
     power = np.square(np.abs(np.fft.rfft((u - u.mean()) * np.hanning(len(u)))))
     total = np.cumsum(power)
-    edges = ((1 - IN_BAND) / 2 * total[-1], (1 + IN_BAND) / 2 * total[-1])
+    edges = ((1 - BAND_SHARE) / 2 * total[-1], (1 + BAND_SHARE) / 2 * total[-1])
     low, high = np.searchsorted(total, edges) / (len(u) * dt)
     slopes = np.diff(u) / dt
     return InputSummary(
@@ -77,9 +78,9 @@ def summary_of(u: FloatArray, dt: float) -> InputSummary:
 def _kind(u: FloatArray, power: FloatArray) -> InputKind:
     steps = np.abs(np.diff(u))
     reach = float(np.ptp(u))
-    if np.mean(steps < 1e-6 * reach) > STANDS:
+    if np.mean(steps < 1e-6 * reach) > STILL_SHARE:
         return "steps"
-    if np.std(steps) < STRAIGHT * steps.mean():
+    if np.std(steps) < RAMP_SPREAD * steps.mean():
         return "ramps"
     lines = _lines(power)
     if lines == 1:
@@ -92,7 +93,7 @@ def _kind(u: FloatArray, power: FloatArray) -> InputKind:
 def _lines(power: FloatArray) -> int:
     """Count the lines that hold nearly all of the power, each three bins wide."""
     left, total, count = power.copy(), float(power.sum()), 0
-    while count <= MOST_LINES and left.sum() > (1 - LINES) * total:
+    while count <= MOST_LINES and left.sum() > (1 - POWER_IN_LINES) * total:
         top = int(np.argmax(left))
         left[max(top - 2, 0) : top + 3] = 0.0
         count += 1
@@ -103,7 +104,7 @@ def _sweeps(u: FloatArray) -> bool:
     """Tell whether the frequency goes one way through the record, by crossings."""
     above = u > u.mean()
     crossings = np.flatnonzero(above[1:] != above[:-1])
-    if len(crossings) < PARTS:
+    if len(crossings) < LEAST_CROSSINGS:
         return False
     gaps = np.array([part.mean() for part in np.array_split(np.diff(crossings), 8)])
     ways = np.sign(np.diff(gaps))

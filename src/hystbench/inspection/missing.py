@@ -5,7 +5,7 @@ import numpy as np
 from hystbench.inspection.input_summary import summary_of
 from hystbench.record import FloatArray, Mask
 
-QUARTER = 0.25
+BRIDGED_PERIODS = 0.25
 """Of the fastest period of an input, that a straight line may stand for: over more of
 it the line misses a turn, and hysteresis remembers turns."""
 
@@ -40,5 +40,5 @@ def cannot_be_bridged(u: FloatArray) -> Mask:
     bridged = np.interp(np.arange(len(u)), there, u[there])
     fastest = summary_of(bridged, 1.0).high_hz  # in periods a sample
     for first, behind in runs(lost):
-        marked[first:behind] = (behind - first) * fastest > QUARTER
+        marked[first:behind] = (behind - first) * fastest > BRIDGED_PERIODS
     return marked

@@ -9,7 +9,7 @@ from hystbench.gap.report.pictures import EmbeddedPicture, draw
 from hystbench.inspection import pictures, words
 from hystbench.inspection.check import Check
 from hystbench.inspection.facts import Facts
-from hystbench.inspection.visible import TENTH, SmallestSeen
+from hystbench.inspection.visible import REVEALED, SmallestSeen
 from hystbench.report.layout import page_environment
 from hystbench.report.markup import one_micro
 from hystbench.report.table import Cell, Heading, PageTable, number, table_of
@@ -82,8 +82,8 @@ def _jitter(item: Facts) -> str:
 
 
 def _pictures(found: Check) -> list[EmbeddedPicture]:
-    count = min(len(found.records), pictures.LOOPS)
-    columns = min(count, pictures.ROW)
+    count = min(len(found.records), pictures.MOST_LOOPS)
+    columns = min(count, pictures.LOOPS_IN_ROW)
     rows = math.ceil(count / columns)
     more = len(found.records) - count
     rest = f"; {more} more are not drawn" if more else ""
@@ -114,7 +114,7 @@ def _chart(found: Check) -> EmbeddedPicture | None:
         pictures.strengths,
         found.effects,
         words="How strong each effect must be to be seen, and to be told from every "
-        f"other effect; beyond the dashed line, {100 * TENTH:g} % of the output, it "
+        f"other effect; beyond the dashed line, {100 * REVEALED:g} % of the output, it "
         "counts as not revealed",
         height=0.8 + 0.2 * len(shown),
     )

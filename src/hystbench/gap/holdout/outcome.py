@@ -147,7 +147,7 @@ def _alone(built_in: BuiltIn, fitted: FitResult, evidence: Evidence) -> float:
     return size
 
 
-LEAST = 5e-4
+LEAST_TOLD = 5e-4
 """Share that is told as none: it would read 0.0 %."""
 
 
@@ -166,7 +166,7 @@ def first_figure(content: Mapping[str, Any]) -> str:
         return f"on the hold-out records the base leaves no more than noise: {sizes}"
     ends = share if isinstance(share, list | tuple) else [share]
     told = " to ".join(dict.fromkeys(f"{100 * end:.1f} %" for end in ends))
-    if max(ends) < LEAST:
+    if max(ends) < LEAST_TOLD:
         told = "none"
     return (
         f"on the hold-out records {told} of the gap's power above the noise floor is "

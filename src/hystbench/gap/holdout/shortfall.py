@@ -13,7 +13,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.thresholds import AS_GOOD, MOST
 
-LESS = 0.15
+ONLY_FITTED = 0.15
 """Share of the gap's power that is gone on fit records alone, to be told."""
 WORTH_A_REASON = 0.05
 """Share that what is new in every record takes, to be named as a reason."""
@@ -47,7 +47,7 @@ def _less(
 ) -> str:
     """Say by how much less is gone than was promised, and why."""
     names = [item["name"] for item in content["effects"]]
-    if not names or promised is None or kept is None or promised - kept < LESS:
+    if not names or promised is None or kept is None or promised - kept < ONLY_FITTED:
         return ""
     sentence = (
         f"On the fit records {100 * promised:.0f} % of the gap's power above the noise "
@@ -63,7 +63,7 @@ def _less(
     return f"{sentence}."
 
 
-SPELLED = 3
+RECORDS_TOLD = 3
 """Records that are told by name, at most."""
 
 
@@ -142,7 +142,7 @@ def _outside(content: Mapping[str, Any]) -> list[str]:
     return [
         f"{' and '.join(names)} {'lies' if len(names) == 1 else 'lie'} outside the fit "
         f"records in {how}"
-        if len(names) <= SPELLED
+        if len(names) <= RECORDS_TOLD
         else f"{len(names)} records lie outside the fit records in {how}"
         for how, names in alike.items()
     ]

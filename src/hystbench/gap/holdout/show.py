@@ -143,7 +143,7 @@ def _run(
     return bounded(name, records, outputs, usual, refused)
 
 
-FAR = 1e6
+RUNS_AWAY_RATIO = 1e6
 """Times as far as the base ever goes: an output beyond it runs away, finite or not."""
 
 
@@ -208,7 +208,7 @@ def bounded(
     found = []
     for record, output in zip(records, outputs, strict=True):
         # What is no number is not within either.
-        beyond = np.flatnonzero(~(np.abs(output) <= FAR * usual))
+        beyond = np.flatnonzero(~(np.abs(output) <= RUNS_AWAY_RATIO * usual))
         kept.append(None if len(beyond) else output)
         if len(beyond):
             why = (refused or {}).get(record.name)

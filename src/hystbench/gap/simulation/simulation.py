@@ -109,7 +109,7 @@ class Simulation:
         if self.fine and isinstance(step, Driven):
             return replace(step, pieces=PIECES).simulate(z, record.u, record.dt)
         if self.quick and _takes_short_steps(step):
-            return _finely(step, z, record.dt, QUICK)
+            return _finely(step, z, record.dt, QUICK_STEPS)
         return self._known(step, z).simulate(z, record.u, record.dt)
 
     def _steps(self, blocks: Sequence[Block]) -> list[Any]:
@@ -304,7 +304,7 @@ class _InLongSteps:
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Integrate the mode."""
-        return self.mode.integrated(z, dt, LONG)
+        return self.mode.integrated(z, dt, LONG_STEP)
 
 
 @lru_cache(maxsize=1024)
@@ -334,12 +334,12 @@ def _begun_once(block: Block) -> Block:
 
 LIMITED = "band-limited"
 NOT_LINEAR = (Mechanism, Store, StiffnessHardening)
-LONG = 0.3
+LONG_STEP = 0.3
 """Radians of a mode in a step, by which a ten-thousandth of its phase is missed."""
 PIECES, LONG_PIECES = 2, 0.25
 """Steps in place of each where forces act inside, fine and quick: what a step misses
 goes with its square."""
-QUICK = 2
+QUICK_STEPS = 2
 """Steps of an interval for hysteresis that depends on the rate, where quick."""
 
 
