@@ -5,6 +5,7 @@ from typing import Literal
 
 import numpy as np
 
+from hystbench.metrics import rms
 from hystbench.record import FloatArray
 
 InputKind = Literal["sine", "sum of sines", "sweep", "steps", "ramps", "broadband"]
@@ -70,7 +71,7 @@ def summary_of(u: FloatArray, dt: float) -> InputSummary:
         max(float(high), 1 / (len(u) * dt)),
         float(u.min()),
         float(u.max()),
-        float(np.sqrt(np.mean(slopes**2))),
+        rms(slopes),
         float(np.abs(slopes).max()),
     )
 

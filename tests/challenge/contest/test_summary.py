@@ -12,7 +12,7 @@ from hystbench.challenge.contest.frames import frame
 from hystbench.challenge.contest.score import judge
 from hystbench.challenge.contest.summary import (
     carried_over,
-    further,
+    figures,
     reach,
     summary,
 )
@@ -173,7 +173,8 @@ def test_what_else_there_is_to_say_by_hand():
             strict=True,
         )
     ]
-    told = {name: (value, cases) for name, value, _, _, cases in further(frame(rows))}
+    reached = {each.name: each.of(frame(rows)) for each in figures("further")}
+    told = {name: (found.share, found.cases) for name, found in reached.items()}
     assert told["in_set gpi 20 dB"] == (pytest.approx(2 / 3), 3)
     assert told["in_set preisach 20 dB"] == (1.0, 1)
     assert told["in_set jiles-atherton 20 dB"] == (None, 0)

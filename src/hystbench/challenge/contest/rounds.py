@@ -10,7 +10,7 @@ ROUND = ("set", "group", "first_seed", "sort")
 COLUMNS = (*ROUND, "cases", "right", "low", "high", "confidently_wrong")
 
 
-def further(
+def new_rows(
     before: Iterable[Mapping[str, Any]],
     summary: Mapping[str, Any],
     never_seen: Iterable[Mapping[str, Any]],

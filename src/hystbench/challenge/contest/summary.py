@@ -4,6 +4,7 @@ All take a data frame of :func:`hystbench.challenge.contest.frames.frame`.
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import pandas as pd
@@ -11,11 +12,10 @@ import pandas as pd
 from hystbench.challenge.contest import table
 from hystbench.challenge.contest.tables import (
     Share,
+    average,
     brier,
     calibration_error,
     coverage,
-    mean,
-    middle,
     shares,
 )
 from hystbench.challenge.plant.inside import MACHINES
@@ -82,8 +82,8 @@ class Figure(NamedTuple):
 
 
 STATISTICS: dict[str, Callable[[pd.DataFrame, str], Any]] = {
-    "mean": mean,
-    "median": middle,
+    "mean": partial(average, how="mean"),
+    "median": average,
     "distance": lambda cases, _: calibration_error(cases),
     "square": lambda cases, _: brier(cases),
 }
@@ -142,11 +142,11 @@ def summary(cases: pd.DataFrame) -> dict[str, Any]:
         },
         "brier": brier(cases),
         "calibration_error": calibration_error(cases),
-        "parameter_error_median": middle(hidden, "parameter_error"),
+        "parameter_error_median": average(hidden, "parameter_error"),
         "coverage": coverage(hidden)._asdict(),
         "without_interval": int((hidden["parameters"] - hidden["intervals"]).sum()),
-        "seconds_per_case": middle(cases, "cpu_seconds"),
-        "clock_seconds_per_case": middle(cases, "seconds"),
+        "seconds_per_case": average(cases, "cpu_seconds"),
+        "clock_seconds_per_case": average(cases, "seconds"),
     }
 
 
@@ -162,22 +162,6 @@ def carried_over(cases: pd.DataFrame, transfer: pd.DataFrame) -> AskedFigure:
         return AskedFigure(TOP1_20.name, "", None, None, None, there.cases, None)
     asked = TOP1_20._replace(bound=here - 0.05)
     return _asked(asked, there)._replace(asked=f">= {asked.bound:.3f}")
-
-
-def further(cases: pd.DataFrame) -> list[tuple[str, Any, Any, Any, int]]:
-    """Give what else there is to say of a score: strict figures, sizes, errors.
-
-    Parameters
-    ----------
-    cases : DataFrame
-        Of one solver on one set.
-
-    Returns
-    -------
-    list of (str, float or None, float or None, float or None, int)
-        A figure, what was reached, its interval where it is a share, and the cases.
-    """
-    return [(figure.name, *figure.of(cases)) for figure in figures("further")]
 
 
 def of(cases: pd.DataFrame, kinds: Sequence[str]) -> pd.DataFrame:

@@ -248,15 +248,9 @@ def shares(cases: pd.DataFrame, figure: str) -> Share:
     return wilson(int(values.sum()), len(values))
 
 
-def middle(cases: pd.DataFrame, figure: str) -> float | None:
-    """Median of a figure; None where no case has it."""
-    value = cases[figure].median()
-    return None if pd.isna(value) else float(value)
-
-
-def mean(cases: pd.DataFrame, figure: str) -> float | None:
-    """Mean of a figure; None where no case has it."""
-    value = cases[figure].mean()
+def average(cases: pd.DataFrame, figure: str, how: str = "median") -> float | None:
+    """Median of a figure, or its mean; None where no case has it."""
+    value = cases[figure].agg(how)
     return None if pd.isna(value) else float(value)
 
 

@@ -12,7 +12,7 @@ from hystbench.challenge.contest.never_seen import never_seen
 from hystbench.challenge.contest.summary import (
     AskedFigure,
     carried_over,
-    further,
+    figures,
     reach,
     summary,
 )
@@ -63,7 +63,7 @@ def write_score(
         "contest.csv": _held(own, transfer, about),
         "kept.csv": list(_groups(about["kept"])),
         "reach.csv": asked,
-        "further.csv": further(own),
+        "further.csv": [(each.name, *each.of(own)) for each in figures("further")],
         "transfer.csv": carried,
         "confusion.csv": tables.confusion(own),
         "never-seen.csv": never_seen(transfer, about["kept"]),

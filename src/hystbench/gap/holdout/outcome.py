@@ -83,18 +83,7 @@ def show_on_hold_out(
 
 
 def more_than_on_fit_records(content: Mapping[str, Any]) -> list[str]:
-    """Say that hold-out records show a gap where the fit records show none.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-
-    Returns
-    -------
-    list of str
-        One sentence, or none.
-    """
+    """Say that hold-out records show a gap where the fit records show none, if so."""
     before, floor = content["gap"]["before"], content["gap"]["noise_floor"]
     if content["verdict"] != "no-gap" or before is None:
         return []
@@ -152,13 +141,7 @@ LEAST_TOLD = 5e-4
 
 
 def first_figure(content: Mapping[str, Any]) -> str:
-    """Say what is gone on the hold-out records, and of what it is a share.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-    """
+    """Say what is gone on the hold-out records, and of what it is a share."""
     gap, unit = content["gap"], content["unit"]
     sizes = f"{gap['before']:.3g} to {sized(gap['after'], unit)} rms"
     share, floor = gap["explained"], gap["noise_floor"]
@@ -239,14 +222,7 @@ def without_names(
 def with_what_was_asked(
     content: Mapping[str, Any], vocabulary: Vocabulary
 ) -> dict[str, Any]:
-    """Tell in the reason which effects the user put in or left out.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-    vocabulary : Vocabulary
-    """
+    """Tell in the reason which effects the user put in or left out."""
     words = vocabulary.words()
     if not words:
         return dict(content)

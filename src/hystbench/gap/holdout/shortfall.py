@@ -22,11 +22,6 @@ WORTH_A_REASON = 0.05
 def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
     """Compare what is gone on the hold-out records with what is gone on the fit ones.
 
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-
     Returns
     -------
     dict or None
@@ -87,13 +82,7 @@ def _steps_up(content: Mapping[str, Any]) -> list[tuple[Any, Any]]:
 
 
 def no_surer_than_even(content: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Give the effects: a name that widens the gap there is no surer than even.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-    """
+    """Give the effects: a name that widens the gap there is no surer than even."""
     doubtful = {
         name for _, step in _steps_up(content) for name in step["name"].split(" + ")
     }

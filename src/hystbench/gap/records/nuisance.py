@@ -19,6 +19,12 @@ from hystbench.record import FloatArray, Mask, Record
 FIRST = 0.3
 #: Samples of a record that has such a part: with fewer than ten it estimates nothing.
 SHORTEST = math.ceil(10 / FIRST)
+#: Degree of a path that may be carried on.
+HIGHEST_DEGREE = 2
+#: Periods, counted by crossings of the mean, of which two whole ones have three.
+LEAST_PERIODS = 1.5
+#: Of the mean rate, for half of a record, to be a hold.
+HOLD_RATE = 0.1
 #: Regressors of what is new in a record: shape (n, m) from the record; m may be 0.
 Nuisance = Callable[[Record], FloatArray]
 
@@ -165,18 +171,6 @@ def degree_that_carries_on(
         if size**2 < (1 - LOOSE) * least**2:
             best, least = degree, size
     return best
-
-
-HIGHEST_DEGREE = 2
-"""Degree of a path that may be carried on."""
-
-
-LEAST_PERIODS = 1.5
-"""Periods, counted by crossings of the mean, of which two whole ones have three."""
-
-
-HOLD_RATE = 0.1
-"""Of the mean rate, for half of a record, to be a hold."""
 
 
 def shows_a_path(record: Record) -> bool:
