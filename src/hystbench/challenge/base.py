@@ -17,7 +17,7 @@ from hystbench.record import Channel, FloatArray
 
 INPUT, OUTPUT = Channel("current", "A"), Channel("displacement", "um")
 #: Order of an identified base, and what its search may cost.
-ORDER, ITERATIONS, STARTS = 20, 60, 2
+GPI_ORDER, GPI_ITERATIONS, GPI_STARTS = 20, 60, 2
 #: Records that a quasi-static GPI is identified from, in either campaign.
 QUASI_STATIC = ("slow-loop", "minor-loops", "triangle", "ringing", "biased-tones")
 
@@ -79,12 +79,12 @@ def _nearest(loop: PlantLoop, u: FloatArray) -> GeneralizedPlays:
     found = identify(
         u,
         loop.respond(u),
-        ORDER,
+        GPI_ORDER,
         offset=False,
         nonnegative=True,
         start="rest",
-        starts=STARTS,
-        max_iterations=ITERATIONS,
+        starts=GPI_STARTS,
+        max_iterations=GPI_ITERATIONS,
     )
     envelope = tuple(found.envelope.to_dict().values())
     return GeneralizedPlays(envelope, found.thresholds, found.weights)

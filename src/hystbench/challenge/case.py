@@ -12,7 +12,7 @@ from hystbench.challenge.campaigns import CAMPAIGNS, RecordCommand
 from hystbench.challenge.plant.actuator import Actuator, KnownMode
 from hystbench.challenge.plant.effects import IN_ACTUATOR
 from hystbench.challenge.plant.hysteresis import PlantLoop, draw
-from hystbench.challenge.plant.kind import HiddenEffect
+from hystbench.challenge.plant.kind import HiddenEffect, log_uniform
 from hystbench.challenge.plant.kind import draw as draw_effect
 from hystbench.challenge.spec import COMMANDS, EFFECTS, NOISE, PLANT, CaseSpec
 from hystbench.challenge.where import where
@@ -85,15 +85,13 @@ def make_case(spec: CaseSpec) -> Case:
     size = rms(*bare.of("fit"))
     effects = tuple(_resized(plant, effect, bare, size) for effect in drawn)
     full = Readings(plant.actuator(effects), commands)
+    rests = [tuple(x for x in effects if x is not own) for own in effects]
     without = [
-        bare
-        if len(effects) == 1
-        else Readings(plant.actuator((*effects[:k], *effects[k + 1 :])), commands)
-        for k in range(len(effects))
+        Readings(plant.actuator(rest), commands) if rest else bare for rest in rests
     ]
     differences = [full.minus(item, "fit") for item in without]
     random = spec.random(NOISE)
-    noise = float(np.exp(random.uniform(*np.log(PLAIN_NOISE_UM))))
+    noise = log_uniform(random, *PLAIN_NOISE_UM)
     if effects:
         noise = min(rms(*each) for each in differences) / 10.0 ** (spec.ratio_db / 20.0)
     records = tuple(
@@ -181,8 +179,8 @@ def _draw(
     # both are drawn in any case, so that the mode does not hang on the effects
     known = random.uniform() < 0.5
     mode = KnownMode(
-        frequency_hz=float(np.exp(random.uniform(*np.log([70.0, 320.0])))),
-        damping_ratio=float(np.exp(random.uniform(*np.log([0.015, 0.06])))),
+        frequency_hz=log_uniform(random, 70.0, 320.0),
+        damping_ratio=log_uniform(random, 0.015, 0.06),
         participation=float(random.uniform(0.05, 0.3)),
     )
     has_mode = known or "stiffness-hardening" in spec.effects

@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
 from hystbench.challenge.campaigns import FAST_HZ, RecordCommand
 from hystbench.challenge.machine_records import filling, machine_records
-from hystbench.challenge.plant.kind import HiddenEffect, Reach
+from hystbench.challenge.plant.kind import HiddenEffect, Reach, log_uniform
 from hystbench.challenge.plant.machine import (
     FINE,
     MovingPart,
@@ -203,10 +203,7 @@ def draw_machine(
     closed : bool, optional
         False for no controller; by default a coin of a mass tells.
     """
-
-    def between(low: float, high: float) -> float:
-        return float(np.exp(random.uniform(np.log(low), np.log(high))))
-
+    between = partial(log_uniform, random)
     rate = float(random.choice(RATES_HZ))
     # samples a period of the middle frequency
     period = between(25.0, 60.0)

@@ -13,7 +13,7 @@ from hystbench.challenge.machine import (
     reach_of,
 )
 from hystbench.challenge.plant.inside import IN_MACHINE
-from hystbench.challenge.plant.kind import HiddenEffect, Reach, draw
+from hystbench.challenge.plant.kind import HiddenEffect, Reach, draw, log_uniform
 from hystbench.challenge.spec import BASE, EFFECTS, NOISE, PLANT, CaseSpec
 from hystbench.metrics import rms
 from hystbench.model import Model
@@ -43,12 +43,10 @@ def make_machine_case(spec: CaseSpec) -> Case:
     held_out = machine.read(hidden, reach, "hold-out")
     signals = [*fit, *held_out]
     output = rms(*(y - y.mean() for _, y in fit))
-    sizes = []
-    for k in range(len(hidden)):
-        others = (*hidden[:k], *hidden[k + 1 :])
-        sizes.append(_size(machine, fit, others, reach))
+    rests = [tuple(x for x in hidden if x is not own) for own in hidden]
+    sizes = [_size(machine, fit, rest, reach) for rest in rests]
     random = spec.random(NOISE)
-    noise = output * float(np.exp(random.uniform(*np.log(PLAIN_NOISE_SHARES))))
+    noise = output * log_uniform(random, *PLAIN_NOISE_SHARES)
     if hidden:
         noise = min(sizes) / 10.0 ** (spec.ratio_db / 20.0)
     step = 3.0 * max(float(np.max(np.abs(y))) for _, y in signals) / CONVERTER_STEPS

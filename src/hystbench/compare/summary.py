@@ -144,7 +144,7 @@ def eq19_finding(edges: Sequence[Edge]) -> dict[str, Any] | None:
     """
     if not edges:
         return None
-    inside = [edge for edge in edges if edge.inside]
+    inside = [edge for edge in edges if edge.fails_below_bound]
     worst = min(inside, key=lambda edge: edge.edge_over_trace or 0, default=None)
     return {
         "edges": len(edges),

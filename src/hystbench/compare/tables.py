@@ -12,6 +12,7 @@ from hystbench.published import METRICS, MODELS, Metric
 
 ONE_STEP_WORDS = "one-step a priori errors with running weights"
 FREE_RUN_WORDS = "errors of a free-run simulation"
+#: Of a printed pair of MSE and RE, by whether it can be true.
 MARKS = {"yes": "", "no": "†", "undecided": "‡"}
 LEGEND = (
     "† this printed pair of MSE and RE cannot be true beside the others of its "

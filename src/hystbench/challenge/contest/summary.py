@@ -20,6 +20,7 @@ from hystbench.challenge.contest.tables import (
 )
 from hystbench.challenge.plant.inside import MACHINES
 
+#: Families of plants by one word.
 FAMILIES = {
     "gpi": ("gpi",),
     "foreign": ("preisach", "jiles-atherton", "duhem"),
@@ -27,6 +28,7 @@ FAMILIES = {
     "jiles-atherton": ("jiles-atherton",),
     "machines": MACHINES,
 }
+#: Kinds of cases that hide what can be named.
 HIDDEN = ("single", "pair", "triple")
 KINDS = {"hidden": HIDDEN, "several": ("pair", "triple")}
 """Kinds of cases by one word; every other word is a kind."""

@@ -63,6 +63,11 @@ class PlantRun:
     """Source of what is new in every record: a phase, a path."""
 
 
+def log_uniform(random: np.random.Generator, low: float, high: float) -> float:
+    """Draw a number between two, evenly in its logarithm."""
+    return float(np.exp(random.uniform(np.log(low), np.log(high))))
+
+
 @dataclass(frozen=True)
 class Range:
     """Interval that a parameter is drawn from, evenly in its logarithm."""
@@ -82,7 +87,7 @@ class Range:
     def draw(self, random: np.random.Generator, spread: float = 1.0) -> float:
         """Draw a value."""
         scale = spread if self.shifts else 1.0
-        value = scale * np.exp(random.uniform(np.log(self.low), np.log(self.high)))
+        value = scale * log_uniform(random, self.low, self.high)
         # drawn in any case, so that a sign more does not change what follows
         coin = 1.0 if random.uniform() < 0.5 else -1.0
         value = float(np.clip(value, self.least, self.most))

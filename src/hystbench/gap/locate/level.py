@@ -218,7 +218,9 @@ MODES_SHOWN = 2
 NUMBERS = 8
 """Of a mode at a level: its pole, and three complex numbers of its band."""
 INTEGRALS = {"position": 0, "velocity": 1, "acceleration": 2}
+"""That lead from an output to a position."""
 ROLES = (("first", "first by width"), ("second", "second by width"))
+"""Of the lines of the first and the second mode."""
 
 
 def take_levels(samples: ViewSamples) -> tuple[Moving, ...]:

@@ -31,9 +31,8 @@ from hystbench.gap.simulation.simulation import Signals, Simulation
 from hystbench.operators import play
 from hystbench.record import FloatArray
 
-POWERS = 5
-OPERATORS = 10
-OPERATOR_POWERS = 3
+POWERS, OPERATORS, OPERATOR_POWERS = 5, 10, 3
+"""Of a signal; play operators of it; and of each of these."""
 MIXED = 6
 """Play operators, the input among them, of which products are taken."""
 FORGETTING_WAYS = (0.05, 0.15, 0.4, 1.0, 3.0)
