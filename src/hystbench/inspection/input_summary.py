@@ -20,7 +20,7 @@ MOST_LINES = 20
 """Of a sum of sines: more are broadband."""
 LEAST_CROSSINGS = 16
 """Crossings of the mean from which the way of the frequency can be told."""
-BAND_SHARE = 0.99
+POWER_SHARE = 0.99
 """Share of the input's power in its band."""
 
 
@@ -62,7 +62,7 @@ def summary_of(u: FloatArray, dt: float) -> InputSummary:
     """
     power = np.square(np.abs(np.fft.rfft((u - u.mean()) * np.hanning(len(u)))))
     total = np.cumsum(power)
-    edges = ((1 - BAND_SHARE) / 2 * total[-1], (1 + BAND_SHARE) / 2 * total[-1])
+    edges = ((1 - POWER_SHARE) / 2 * total[-1], (1 + POWER_SHARE) / 2 * total[-1])
     low, high = np.searchsorted(total, edges) / (len(u) * dt)
     slopes = np.diff(u) / dt
     return InputSummary(

@@ -16,11 +16,11 @@ from hystbench.signals import Signal
 from hystbench.waveforms.chirp import Chirp
 
 #: Part of the input's power below its bandwidth.
-BAND_SHARE = 0.999
+POWER_SHARE = 0.999
 #: Samples of a candidate: enough to tell two models apart.
 MOST_SAMPLES = 20_000
 #: Periods without which a sine has not settled.
-LEAST_PERIODS = 3
+SETTLED_PERIODS = 3
 #: Frequencies of sines, their amplitudes as shares of half the range, and the levels
 #: about which minor loops are tried.
 FREQUENCIES, AMPLITUDES, BIASES = 12, (0.25, 0.5, 1.0), 5
@@ -102,7 +102,7 @@ class Limits:
     @property
     def frequencies(self) -> FloatArray:
         """From a few periods in a record to the bandwidth, equal ratios apart."""
-        lowest = LEAST_PERIODS / min(self.duration_s, MOST_SAMPLES * self.dt)
+        lowest = SETTLED_PERIODS / min(self.duration_s, MOST_SAMPLES * self.dt)
         highest = min(self.bandwidth_hz, 0.2 / self.dt)
         count = FREQUENCIES if highest > lowest else 1
         return np.geomspace(lowest, max(highest, lowest), count)
@@ -275,5 +275,5 @@ def _bandwidth(record: Record) -> float:
     """Frequency below which nearly all of the input's power lies."""
     power = np.square(np.abs(np.fft.rfft(record.u - record.u.mean())))
     total = np.cumsum(power)
-    line = int(np.searchsorted(total, BAND_SHARE * total[-1])) if total[-1] > 0 else 1
+    line = int(np.searchsorted(total, POWER_SHARE * total[-1])) if total[-1] > 0 else 1
     return max(line, 1) / (len(record) * record.dt)

@@ -11,6 +11,7 @@ from typing import Any
 
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Effect
+from hystbench.gap.locate.along_axes import RECORDS_TOLD
 from hystbench.gap.thresholds import AS_GOOD, MOST
 
 ONLY_FITTED = 0.15
@@ -56,10 +57,6 @@ def _less(
     if reasons:
         sentence += f": {'; '.join(reasons)}"
     return f"{sentence}."
-
-
-RECORDS_TOLD = 3
-"""Records that are told by name, at most."""
 
 
 def _widens(content: Mapping[str, Any]) -> list[str]:

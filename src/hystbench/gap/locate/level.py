@@ -22,7 +22,7 @@ from scipy import special
 
 from hystbench.gap.locate.forms import saved
 from hystbench.gap.locate.mode import (
-    FEW_LINES,
+    LEAST_LINES,
     LevelLines,
     Mode,
     find_modes,
@@ -362,7 +362,7 @@ def picture_of(moving: Sequence[Moving], unit: str) -> ViewPicture:
 def _levels(compared: Sequence[Compared]) -> list[list[Compared]]:
     """Group records of a broadband input by its rms, the smallest first."""
     broad = [
-        item for item in compared if np.sum(lines_of(item).excited) >= 2 * FEW_LINES
+        item for item in compared if np.sum(lines_of(item).excited) >= 2 * LEAST_LINES
     ]
     levels: list[list[Compared]] = []
     for item in sorted(broad, key=_rms):

@@ -80,7 +80,7 @@ HALF_BAND = 6.0
 """Half the width of a band, in damping ratios: nine tenths of a mode's energy."""
 NARROWEST, WIDEST = 0.08, 0.5
 """Ends of half the width of a band, as shares of its frequency."""
-FEW_LINES = 16
+LEAST_LINES = 16
 """Fewest excited lines of a band: twice the numbers that are fitted."""
 DAMPINGS, FREQUENCIES = 12, 25
 """Of the grid in which a mode is searched."""
@@ -167,7 +167,7 @@ class _Band:
             )
             away = near.frequency / centre - 1
             # Lines on both sides of the middle, half way out at least.
-            many = len(away) >= FEW_LINES
+            many = len(away) >= LEAST_LINES
             if many and away.min() < -half / 2 < half / 2 < away.max():
                 parts.append(near)
         return cls(centre, tuple(parts), integrals) if parts else None

@@ -22,7 +22,7 @@ SHORTEST = math.ceil(10 / FIRST)
 #: Degree of a path that may be carried on.
 HIGHEST_DEGREE = 2
 #: Periods, counted by crossings of the mean, of which two whole ones have three.
-LEAST_PERIODS = 1.5
+REPEATING_PERIODS = 1.5
 #: Of the mean rate, for half of a record, to be a hold.
 HOLD_RATE = 0.1
 #: Regressors of what is new in a record: shape (n, m) from the record; m may be 0.
@@ -181,7 +181,7 @@ def shows_a_path(record: Record) -> bool:
     """
     moves = np.abs(np.diff(record.u))
     holds = float(np.median(moves)) < HOLD_RATE * float(np.mean(moves))
-    return holds or periods_of_input(record) >= LEAST_PERIODS
+    return holds or periods_of_input(record) >= REPEATING_PERIODS
 
 
 def periods_of_input(record: Record) -> float:
