@@ -27,11 +27,11 @@ from hystbench.identification import identify
 from hystbench.identification.algorithm import SEARCH_SAMPLES
 from hystbench.identification.shape import envelope_of, plain_point, random_point
 from hystbench.identification.weights import reduced
-from hystbench.twin_record import record_of_twin
 from hystbench.model import load_model
 from hystbench.operators import generalized_prandtl_ishlinskii
 from hystbench.record import FloatArray, Record
 from hystbench.signals import make_signal
+from hystbench.twin_record import record_of_twin
 from hystbench.yaml_files import load_yaml
 
 COLUMNS = (
