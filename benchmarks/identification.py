@@ -27,11 +27,11 @@ from hystbench.identification import identify
 from hystbench.identification.algorithm import SEARCH_SAMPLES
 from hystbench.identification.shape import envelope_of, plain_point, random_point
 from hystbench.identification.weights import reduced
-from hystbench.measurement import measure
 from hystbench.model import load_model
 from hystbench.operators import generalized_prandtl_ishlinskii
 from hystbench.record import FloatArray, Record
 from hystbench.signals import make_signal
+from hystbench.twin_record import record_of_twin
 from hystbench.yaml_files import load_yaml
 
 COLUMNS = (
@@ -115,7 +115,7 @@ def slow_record() -> Record:
     plant = (
         Path(hystbench.__file__).parent / "plants" / f"{config['twin']['model']}.yaml"
     )
-    return measure(signal, load_model(plant), config["twin"], str(plant))
+    return record_of_twin(signal, load_model(plant), config["twin"], str(plant))
 
 
 def timed(work: Callable[[], object]) -> float:

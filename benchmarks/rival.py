@@ -13,13 +13,13 @@ from pathlib import Path
 
 from hystbench.adaptive import make_filter, run_filter
 from hystbench.identification.algorithm import identify_slow_loop
-from hystbench.measurement import measure
 from hystbench.metrics import mean_square_error
 from hystbench.model import load_model
 from hystbench.order_errors import filters_by_order, order_errors
 from hystbench.rdgpi import identify_rdgpi
 from hystbench.settings import read_settings
 from hystbench.signals import make_signal
+from hystbench.twin_record import record_of_twin
 from hystbench.twins.fits import fit
 from hystbench.twins.parts import run
 from hystbench.twins.read import read_twins
@@ -34,7 +34,7 @@ def main(root: Path) -> dict[str, float | None]:
     plant, records = load_model(settings.model_file), {}
     for name in settings.all_records:
         signal = make_signal(name, config["excitations"][name], config["excitation"])
-        records[name] = measure(signal, plant, settings.measure_job, "twin")
+        records[name] = record_of_twin(signal, plant, settings.measure_job, "twin")
     slow = records[settings.identification_signal]
     identified = identify_slow_loop(slow, settings.identification_job).to_dict()
     fitted = [records[name] for name in settings.rdgpi_fit_signals]

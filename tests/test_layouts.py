@@ -206,13 +206,13 @@ def searched():
             content=CONTENT | {"run": len(calls)},
         )
 
-    def outcome(fitted, decided, evidence, *_):
+    def show_on_hold_out(fitted, decided, evidence, *_):
         outputs = [(record.y, record.y) for record in evidence.hold_out]
         return run_module.Outcome(fitted.base, decided, outputs)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run_module, "search", find)
-        patch.setattr(run_module, "outcome", outcome)
+        patch.setattr(run_module, "show_on_hold_out", show_on_hold_out)
         yield calls
 
 

@@ -18,6 +18,7 @@ from hystbench.gap.cache import code_digest
 from hystbench.record import Channel, Record
 from hystbench.registered import with_installed
 from hystbench.signals import make_signal
+from tests.figures.palette import PALETTE
 
 #: A name of a file and of a key.
 NAME = re.compile(r"[a-z0-9][a-z0-9-]*")
@@ -82,7 +83,7 @@ def test_a_filter_has_a_name_a_label_and_a_look_of_its_own(filter_class):
     looks = style.looks()
     mine = looks[filter_class.name]
     assert mine.label == filter_class.label
-    assert mine.color in style.PALETTE
+    assert mine.color in PALETTE
     others = [look for name, look in looks.items() if name != filter_class.name]
     assert mine.label not in {look.label for look in others}
     assert (mine.color, mine.marker) not in {(x.color, x.marker) for x in others}

@@ -7,6 +7,11 @@ from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 
+def rms(*signals: FloatArray) -> float:
+    """Root of the mean square of a signal, or of all samples of several together."""
+    return float(np.sqrt(np.mean(np.square(np.concatenate(signals)))))
+
+
 def mean_square_error(e: ArrayLike) -> float:
     """Mean square error, the MSE of the paper's Tables 1 to 4.
 

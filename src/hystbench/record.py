@@ -19,7 +19,7 @@ from hystbench.units import plain
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
-Origin = Literal["twin", "measured"]
+Origin = Literal["twin", "plant", "measured"]
 Use = Literal["fit", "hold-out"]
 
 KEPT = ("name", "dt", "input", "output", "origin", "use", "period_samples")
@@ -62,8 +62,8 @@ class Record:
         Input and output, in the units of their channels.
     input, output : Channel
         Names and units of ``u`` and ``y``.
-    origin : {"twin", "measured"}
-        Whether a simulation or a device made ``y``.
+    origin : {"twin", "plant", "measured"}
+        Whether the twin, a simulated plant of the contest or a device made ``y``.
     use : {"fit", "hold-out"}
         Whether models may be fitted to the record.
     period_samples : int, optional

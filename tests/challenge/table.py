@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from hystbench import files
-from hystbench.challenge.kept import GROUPS
+from hystbench.challenge.left_out_groups import GROUPS
 from hystbench.challenge.plant.effects import IN_ACTUATOR
 from hystbench.challenge.plant.inside import IN_MACHINE
 from hystbench.challenge.plant.kind import Range

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hystbench.challenge.campaigns import CAMPAIGNS, PERIOD_SAMPLES
 from hystbench.challenge.case import make_case
-from hystbench.challenge.excitation import CAMPAIGNS, PERIOD
-from hystbench.challenge.kept import GROUPS
+from hystbench.challenge.left_out_groups import GROUPS
 from hystbench.challenge.plant.actuator import Actuator, KnownMode
 from hystbench.challenge.plant.effects import APART, IN_ACTUATOR, UNLISTED, VOCABULARY
 from hystbench.challenge.plant.hysteresis import draw as draw_loop
@@ -297,7 +297,7 @@ def test_records_as_a_laboratory_takes_them(campaign, seed):
 
 def test_a_multisine_has_the_lines_it_says():
     items = {i.name: i for i in CAMPAIGNS["other"](np.random.default_rng(0))}
-    u = items["pink"].sampled()[-PERIOD:]
+    u = items["pink"].sampled()[-PERIOD_SAMPLES:]
     lines = np.abs(np.fft.rfft(u))
     excited = lines > 1e-9 * lines.max()
     # odd lines of 2 Hz up to 400 Hz
@@ -324,11 +324,11 @@ def test_drawn_effects_may_meet(seed, kind):
 
 @given(st.integers(0, 10**6))
 def test_what_is_left_out_is_drawn_nowhere_else(seed):
-    for kept in GROUPS:
-        for of_kept in (False, True):
-            about = {"kept": kept, "of_kept": of_kept}
+    for group in GROUPS:
+        for of_group in (False, True):
+            about = {"group": group, "of_group": of_group}
             spec = draw_spec(seed, "unlisted", "gpi", 20.0, **about)
-            assert (spec.effects[0] in GROUPS[kept].unlisted) == of_kept
+            assert (spec.effects[0] in GROUPS[group].unlisted) == of_group
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.challenge.kept import GROUPS
+from hystbench.challenge.left_out_groups import GROUPS
 from hystbench.challenge.machine import draw_machine
 from hystbench.challenge.make import make
 from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES
@@ -77,20 +77,20 @@ def test_a_mass_with_nothing_hidden_is_the_linear_equation_but_for_noise(seed):
 
 
 PAIRS = [
-    (family, name, of_kept)
+    (family, name, of_group)
     for family in MACHINES
     for name in (*effects_of("single", family), *effects_of("unlisted", family))
-    for of_kept in (False, True)
+    for of_group in (False, True)
     # where it has no form of its own for the group, the case is the same
-    if not of_kept
+    if not of_group
     or GROUPS[1].allowed(IN_MACHINE[name], True)[0]
     not in GROUPS[1].allowed(IN_MACHINE[name], False)
 ]
 
 
-@pytest.mark.parametrize(("family", "name", "of_kept"), PAIRS)
-def test_every_effect_shows_in_every_family(family, name, of_kept):
-    truth = case_of(family, name, seed=3, kept=1, of_kept=of_kept).truth
+@pytest.mark.parametrize(("family", "name", "of_group"), PAIRS)
+def test_every_effect_shows_in_every_family(family, name, of_group):
+    truth = case_of(family, name, seed=3, group=1, of_group=of_group).truth
     (effect,) = truth["effects"]
     assert (effect["name"], effect["place"]) == (name, IN_MACHINE[name].place)
     assert effect["ratio_db"] == pytest.approx(20.0, abs=0.1)

@@ -3,9 +3,8 @@
 import pytest
 
 from hystbench.compare.beside import Holding, holding_text, read_holdings, read_spreads
-from hystbench.compare.cells import COLUMNS, compare_cells
-from hystbench.compare.claims import COLUMNS as CLAIM_COLUMNS
-from hystbench.compare.claims import judge_all
+from hystbench.compare.cells import CELL_COLUMNS, compare_cells
+from hystbench.compare.claims import CLAIM_COLUMNS, judge_all
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import or_diverged, write_fields
 from hystbench.errors import InputError
@@ -61,7 +60,7 @@ def test_cells_carry_half_and_spread(spreads, tmp_path):
     evidence = ClaimEvidence(runs=published_runs(), spreads=spreads)
     write_fields(
         tmp_path / "cells.csv",
-        COLUMNS,
+        CELL_COLUMNS,
         compare_cells(evidence, ["sine-020hz"]),
         or_diverged,
     )

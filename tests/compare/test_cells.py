@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from hystbench.compare.cells import COLUMNS, compare_cells
+from hystbench.compare.cells import CELL_COLUMNS, compare_cells
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import or_diverged, write_fields
 from tests.conftest import table
@@ -75,7 +75,7 @@ def test_cells_as_csv(tmp_path):
     runs = published_runs({FIRST: None})
     write_fields(
         tmp_path / "cells.csv",
-        COLUMNS,
+        CELL_COLUMNS,
         compare_cells(ClaimEvidence(runs=runs)),
         or_diverged,
     )

@@ -8,8 +8,8 @@ import pytest
 
 from hystbench.compare.beside import Drawn, Edge
 from hystbench.compare.claims import (
+    CLAIM_COLUMNS,
     CLAIMS,
-    COLUMNS,
     judge_all,
     read_claim,
 )
@@ -473,9 +473,9 @@ def test_claims_on_the_play_hold(name):
 
 def test_ledger_as_csv(tmp_path):
     judgements = judge_all(ClaimEvidence())
-    write_fields(tmp_path / "claims.csv", COLUMNS, judgements)
+    write_fields(tmp_path / "claims.csv", CLAIM_COLUMNS, judgements)
     rows = table(tmp_path / "claims.csv")
-    assert list(rows[0]) == [column.partition("=")[0] for column in COLUMNS]
+    assert list(rows[0]) == [column.partition("=")[0] for column in CLAIM_COLUMNS]
     assert [row["id"] for row in rows] == [claim.id for claim in CLAIMS]
     assert {row["verdict"] for row in rows} <= {
         "reproduced",

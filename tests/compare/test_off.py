@@ -5,8 +5,7 @@ import pytest
 
 from hystbench.compare.cells import compare_cells
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.compare.off import COLUMNS as OFF_COLUMNS
-from hystbench.compare.off import off_cells
+from hystbench.compare.off import OFF_COLUMNS, off_cells
 from hystbench.compare.rows import write_fields
 from tests.conftest import table
 

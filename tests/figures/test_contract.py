@@ -14,7 +14,8 @@ from matplotlib.transforms import Bbox
 
 import hystbench.figures
 from hystbench.errors import InputError
-from hystbench.figures import FIGURES, NAMES, drawer, style
+from hystbench.figures import FIGURES, drawer, style
+from tests.figures.palette import PALETTE
 
 #: Axes that name categories, not a quantity.
 CATEGORIES = {"model", "signal", "effect", "hidden effect", "first answer"}
@@ -23,7 +24,7 @@ LEGIBLE = 6.0
 REPORT = Path(__file__).parents[2] / "workflow" / "report"
 
 
-@pytest.fixture(params=NAMES, scope="module")
+@pytest.fixture(params=FIGURES, scope="module")
 def name(request):
     return request.param
 
@@ -117,7 +118,7 @@ def test_the_check_for_overlap_sees_one():
 def test_colours_are_those_of_the_palette(drawn):
     lines = [line for axes in drawn.axes for line in axes.get_lines()]
     for line in lines:
-        assert to_hex(line.get_color()).upper() in style.PALETTE, line
+        assert to_hex(line.get_color()).upper() in PALETTE, line
 
 
 def test_width_fits_a_page(drawn):

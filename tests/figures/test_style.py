@@ -6,6 +6,7 @@ import pytest
 
 from hystbench.errors import InputError
 from hystbench.figures import style
+from tests.figures.palette import PALETTE
 
 
 @pytest.mark.parametrize(
@@ -46,7 +47,7 @@ def test_models_differ_in_colour_line_and_marker():
     looks = style.PAPER.values()
     for part in ("label", "color", "dashes", "marker"):
         assert len({getattr(look, part) for look in looks}) == len(looks)
-    assert {look.color for look in looks} <= set(style.PALETTE)
+    assert {look.color for look in looks} <= PALETTE
 
 
 def test_a_users_own_style_changes_nothing_and_comes_back():

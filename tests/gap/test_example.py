@@ -11,11 +11,11 @@ from hystbench.gap.bases.load import load_base
 from hystbench.gap.example import whole_period, write_example
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.identification.algorithm import identify_slow_loop
-from hystbench.measurement import measure
 from hystbench.model import load_model
 from hystbench.record import Channel, Record
 from hystbench.settings import read_settings
 from hystbench.signals import make_signal
+from hystbench.twin_record import record_of_twin
 from tests.conftest import shorten
 from tests.gap.searched import search
 
@@ -95,7 +95,7 @@ def named(settings, twin, tmp_path_factory):
 
     def recorded(name):
         signal = make_signal(name, **settings.signal_job(name))
-        return measure(signal, twin, settings.measure_job, settings.model_file)
+        return record_of_twin(signal, twin, settings.measure_job, settings.model_file)
 
     slow = recorded(settings.identification_signal)
     identified = identify_slow_loop(slow, settings.identification_job)

@@ -37,7 +37,7 @@ def hidden(names, family):
     kind = {0: "none", 1: "single", 2: "pair"}[len(names)]
     if any(item not in VOCABULARY for item in names):
         kind = "unlisted"
-    case = make_case(CaseSpec(SEED, kind, names, family, 20.0, kept=GROUP))
+    case = make_case(CaseSpec(SEED, kind, names, family, 20.0, group=GROUP))
     return first_halves(case), case.model
 
 

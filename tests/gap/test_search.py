@@ -11,7 +11,7 @@ from hystbench.errors import InputError
 from hystbench.gap import search as search_module
 from hystbench.gap.effects import effects
 from hystbench.gap.experiment import tell_apart
-from hystbench.gap.experiment.excitations import Limits
+from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.experiment.separation import RivalPair
 from hystbench.gap.experiment.tell_apart import next_experiment
 from hystbench.gap.fitting.augmented_model import augmented

@@ -61,12 +61,10 @@ def test_rates_bands_and_levels(plain):
     fast = plain.facts[3]
     assert (fast.name, fast.samples) == ("sine-40", COUNT)
     assert fast.dt == pytest.approx(DT)
-    assert fast.excitation.low_hz <= 40 <= fast.excitation.high_hz < 45
-    assert fast.excitation.span == pytest.approx(1.8, rel=0.01)
+    assert fast.input.low_hz <= 40 <= fast.input.high_hz < 45
+    assert fast.input.span == pytest.approx(1.8, rel=0.01)
     # rms rate of a sine: 2 pi f A / sqrt 2
-    assert fast.excitation.rate == pytest.approx(
-        2 * np.pi * 40 * 0.9 / np.sqrt(2), rel=0.02
-    )
+    assert fast.input.rate == pytest.approx(2 * np.pi * 40 * 0.9 / np.sqrt(2), rel=0.02)
     assert fast.jitter == pytest.approx(0, abs=1e-6)
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from hystbench.inspection.entries import propose
-from hystbench.inspection.excitation import excitation_of
+from hystbench.inspection.input_summary import summary_of
 
 DT = 1e-3
 T = np.arange(4000) * DT
@@ -13,7 +13,7 @@ NOISE = np.random.default_rng(0).standard_normal(4000)
 
 
 def kinds(signals):
-    return {name: excitation_of(u, DT) for name, u in signals.items()}
+    return {name: summary_of(u, DT) for name, u in signals.items()}
 
 
 def test_kinds_of_input():
@@ -40,7 +40,7 @@ def test_kinds_of_input():
 
 
 def test_a_band_holds_the_frequency():
-    found = excitation_of(SINES["sine-20"], DT)
+    found = summary_of(SINES["sine-20"], DT)
     assert found.low_hz <= 20 <= found.high_hz < 22
     assert (found.low, found.high) == pytest.approx((-1, 1), abs=0.01)
 

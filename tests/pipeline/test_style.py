@@ -4,7 +4,7 @@ import sys
 
 import yaml
 
-from hystbench.figures import NAMES
+from hystbench.figures import FIGURES
 from tests.conftest import ROOT, own_config
 
 # The environment is .venv, made by make from requirements.txt with hashes.
@@ -33,7 +33,7 @@ def test_the_cluster_profile_names_rules_and_groups_that_exist(workflow):
     assert listed.returncode == 0, listed.stderr
     # Rules of a dataset's figures are there where the settings name one.
     rules = set(listed.stdout.split()) | {
-        f"draw_{name.replace('-', '_')}" for name in NAMES
+        f"draw_{name.replace('-', '_')}" for name in FIGURES
     }
     profile = yaml.safe_load((ROOT / "profiles" / "slurm" / "config.yaml").read_text())
     of_rule = dict(item.split("=") for item in profile["groups"])

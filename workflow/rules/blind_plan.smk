@@ -4,7 +4,7 @@
 import math
 
 from hystbench.challenge.contest.plan import numbers, plan
-from hystbench.challenge.kept import KEPT
+from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP
 from hystbench.commands.rival import RIVALS
 from hystbench.errors import nearest
 
@@ -56,7 +56,7 @@ def blind_cases(name):
             "scale": CONTEST["left_out_scale"],
             "without": [],
             "only": [LEFT_OUT[name]],
-            "kept": KEPT,
+            "group": LEFT_OUT_GROUP,
         }
     return {
         "name": name,
@@ -64,7 +64,7 @@ def blind_cases(name):
         "without": CONTEST["without"],
         "only": CONTEST["only"],
         # As a setting, so that another group makes all cases anew.
-        "kept": KEPT,
+        "group": LEFT_OUT_GROUP,
     }
 
 

@@ -2,7 +2,7 @@
 
 from hystbench.blocks.parameter import number
 from hystbench.blocks.step import Sampling, Step
-from hystbench.blocks.wrapping import Growth, Hysteresis, WrappingBlock
+from hystbench.blocks.wrapping import Growth, Wrappable, WrappingBlock
 from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
@@ -27,7 +27,7 @@ class Butterfly(WrappingBlock, name="butterfly", place="material"):
     threshold: float = number("U", "half the width of the play", 0.0)
 
     def wrap(
-        self, inner: Hysteresis, v: FloatArray, u: FloatArray, dt: float, growth: Growth
+        self, inner: Wrappable, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Add the square, whose threshold grows with those inside."""
         moved = growing_play(v, [self.threshold], growth)

@@ -4,7 +4,7 @@ import numpy as np
 
 from hystbench.blocks.parameter import a_threshold, numbers
 from hystbench.blocks.step import Sampling, Step
-from hystbench.blocks.wrapping import Growth, Hysteresis, WrappingBlock
+from hystbench.blocks.wrapping import Growth, Wrappable, WrappingBlock
 from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
@@ -36,7 +36,7 @@ class HysteresisShape(WrappingBlock, name="hysteresis-shape", place="material"):
         return len(self.thresholds)
 
     def wrap(
-        self, inner: Hysteresis, v: FloatArray, u: FloatArray, dt: float, growth: Growth
+        self, inner: Wrappable, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Add the correction, whose thresholds grow with those inside."""
         weights = np.array([self.weights, self.square_weights or [0.0] * self.count])

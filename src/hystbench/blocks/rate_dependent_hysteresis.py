@@ -16,7 +16,7 @@ from hystbench.blocks.curve import (
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
-from hystbench.blocks.wrapping import Growth, Hysteresis, WrappingBlock
+from hystbench.blocks.wrapping import Growth, Wrappable, WrappingBlock
 from hystbench.record import FloatArray
 
 FORMS = ("growing-thresholds", "excess-field", "acting-field")
@@ -59,13 +59,13 @@ class RateDependentHysteresis(
     exponent: float = number("-", "power of the rate", 0.01, 10.0)
     form: str = choice("what the rate changes", FORMS, FORMS[0])
 
-    def check_inner(self, inner: Hysteresis) -> None:
+    def check_inner(self, inner: Wrappable) -> None:
         """Refuse hysteresis without thresholds where thresholds are to grow."""
         if self.form == "growing-thresholds":
             inner.check_growth()
 
     def wrap(
-        self, inner: Hysteresis, v: FloatArray, u: FloatArray, dt: float, growth: Growth
+        self, inner: Wrappable, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Drive the hysteresis with larger thresholds or with less field."""
         fine = SHORT_STEPS if self.holding == "band-limited" and len(v) > 2 else 1

@@ -15,7 +15,7 @@ Growth = FloatArray | None
 """Factor on all thresholds at each sample, shape (n,); None for one."""
 
 
-class Hysteresis(Protocol):
+class Wrappable(Protocol):
     """Hysteresis that a block can wrap: a block, or one that is wrapped already."""
 
     def grow(
@@ -99,21 +99,21 @@ class WrappingBlock(AttachedBlock):
             )
         return Wrapped(before, self)
 
-    def check_inner(self, inner: Hysteresis) -> None:
+    def check_inner(self, inner: Wrappable) -> None:
         """Refuse hysteresis that the block cannot wrap; a subclass raises."""
 
     @abstractmethod
     def wrap(
-        self, inner: Hysteresis, v: FloatArray, u: FloatArray, dt: float, growth: Growth
+        self, inner: Wrappable, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Compute the output of the hysteresis as the block changes it.
 
         Parameters
         ----------
-        inner : Hysteresis
+        inner : Wrappable
             What is wrapped.
         v, u, dt, growth
-            As for :meth:`Hysteresis.grow`; growth comes from a block further out.
+            As for :meth:`Wrappable.grow`; growth comes from a block further out.
 
         Returns
         -------
@@ -125,7 +125,7 @@ class WrappingBlock(AttachedBlock):
 class Wrapped:
     """A hysteretic block together with a block that wraps it."""
 
-    inner: Hysteresis
+    inner: Wrappable
     by: WrappingBlock
 
     def __post_init__(self) -> None:

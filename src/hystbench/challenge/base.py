@@ -8,7 +8,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.blocks.resonance import Resonance
-from hystbench.challenge.excitation import RecordCommand
+from hystbench.challenge.campaigns import RecordCommand
 from hystbench.challenge.plant.actuator import KnownMode
 from hystbench.challenge.plant.hysteresis import GeneralizedPlays, PlantLoop
 from hystbench.identification import identify
@@ -17,7 +17,7 @@ from hystbench.record import Channel, FloatArray
 
 INPUT, OUTPUT = Channel("current", "A"), Channel("displacement", "um")
 #: Order of an identified base, and what its search may cost.
-ORDER, ITERATIONS, STARTS = 20, 60, 2
+GPI_ORDER, GPI_ITERATIONS, GPI_STARTS = 20, 60, 2
 #: Records that a quasi-static GPI is identified from, in either campaign.
 QUASI_STATIC = ("slow-loop", "minor-loops", "triangle", "ringing", "biased-tones")
 
@@ -79,12 +79,12 @@ def _nearest(loop: PlantLoop, u: FloatArray) -> GeneralizedPlays:
     found = identify(
         u,
         loop.respond(u),
-        ORDER,
+        GPI_ORDER,
         offset=False,
         nonnegative=True,
         start="rest",
-        starts=STARTS,
-        max_iterations=ITERATIONS,
+        starts=GPI_STARTS,
+        max_iterations=GPI_ITERATIONS,
     )
     envelope = tuple(found.envelope.to_dict().values())
     return GeneralizedPlays(envelope, found.thresholds, found.weights)

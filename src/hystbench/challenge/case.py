@@ -8,14 +8,15 @@ from typing import Any
 import numpy as np
 
 from hystbench.challenge.base import INPUT, OUTPUT, base_model, quasi_static, slope
-from hystbench.challenge.excitation import CAMPAIGNS, RecordCommand
+from hystbench.challenge.campaigns import CAMPAIGNS, RecordCommand
 from hystbench.challenge.plant.actuator import Actuator, KnownMode
 from hystbench.challenge.plant.effects import IN_ACTUATOR
 from hystbench.challenge.plant.hysteresis import PlantLoop, draw
-from hystbench.challenge.plant.kind import HiddenEffect
+from hystbench.challenge.plant.kind import HiddenEffect, log_uniform
 from hystbench.challenge.plant.kind import draw as draw_effect
-from hystbench.challenge.spec import CaseSpec
+from hystbench.challenge.spec import COMMANDS, EFFECTS, NOISE, PLANT, CaseSpec
 from hystbench.challenge.where import where
+from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record, Use
 
@@ -30,11 +31,9 @@ SMALLEST_EFFECT = {
 }
 LARGEST_EFFECT = 0.12
 #: Smallest step of what is written down, in um: a 16-bit converter over 65 um.
-RESOLUTION = 0.001
+RESOLUTION_UM = 0.001
 #: Where nothing is hidden the noise is drawn from this interval, in um.
-PLAIN_NOISE = (0.01, 0.1)
-#: Streams of random numbers.
-PLANT, EFFECTS, EXCITATION, NOISE = 1, 2, 3, 4
+PLAIN_NOISE_UM = (0.01, 0.1)
 
 
 @dataclass(frozen=True)
@@ -80,30 +79,28 @@ def make_case(spec: CaseSpec) -> Case:
     -------
     Case
     """
-    commands = CAMPAIGNS[spec.campaign](spec.random(EXCITATION))
+    commands = CAMPAIGNS[spec.campaign](spec.random(COMMANDS))
     plant, drawn = _draw(spec, commands)
     bare = Readings(plant.actuator(()), commands)
-    size = rms(bare.of("fit"))
+    size = rms(*bare.of("fit"))
     effects = tuple(_resized(plant, effect, bare, size) for effect in drawn)
     full = Readings(plant.actuator(effects), commands)
+    rests = [tuple(x for x in effects if x is not own) for own in effects]
     without = [
-        bare
-        if len(effects) == 1
-        else Readings(plant.actuator((*effects[:k], *effects[k + 1 :])), commands)
-        for k in range(len(effects))
+        Readings(plant.actuator(rest), commands) if rest else bare for rest in rests
     ]
     differences = [full.minus(item, "fit") for item in without]
     random = spec.random(NOISE)
-    noise = float(np.exp(random.uniform(*np.log(PLAIN_NOISE))))
+    noise = log_uniform(random, *PLAIN_NOISE_UM)
     if effects:
-        noise = min(map(rms, differences)) / 10.0 ** (spec.ratio_db / 20.0)
+        noise = min(rms(*each) for each in differences) / 10.0 ** (spec.ratio_db / 20.0)
     records = tuple(
         _record(full, number, noise, random) for number in range(len(commands))
     )
     fit_records = [record for record in records if record.use == "fit"]
     linear = "hysteresis" in spec.effects
     model = base_model(plant.loop, plant.mode, commands, linear)
-    noise_rms = float(np.hypot(noise, RESOLUTION / np.sqrt(12.0)))
+    noise_rms = float(np.hypot(noise, RESOLUTION_UM / np.sqrt(12.0)))
     outputs = [item.of("fit") for item in without]
     gap = full.minus(bare, "fit")
     truth = told_of(spec, OUTPUT.unit, noise_rms, size) | {
@@ -112,8 +109,8 @@ def make_case(spec: CaseSpec) -> Case:
             effect_told(effect)
             | {
                 "resized": effect is not first,
-                "rms": rms(difference),
-                "ratio_db": _decibel(rms(difference), noise),
+                "rms": rms(*difference),
+                "ratio_db": _decibel(rms(*difference), noise),
                 "ratio_retuned_db": _decibel(_retuned(difference, output), noise),
                 "where": where(effect.kind, fit_records, difference, output),
             }
@@ -121,11 +118,11 @@ def make_case(spec: CaseSpec) -> Case:
                 effects, drawn, differences, outputs, strict=True
             )
         ],
-        "ratio_all_db": _decibel(rms(gap), noise) if effects else None,
+        "ratio_all_db": _decibel(rms(*gap), noise) if effects else None,
         "ratio_all_retuned_db": _decibel(_retuned(gap, bare.of("fit")), noise),
         "hold_out": {
             "gap_rms": full.beside(model, "hold-out"),
-            "explainable_rms": rms(full.minus(bare, "hold-out")),
+            "explainable_rms": rms(*full.minus(bare, "hold-out")),
             "base_error_rms": bare.beside(model, "hold-out"),
         },
         "base_error_fit_rms": bare.beside(model, "fit"),
@@ -171,7 +168,7 @@ class Readings:
         """RMS of the difference to a model's output."""
         chosen = [item for item in self.commands if item.use == use]
         simulated = [model.simulate(item.sampled(), item.dt) for item in chosen]
-        return rms([a - b for a, b in zip(self.of(use), simulated, strict=True)])
+        return rms(*(a - b for a, b in zip(self.of(use), simulated, strict=True)))
 
 
 def _draw(
@@ -182,8 +179,8 @@ def _draw(
     # both are drawn in any case, so that the mode does not hang on the effects
     known = random.uniform() < 0.5
     mode = KnownMode(
-        frequency_hz=float(np.exp(random.uniform(*np.log([70.0, 320.0])))),
-        damping_ratio=float(np.exp(random.uniform(*np.log([0.015, 0.06])))),
+        frequency_hz=log_uniform(random, 70.0, 320.0),
+        damping_ratio=log_uniform(random, 0.015, 0.06),
         participation=float(random.uniform(0.05, 0.3)),
     )
     has_mode = known or "stiffness-hardening" in spec.effects
@@ -233,7 +230,7 @@ def _resized(
 
     def share(changed: HiddenEffect) -> float:
         readings = Readings(plant.actuator((changed,)), bare.commands)
-        return rms(readings.minus(bare, "fit")) / size
+        return rms(*readings.minus(bare, "fit")) / size
 
     within = SMALLEST_EFFECT[plant.loop.family], LARGEST_EFFECT
     return effect.resized(share, within, margin=0.1, most=16.0)
@@ -247,9 +244,9 @@ def _record(
     noisy = full.raw(number) + noise * random.standard_normal(item.samples)
     y = full.actuator.convert(noisy, item.dt, number)
     u = np.round(item.sampled(), 8)
-    rounded = np.round(y / RESOLUTION) * RESOLUTION
+    rounded = np.round(y / RESOLUTION_UM) * RESOLUTION_UM
     channels, period = (INPUT, OUTPUT), item.period_samples
-    return Record(item.name, item.dt, u, rounded, *channels, "twin", item.use, period)
+    return Record(item.name, item.dt, u, rounded, *channels, "plant", item.use, period)
 
 
 def told_of(
@@ -290,13 +287,7 @@ def _retuned(difference: list[FloatArray], output: list[FloatArray]) -> float:
     """What is left of a difference after the best gain and offset of the base."""
     d, y = np.concatenate(difference), np.concatenate(output)
     design = np.stack([y, np.ones_like(y)], axis=1)
-    return float(np.sqrt(np.mean((d - design @ np.linalg.lstsq(design, d)[0]) ** 2)))
-
-
-def rms(parts: list[FloatArray]) -> float:
-    """RMS of all parts together."""
-    pooled = np.concatenate(parts)
-    return float(np.sqrt(np.mean(pooled**2)))
+    return rms(d - design @ np.linalg.lstsq(design, d)[0])
 
 
 def _decibel(size: float, noise: float) -> float | None:

@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
-from hystbench.challenge.excitation import FAST, RecordCommand
+from hystbench.challenge.campaigns import FAST_HZ, RecordCommand
 from hystbench.challenge.machine_records import filling, machine_records
-from hystbench.challenge.plant.kind import HiddenEffect, Reach
+from hystbench.challenge.plant.kind import HiddenEffect, Reach, log_uniform
 from hystbench.challenge.plant.machine import (
     FINE,
     MovingPart,
@@ -26,10 +26,12 @@ from hystbench.record import Channel, FloatArray, Use
 TAIL = 16
 #: Steps a sample with which linear models are fitted.
 COARSE = 8
-RATES = (100.0, 200.0, 500.0, 1000.0, 2000.0)
+#: Sampling rates of machines.
+RATES_HZ = (100.0, 200.0, 500.0, 1000.0, 2000.0)
 MOTIONS = ("position", "velocity", "acceleration")
+#: Of a motion along a line, and of one that turns.
 UNITS = {"position": "mm", "velocity": "mm/s", "acceleration": "mm/s^2", "force": "N"}
-TURNING = {
+TURNING_UNITS = {
     "position": "rad",
     "velocity": "rad/s",
     "acceleration": "rad/s^2",
@@ -64,7 +66,7 @@ class Machine:
         """Input and output by name and unit."""
         if self.part is None:
             return Channel("pump", "V"), Channel("level", "cm")
-        units = TURNING if self.family == "pendulum" else UNITS
+        units = TURNING_UNITS if self.family == "pendulum" else UNITS
         given = "position" if self.output == "force" else "force"
         return Channel(given, units[given]), Channel(self.output, units[self.output])
 
@@ -139,7 +141,7 @@ class Machine:
 def _on_fine_grid(item: RecordCommand) -> FloatArray:
     """Compute a record's command, which a case asks for many times."""
     count = (item.samples + TAIL) * FINE
-    return item(np.arange(count) / (FAST * FINE))
+    return item(np.arange(count) / (FAST_HZ * FINE))
 
 
 def with_holes(
@@ -201,14 +203,11 @@ def draw_machine(
     closed : bool, optional
         False for no controller; by default a coin of a mass tells.
     """
-
-    def between(low: float, high: float) -> float:
-        return float(np.exp(random.uniform(np.log(low), np.log(high))))
-
-    rate = float(random.choice(RATES))
+    between = partial(log_uniform, random)
+    rate = float(random.choice(RATES_HZ))
     # samples a period of the middle frequency
     period = between(25.0, 60.0)
-    middle = FAST / period
+    middle = FAST_HZ / period
     w = 2.0 * np.pi * rate / period
     size, coin = between(0.3, 5.0), random.uniform()
     output = str(random.choice(MOTIONS))
@@ -221,7 +220,7 @@ def draw_machine(
         area = coefficient * between(60.0, 120.0) / rate
         tank = Tank(area, coefficient, back=coupled)
         tanks = (tank,) * (2 if coupled else count)
-        records = filling(random, FAST / between(300.0, 600.0))
+        records = filling(random, FAST_HZ / between(300.0, 600.0))
         return Machine(
             family, rate, None, tanks, "level", 10.0 * coefficient, gains, records
         )

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.challenge.case import Case, effect_told, rms, told_of
+from hystbench.challenge.case import Case, effect_told, told_of
 from hystbench.challenge.machine import (
     InputsAndOutputs,
     Machine,
@@ -13,21 +13,21 @@ from hystbench.challenge.machine import (
     reach_of,
 )
 from hystbench.challenge.plant.inside import IN_MACHINE
-from hystbench.challenge.plant.kind import HiddenEffect, Reach, draw
-from hystbench.challenge.spec import CaseSpec
+from hystbench.challenge.plant.kind import HiddenEffect, Reach, draw, log_uniform
+from hystbench.challenge.spec import BASE, EFFECTS, NOISE, PLANT, CaseSpec
+from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.record import Record
 
 #: An effect is to be within these shares of the output's rms on the fit records;
 #: outside, its size is changed.
-WITHIN = (0.04, 0.4)
+EFFECT_SHARES = (0.04, 0.4)
 #: Where nothing is hidden the noise is drawn from this interval of shares.
-PLAIN_NOISE = (0.002, 0.02)
+PLAIN_NOISE_SHARES = (0.002, 0.02)
 #: Steps of the converter over both signs of the largest output, and a half more.
-STEPS = 65536
+CONVERTER_STEPS = 65536
 #: Of masses on a spring under a force so many are handed over as a model file.
-AS_MODEL = 0.25
-PLANT, EFFECT, NOISE, BASE = 1, 2, 4, 5
+SHARE_WITH_MODEL = 0.25
 
 
 def make_machine_case(spec: CaseSpec) -> Case:
@@ -35,23 +35,21 @@ def make_machine_case(spec: CaseSpec) -> Case:
     outer = any(IN_MACHINE[name].place != "inside" for name in spec.effects)
     machine = draw_machine(spec.family, spec.random(PLANT), False if outer else None)
     reach = reach_of(machine)
-    random = spec.random(EFFECT)
+    random = spec.random(EFFECTS)
     kinds = [IN_MACHINE[name] for name in spec.effects]
     hidden = tuple(draw(k, random, spec.spread, spec.forms(k)) for k in kinds)
     hidden = tuple(_resized(machine, item, reach) for item in hidden)
     fit = machine.read(hidden, reach, "fit")
     held_out = machine.read(hidden, reach, "hold-out")
     signals = [*fit, *held_out]
-    output = rms([y - y.mean() for _, y in fit])
-    sizes = []
-    for k in range(len(hidden)):
-        others = (*hidden[:k], *hidden[k + 1 :])
-        sizes.append(_size(machine, fit, others, reach))
+    output = rms(*(y - y.mean() for _, y in fit))
+    rests = [tuple(x for x in hidden if x is not own) for own in hidden]
+    sizes = [_size(machine, fit, rest, reach) for rest in rests]
     random = spec.random(NOISE)
-    noise = output * float(np.exp(random.uniform(*np.log(PLAIN_NOISE))))
+    noise = output * log_uniform(random, *PLAIN_NOISE_SHARES)
     if hidden:
         noise = min(sizes) / 10.0 ** (spec.ratio_db / 20.0)
-    step = 3.0 * max(float(np.max(np.abs(y))) for _, y in signals) / STEPS
+    step = 3.0 * max(float(np.max(np.abs(y))) for _, y in signals) / CONVERTER_STEPS
     records = []
     for item, (u, y) in zip(machine.records, signals, strict=True):
         noisy = y + noise * random.standard_normal(len(y))
@@ -62,7 +60,7 @@ def make_machine_case(spec: CaseSpec) -> Case:
                 np.array([float(f"{value:.8g}") for value in u]),
                 np.round(noisy / step) * step,
                 *machine.channels,
-                "twin",
+                "plant",
                 item.use,
                 item.period_samples,
             )
@@ -94,10 +92,10 @@ def _resized(machine: Machine, effect: HiddenEffect, reach: Reach) -> HiddenEffe
 
     def share(changed: HiddenEffect) -> float:
         signals = machine.read((changed,), reach, "fit")
-        output = rms([y - y.mean() for _, y in signals])
+        output = rms(*(y - y.mean() for _, y in signals))
         return _size(machine, signals, (), reach) / output
 
-    return effect.resized(share, WITHIN, margin=0.2, most=8.0)
+    return effect.resized(share, EFFECT_SHARES, margin=0.2, most=8.0)
 
 
 def _size(
@@ -115,16 +113,16 @@ def _size(
     if not others and machine.family != "free-mass":
         return _left(machine, full)
     pairs = zip(full, machine.read(others, reach, "fit"), strict=True)
-    return rms([y - other for (_, y), (_, other) in pairs])
+    return rms(*(y - other for (_, y), (_, other) in pairs))
 
 
 def _left(machine: Machine, signals: InputsAndOutputs) -> float:
-    return rms([y - fitted for y, fitted in linear_parts(machine, signals)])
+    return rms(*(y - fitted for y, fitted in linear_parts(machine, signals)))
 
 
 def _model(machine: Machine, spec: CaseSpec) -> Model | None:
     """The machine without its effects as a model file, of a quarter of the masses."""
-    asked = spec.random(BASE).uniform() < AS_MODEL
+    asked = spec.random(BASE).uniform() < SHARE_WITH_MODEL
     if not asked or machine.part is None or machine.family != "mass-spring":
         return None
     from hystbench.blocks.mechanism import Mechanism  # late: one of four wants it

@@ -1,6 +1,6 @@
 """The records that a machine is tried with.
 
-Commands are those of :mod:`hystbench.challenge.excitation`, whose nominal rate is
+Commands are those of :mod:`hystbench.challenge.campaigns`, whose nominal rate is
 4 kHz: a machine that is sampled at another rate sees the same samples.
 """
 
@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.challenge.excitation import (
-    FAST,
+from hystbench.challenge.campaigns import (
+    FAST_HZ,
     Function,
     RecordCommand,
     add,
@@ -20,11 +20,11 @@ from hystbench.challenge.excitation import (
     sine,
     staircase,
 )
-from hystbench.challenge.excitation import PERIOD as NOMINAL_PERIOD
+from hystbench.challenge.campaigns import PERIOD_SAMPLES as NOMINAL_PERIOD
 
 #: Samples of a record to fit, of one held out, and of a multisine's period.
 FIT, HELD_OUT, PERIOD = 1500, 1000, 500
-#: A multisine's nominal period is :data:`hystbench.challenge.excitation.PERIOD`.
+#: So many times shorter than the nominal period.
 _FASTER = NOMINAL_PERIOD / PERIOD
 
 
@@ -59,12 +59,12 @@ def machine_records(
     edge = 0.2 / middle
     two = add(sine(0.37 * middle, 0.5), sine(1.1 * middle, 0.35))
     return (
-        fit("multisine-low", FAST, FIT, _tones(random, low, high, 0.35), PERIOD),
-        fit("multisine-high", FAST, FIT, _tones(random, low, high, 1.0), PERIOD),
-        fit("sweep", FAST, FIT, chirp(low, 2.0 * middle, 0.7, FIT / FAST)),
-        fit("steps", FAST, FIT, _steps(random, 10, FIT / FAST / 10, edge)),
-        held_out("multisine-other", FAST, HELD_OUT, _tones(random, low, high, 0.85)),
-        held_out("two-tones", FAST, HELD_OUT, two),
+        fit("multisine-low", FAST_HZ, FIT, _tones(random, low, high, 0.35), PERIOD),
+        fit("multisine-high", FAST_HZ, FIT, _tones(random, low, high, 1.0), PERIOD),
+        fit("sweep", FAST_HZ, FIT, chirp(low, 2.0 * middle, 0.7, FIT / FAST_HZ)),
+        fit("steps", FAST_HZ, FIT, _steps(random, 10, FIT / FAST_HZ / 10, edge)),
+        held_out("multisine-other", FAST_HZ, HELD_OUT, _tones(random, low, high, 0.85)),
+        held_out("two-tones", FAST_HZ, HELD_OUT, two),
     )
 
 

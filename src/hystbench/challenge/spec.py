@@ -5,16 +5,17 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from hystbench.challenge.excitation import CAMPAIGNS
-from hystbench.challenge.kept import KEPT, group_of
+from hystbench.challenge.campaigns import CAMPAIGNS
+from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP, group_of
 from hystbench.challenge.plant import inside
 from hystbench.challenge.plant.effects import APART, UNLISTED, VOCABULARY
 from hystbench.challenge.plant.hysteresis import DRAWS
-from hystbench.challenge.plant.kind import Kind
+from hystbench.challenge.plant.kind import EffectKind
 from hystbench.errors import InputError, refuse_unknown
 
 CaseKind = Literal["single", "pair", "triple", "none", "unlisted"]
 CASE_KINDS: tuple[str, ...] = get_args(CaseKind)
+#: How many effects a case of a kind hides.
 COUNTS = {"single": 1, "pair": 2, "triple": 3, "none": 0, "unlisted": 1}
 ACTUATORS = tuple(DRAWS)
 FAMILIES = (*ACTUATORS, *inside.MACHINES)
@@ -26,7 +27,10 @@ NAMELESS = (
     *UNLISTED,
     *(name for name, kind in inside.IN_MACHINE.items() if not kind.listed),
 )
+#: Of a case, in dB.
 RATIO_LIMITS = (-20.0, 60.0)
+#: Streams of random numbers: a case draws what is named here from a stream of its own.
+PLANT, EFFECTS, COMMANDS, NOISE, BASE = 1, 2, 3, 4, 5
 
 
 @dataclass(frozen=True)
@@ -55,9 +59,9 @@ class CaseSpec:
     """Multiplies the ranges of time constants, frequencies and sizes."""
     campaign: str = "standard"
     """Which laboratory took the records."""
-    kept: int = KEPT
+    group: int = LEFT_OUT_GROUP
     """The group of forms that is left out, as ``kept.yaml`` has it."""
-    of_kept: bool = False
+    of_group: bool = False
     """Whether an effect takes the group's own forms instead, where it has any."""
 
     def __post_init__(self) -> None:
@@ -77,7 +81,7 @@ class CaseSpec:
                     f"effect: {name!r} beside the family {self.family!r}; expected "
                     "the family 'gpi', as the base's loop is wrong beside any other"
                 )
-        group_of(self.kept)
+        group_of(self.group)
         known = effects_of(self.kind, self.family)
         for name in self.effects:
             refuse_unknown(
@@ -103,9 +107,9 @@ class CaseSpec:
         if self.seed < 0:
             raise InputError(f"seed: {self.seed}; expected 0 or more")
 
-    def forms(self, kind: Kind) -> tuple[str, ...]:
+    def forms(self, effect: EffectKind) -> tuple[str, ...]:
         """Give the forms of an effect that may be drawn."""
-        return group_of(self.kept).allowed(kind, self.of_kept)
+        return group_of(self.group).allowed(effect, self.of_group)
 
     def random(self, stream: int) -> np.random.Generator:
         """Source of random numbers for one purpose; purposes do not disturb others."""
@@ -113,16 +117,16 @@ class CaseSpec:
 
 
 def effects_of(
-    kind: str, family: str, kept: int | None = None, of_kept: bool = False
+    kind: str, family: str, group: int | None = None, of_group: bool = False
 ) -> list[str]:
     """Give the names of what a case of a kind may hide in a family.
 
     Parameters
     ----------
     kind, family : str
-    kept : int, optional
+    group : int, optional
         Group whose sorts outside the vocabulary are left out; by default none are.
-    of_kept : bool
+    of_group : bool
         Whether it is those alone instead.
     """
     if family in inside.MACHINES:
@@ -136,9 +140,9 @@ def effects_of(
         names = list(UNLISTED)
     else:
         names = [name for name in VOCABULARY if name not in GPI_ONLY or family == "gpi"]
-    if kind == "unlisted" and kept is not None:
-        left_out = group_of(kept).unlisted
-        names = [name for name in names if (name in left_out) == of_kept]
+    if kind == "unlisted" and group is not None:
+        left_out = group_of(group).unlisted
+        names = [name for name in names if (name in left_out) == of_group]
     return names
 
 
@@ -167,14 +171,14 @@ def draw_spec(
     *,
     spread: float = 1.0,
     campaign: str = "standard",
-    kept: int = KEPT,
-    of_kept: bool = False,
+    group: int = LEFT_OUT_GROUP,
+    of_group: bool = False,
 ) -> CaseSpec:
     """Draw which effects a case hides, each as likely as any other.
 
     Parameters
     ----------
-    seed, kind, family, ratio_db, spread, campaign, kept, of_kept
+    seed, kind, family, ratio_db, spread, campaign, group, of_group
         As in :class:`CaseSpec`. The group's sorts outside the vocabulary are left out
         too, or drawn alone.
 
@@ -184,7 +188,7 @@ def draw_spec(
         As :class:`CaseSpec`.
     """
     refuse_unknown(kind, CASE_KINDS, f"kind: {kind!r}")
-    names = effects_of(kind, family, kept, of_kept)
+    names = effects_of(kind, family, group, of_group)
     if len(names) < COUNTS[kind]:
         raise InputError(
             f"kind: {kind!r} of the family {family!r}; expected a kind of at most "
@@ -196,5 +200,5 @@ def draw_spec(
         effects = tuple(names[int(place)] for place in chosen)
         if _may_meet(effects, family):
             break
-    about = (spread, campaign, kept, of_kept)
+    about = (spread, campaign, group, of_group)
     return CaseSpec(seed, kind, effects, family, ratio_db, *about)

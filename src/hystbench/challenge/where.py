@@ -5,22 +5,23 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.challenge.plant.kind import Kind
+from hystbench.challenge.plant.hysteresis import LARGEST_CURRENT
+from hystbench.challenge.plant.kind import EffectKind
 from hystbench.record import FloatArray, Record
 
 #: Edges of the bins: frequencies in Hz (48 an octave, so that a lone line fills few),
 #: current in A, its rate in A/s (eight a decade), seconds from a record's start.
-FREQUENCIES = np.concatenate([[0.0], 0.01 * 2.0 ** (np.arange(817) / 48.0)])
-CURRENTS = np.linspace(-0.6, 0.6, 25)
-RATES = np.concatenate([[0.0], 0.001 * 10.0 ** (np.arange(57) / 8.0)])
-SECONDS = np.linspace(0.0, 60.0, 61)
+FREQUENCY_EDGES = np.concatenate([[0.0], 0.01 * 2.0 ** (np.arange(817) / 48.0)])
+CURRENT_EDGES = np.linspace(-LARGEST_CURRENT, LARGEST_CURRENT, 25)
+RATE_EDGES = np.concatenate([[0.0], 0.001 * 10.0 ** (np.arange(57) / 8.0)])
+TIME_EDGES = np.linspace(0.0, 60.0, 61)
 
-#: What holds half of the power is the place.
+#: Share of the power that a place holds at least.
 HALF = 0.5
 
 
 def where(
-    kind: Kind,
+    effect: EffectKind,
     records: list[Record],
     differences: list[FloatArray],
     outputs: list[FloatArray],
@@ -31,8 +32,8 @@ def where(
 
     Parameters
     ----------
-    kind : Kind
-        The effect; it says which views are right.
+    effect : EffectKind
+        It says which views are right.
     records : list of Record
         The fit records.
     differences, outputs : list of ndarray
@@ -52,12 +53,14 @@ def where(
     if total == 0.0:
         return []
 
-    def over(values: list[FloatArray], edges: FloatArray) -> FloatArray:
+    def over(
+        view: str, axis: str, unit: str, edges: FloatArray, values: list[FloatArray]
+    ) -> dict[str, Any]:
         inside = np.clip(np.concatenate(values), edges[0], edges[-1])
         counts, _ = np.histogram(inside, edges, weights=pooled)
-        return np.asarray(counts / total)
+        return _range(view, axis, unit, edges, counts / total)
 
-    spectrum = np.zeros(len(FREQUENCIES) - 1)
+    spectrum = np.zeros(len(FREQUENCY_EDGES) - 1)
     for record, difference in zip(records, differences, strict=True):
         spectrum += _spectrum(difference, record.dt)
     spectrum /= total
@@ -70,21 +73,18 @@ def where(
         record.name: float(part.sum() / total)
         for record, part in zip(records, power, strict=True)
     }
-    times = [record.time for record in records]
     ranges = [
-        _range("frequency", "frequency", "Hz", FREQUENCIES, spectrum),
-        _range("amplitude", "u", "A", CURRENTS, over([r.u for r in records], CURRENTS)),
-        _range(
-            "rate", "abs(du/dt)", "A/s", RATES, over([abs(s) for s in speeds], RATES)
-        ),
-        _range("slow-time", "time", "s", SECONDS, over(times, SECONDS)),
-        _range("unexplained", "frequency", "Hz", FREQUENCIES, spectrum),
+        _range("frequency", "frequency", "Hz", FREQUENCY_EDGES, spectrum),
+        over("amplitude", "u", "A", CURRENT_EDGES, [r.u for r in records]),
+        over("rate", "abs(du/dt)", "A/s", RATE_EDGES, [abs(s) for s in speeds]),
+        over("slow-time", "time", "s", TIME_EDGES, [r.time for r in records]),
+        _range("unexplained", "frequency", "Hz", FREQUENCY_EDGES, spectrum),
         _names("branch", shares),
         _names("record", by_record),
         _delay(records, differences, outputs, total),
     ]
     for item in ranges:
-        item["right"] = item["view"] in kind.views
+        item["right"] = item["view"] in effect.views
     return ranges
 
 
@@ -109,7 +109,7 @@ def _spectrum(difference: FloatArray, dt: float) -> FloatArray:
     n = len(difference)
     lines = np.abs(np.fft.rfft(difference)) ** 2 / n
     lines[1 : (n + 1) // 2] *= 2.0
-    counts, _ = np.histogram(np.fft.rfftfreq(n, dt), FREQUENCIES, weights=lines)
+    counts, _ = np.histogram(np.fft.rfftfreq(n, dt), FREQUENCY_EDGES, weights=lines)
     return np.asarray(counts)
 
 

@@ -17,19 +17,19 @@ from hystbench.signature import Folder, In, OutFolder, command
 from hystbench.written import ENTRIES, LOGS, is_ours
 from hystbench.yaml_files import load_yaml
 
-RO_CRATE = "1.1"
+RO_CRATE_VERSION = "1.1"
 """The version that most archives read."""
 WORKFLOW = "workflow/Snakefile"
 CITATION = "CITATION.cff"
 #: What is packed of the project beside the workflow itself.
-BESIDE = (
+PACKED_TOO = (
     *("Snakefile", "workflow/rules/*", "workflow/schemas/*", "workflow/report/*"),
     *("requirements.txt", CITATION, "LICENSE"),
 )
 #: Python's own table: that of the machine takes Snakemake's .smk for a video.
-SORTS = MimeTypes()
+MIME_TYPES = MimeTypes()
 #: Nothing checks that the results were made with it.
-GIVEN = {"name": "Settings as given"}
+AS_GIVEN = {"name": "Settings as given"}
 _NAME = re.compile(r"[\w.-]+")
 
 
@@ -56,9 +56,9 @@ def crate(
     made = [path for path in sorted(results.rglob("*")) if is_ours(path)]
     if not made:
         raise InputError(f"{results}: no file in it that hystbench wrote")
-    packed = rocrate.ROCrate(version=RO_CRATE)
+    packed = rocrate.ROCrate(version=RO_CRATE_VERSION)
     workflow = _about(packed, project)
-    settings = _add(packed, config, "config.yaml", GIVEN)
+    settings = _add(packed, config, "config.yaml", AS_GIVEN)
     top = results.resolve().name
     found = [_add(packed, x, f"{top}/{x.relative_to(results)}") for x in made]
     run = {"name": "Run of the workflow"}
@@ -103,7 +103,7 @@ def _about(packed: Any, project: Path) -> Any:
     for key in ("author", "license"):
         workflow[key] = root[key]
     workflow["softwareRequirements"] = list(_software(packed))
-    for pattern in BESIDE:
+    for pattern in PACKED_TOO:
         for path in sorted(project.glob(pattern)):
             _add(packed, path, str(path.relative_to(project)))
     return workflow
@@ -113,7 +113,7 @@ def _add(
     packed: Any, path: Path, place: str, about: Mapping[str, str] | None = None
 ) -> Any:
     """Add a file, with its size and what sort of file it is."""
-    sort = SORTS.guess_type(path.name)[0]
+    sort = MIME_TYPES.guess_type(path.name)[0]
     said = {**(about or {}), **({"encodingFormat": sort} if sort else {})}
     return packed.add_file(path, place, properties=said, record_size=True)
 

@@ -7,7 +7,7 @@ import click
 
 from hystbench import options
 from hystbench.gap.bases.kinds import check_base
-from hystbench.gap.experiment.excitations import Limits
+from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import will_write, write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary, in_words

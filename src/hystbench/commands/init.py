@@ -14,7 +14,7 @@ from hystbench.files import write_text
 from hystbench.inspection.columns import Flags
 from hystbench.inspection.draft import Draft, draft
 from hystbench.inspection.entries import yaml_text
-from hystbench.inspection.excitation import excitation_of
+from hystbench.inspection.input_summary import summary_of
 from hystbench.signature import In, command, of_class
 from hystbench.written import writes
 
@@ -77,7 +77,7 @@ def _said(place: Path, found: Draft) -> list[str]:
     ]
     width = max(len(record.name) for record in found.records)
     for record in found.records:
-        kind = excitation_of(record.u, record.dt).kind
+        kind = summary_of(record.u, record.dt).kind
         period = record.period_samples
         lines.append(
             f"  {record.name:{width}}  {record.use:8}  {len(record)} samples at "

@@ -15,6 +15,7 @@ from hystbench.export.inverse import describe_inverse
 from hystbench.files import write_columns, write_csv
 from hystbench.inverse.bandwidth import HOLDS, Invert, bandwidth, holds_to
 from hystbench.inverse.feedforward import BAND_SHARE, InputRange, feedforward
+from hystbench.metrics import rms
 from hystbench.model import Model, load_model
 from hystbench.record import FloatArray, column_name
 from hystbench.signature import In, InputHigh, InputLow, Out, command
@@ -98,7 +99,7 @@ def _follow(
         u = _by_code(system, model, dt, limits)(reference)
         y = system.simulate(u, dt)
         stroke = float(np.ptp(reference)) or 1.0
-        left = float(np.sqrt(np.mean((y - reference) ** 2))) / stroke
+        left = rms(y - reference) / stroke
         how = "inverted sample by sample, as exported code does"
     else:
         with options.refused_of(model, file):

@@ -187,7 +187,7 @@ class Edge:
     which the error is small; None where the time does not change."""
 
     @property
-    def inside(self) -> bool:
+    def fails_below_bound(self) -> bool:
         """Whether a step size inside Eq. 19's bound is beyond the edge."""
         return self.edge is not None and self.edge < self.at_trace
 

@@ -13,7 +13,7 @@ from hystbench.published.consistency import Standing, standings
 NOT_RUN = "not run"
 
 #: Columns of cells.csv; a run that diverged has no ours.
-COLUMNS = (
+CELL_COLUMNS = (
     *("table", "signal", "model", "metric", "half", "published", "ours"),
     *("spread_low", "spread_high", "draws_low", "draws_high", "log10_ratio"),
     *("published_consistent", "status"),

@@ -6,15 +6,12 @@ from pathlib import Path
 from typing import Any
 
 from hystbench.compare.beside import write_margins
-from hystbench.compare.cells import COLUMNS as CELL_COLUMNS
-from hystbench.compare.cells import ComparedCell, compare_cells
-from hystbench.compare.claims import COLUMNS as CLAIM_COLUMNS
-from hystbench.compare.claims import judge_all
+from hystbench.compare.cells import CELL_COLUMNS, ComparedCell, compare_cells
+from hystbench.compare.claims import CLAIM_COLUMNS, judge_all
 from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.compare.measured import COLUMNS, errors_table
-from hystbench.compare.off import COLUMNS as OFF_COLUMNS
-from hystbench.compare.off import OffCell, off_cells
+from hystbench.compare.measured import ERROR_COLUMNS, errors_table
+from hystbench.compare.off import OFF_COLUMNS, OffCell, off_cells
 from hystbench.compare.rows import or_diverged, write_fields
 from hystbench.compare.summary import summarise
 from hystbench.compare.tables import PrintedTable, paper_tables
@@ -67,7 +64,7 @@ class Comparison:
         for table in self.tables:
             table.write(out / "tables")
         if added := self.evidence.added:
-            write_fields(out / "added.csv", COLUMNS, added, or_diverged)
+            write_fields(out / "added.csv", ERROR_COLUMNS, added, or_diverged)
 
 
 def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:

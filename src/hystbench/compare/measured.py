@@ -12,7 +12,7 @@ from hystbench.files import write_text
 from hystbench.published import in_order
 
 #: Columns of errors.csv: one row a record and model.
-COLUMNS = (
+ERROR_COLUMNS = (
     *("signal", "model", "error_kind", "mse", "re"),
     *("mse_after_transient", "re_after_transient", "unit", "status"),
 )
@@ -42,7 +42,7 @@ def compare_measured(
         "The paper has no numbers for them.",
         found,
     )
-    write_fields(out / "errors.csv", COLUMNS, found)
+    write_fields(out / "errors.csv", ERROR_COLUMNS, found)
     table.write(out / "tables")
     body, said = grid(table.frame, "rst"), finite_sentence(found)
     text = "\n\n".join(filter(None, (table.caption, body, table.legend, said))) + "\n"

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.evidence import ClaimEvidence, Run
-from hystbench.compare.summary import FACTOR, rms_error_percent
+from hystbench.compare.summary import NEAR_FACTOR, rms_error_percent
 from hystbench.published import FILTERS
 
 #: Columns of off.csv.
-COLUMNS = (
+OFF_COLUMNS = (
     *("table=cell.table", "signal=cell.signal", "model=cell.model", "half=cell.half"),
     *("published=cell.published", "ours=cell.ours", "ratio"),
     *("published_consistent=cell.published_consistent", "known"),
@@ -43,7 +43,7 @@ def off_cells(
     RE is the same error over the same record, so that MSE alone is looked at.
     """
     mse = [cell for cell in cells if cell.metric == "mse" and cell.ran]
-    off = [cell for cell in mse if cell.distance > math.log10(FACTOR)]
+    off = [cell for cell in mse if cell.distance > math.log10(NEAR_FACTOR)]
     percent = rms_error_percent(evidence)
 
     def known(cell: ComparedCell) -> str:

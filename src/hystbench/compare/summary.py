@@ -11,16 +11,16 @@ from itertools import combinations
 from statistics import median
 from typing import Any, get_args
 
-import numpy as np
-
 from hystbench.compare.beside import Edge, Ranking
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.claims.claim import Basis, Judgement, Verdict
 from hystbench.compare.evidence import Cell, ClaimEvidence
+from hystbench.metrics import rms
 from hystbench.published import FILTERS
 from hystbench.published.consistency import check
 
-FACTOR = 2.0
+#: Ours over the paper's, or theirs over ours: up to it a cell is near.
+NEAR_FACTOR = 2.0
 
 
 def nearness(cells: Sequence[ComparedCell]) -> dict[str, Any]:
@@ -28,7 +28,7 @@ def nearness(cells: Sequence[ComparedCell]) -> dict[str, Any]:
     ran = [cell for cell in cells if cell.ran]
     distances = [cell.distance for cell in ran]
     middle = median(distances) if distances else None
-    within = sum(d <= math.log10(FACTOR) for d in distances)
+    within = sum(d <= math.log10(NEAR_FACTOR) for d in distances)
     finite = [cell for cell in ran if math.isfinite(cell.distance)]
     worst = max(finite, key=lambda cell: cell.distance, default=None)
     return {
@@ -144,7 +144,7 @@ def eq19_finding(edges: Sequence[Edge]) -> dict[str, Any] | None:
     """
     if not edges:
         return None
-    inside = [edge for edge in edges if edge.inside]
+    inside = [edge for edge in edges if edge.fails_below_bound]
     worst = min(inside, key=lambda edge: edge.edge_over_trace or 0, default=None)
     return {
         "edges": len(edges),
@@ -278,7 +278,7 @@ def rms_error_percent(evidence: ClaimEvidence) -> dict[str, float]:
         record = evidence.records.get(signal)
         if record is None or record.origin != "twin":
             continue
-        ours = float(np.sqrt(np.mean(record.y**2)))
+        ours = rms(record.y)
         if signal in evidence.drawn:
             ours = median(evidence.drawn[signal].rms)
         errors[signal] = 100 * (ours / checked.implied_rms - 1)

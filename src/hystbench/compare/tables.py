@@ -10,8 +10,9 @@ from hystbench.compare.cells import NOT_RUN, ComparedCell
 from hystbench.files import write_text
 from hystbench.published import METRICS, MODELS, Metric
 
-ONE_STEP = "one-step a priori errors with running weights"
-FREE_RUN = "errors of a free-run simulation"
+ONE_STEP_WORDS = "one-step a priori errors with running weights"
+FREE_RUN_WORDS = "errors of a free-run simulation"
+#: Of a printed pair of MSE and RE, by whether it can be true.
 MARKS = {"yes": "", "no": "†", "undecided": "‡"}
 LEGEND = (
     "† this printed pair of MSE and RE cannot be true beside the others of its "
@@ -121,11 +122,11 @@ def error_kind(models: Iterable[str]) -> str:
     """Say in words what the errors of these models are."""
     listed = list(models)
     if "rdgpi" not in listed:
-        return ONE_STEP[0].upper() + ONE_STEP[1:]
+        return ONE_STEP_WORDS[0].upper() + ONE_STEP_WORDS[1:]
     if len(listed) == 1:
-        return FREE_RUN[0].upper() + FREE_RUN[1:]
+        return FREE_RUN_WORDS[0].upper() + FREE_RUN_WORDS[1:]
     others = ", ".join(model for model in listed if model != "rdgpi")
-    return f"{others}: {ONE_STEP}; rdgpi: {FREE_RUN}"
+    return f"{others}: {ONE_STEP_WORDS}; rdgpi: {FREE_RUN_WORDS}"
 
 
 def paper_table(

@@ -26,7 +26,7 @@ SHORTLY = {
 NEAR_RMS = 3.0
 
 HEADERS = ("", "runs", "within a factor of 2", "median |log10(ours/paper)|", "diverged")
-LEGEND = (
+HALVES = (
     "Held out are signals whose errors no fit has read; calibrated are those to which "
     "the twin and the step sizes are fitted."
 )
@@ -111,7 +111,7 @@ def verdict_page(summary: Mapping[str, Any], style: str) -> str:
     # A bar has a meaning of its own in markups.
     headers = [header.replace("|", r"\|") for header in HEADERS]
     return (
-        "\n\n".join((listed, last, _grid(rows(summary), headers, style), LEGEND)) + "\n"
+        "\n\n".join((listed, last, _grid(rows(summary), headers, style), HALVES)) + "\n"
     )
 
 

@@ -22,7 +22,7 @@ from hystbench.scratch import scratch_folder
 from hystbench.written import ENTRIES, remove_below
 
 #: What may stand in a command, and what stands there when it runs.
-PLACES = ("{dataset}", "{model}", "{out}")
+PLACEHOLDERS = ("{dataset}", "{model}", "{out}")
 #: Bytes of a gap.json that are read; more is no answer.
 LARGEST_ANSWER = 20_000_000
 #: What stands for the model where none is handed over: a linear one, to be identified.
@@ -47,11 +47,11 @@ class Solver:
 
     def __post_init__(self) -> None:
         """Refuse a command that cannot answer."""
-        for place in PLACES:
-            if not any(place in word for word in self.command):
+        for holder in PLACEHOLDERS:
+            if not any(holder in word for word in self.command):
                 raise InputError(
                     f"blind: solvers: {self.name}: {' '.join(self.command)!r}; "
-                    f"expected {place} in it"
+                    f"expected {holder} in it"
                 )
 
 

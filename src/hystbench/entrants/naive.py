@@ -14,7 +14,7 @@ from hystbench.entrants.task import Answer, Given, NamedEffect, noise_rms
 from hystbench.plain_fits import EffectFit, Task, effects, fit
 from hystbench.record import FloatArray, Record
 
-MOST = 4
+MOST_EFFECTS = 4
 """Effects that are named, at most."""
 
 
@@ -22,7 +22,7 @@ def answer(given: Given) -> Answer:
     """Name effects of the least criterion, one after the other, while it falls."""
     task, noise = Task(given.model, given.fit), noise_rms(given)
     taken: list[tuple[NamedEffect, EffectFit]] = []
-    while len(taken) < MOST:
+    while len(taken) < MOST_EFFECTS:
         found = best(task, noise, {named.name for named, _ in taken})
         if found is None:
             break

@@ -9,6 +9,7 @@ import numpy as np
 
 from hystbench.dataset import load_dataset
 from hystbench.files import write_json
+from hystbench.metrics import rms
 from hystbench.model import Model, load_model
 from hystbench.record import FloatArray, Record
 
@@ -86,14 +87,14 @@ def noise_rms(given: Given) -> float:
             count += (whole - 1) * period
     if count:
         return float(np.sqrt(squares / count))
-    return _rms([record.y - given.base(record) for record in given.fit])
+    return rms(*(record.y - given.base(record) for record in given.fit))
 
 
 def write(given: Given, answer: Answer, out: Path) -> None:
     """Write gap.json into a folder."""
-    before = _rms([record.y - given.base(record) for record in given.hold_out])
+    before = rms(*(record.y - given.base(record) for record in given.hold_out))
     with np.errstate(over="ignore", invalid="ignore"):
-        left = _rms([record.y - answer.predict(record) for record in given.hold_out])
+        left = rms(*(record.y - answer.predict(record) for record in given.hold_out))
     floor = noise_rms(given)
     repeats = any(r.period_samples for r in (*given.fit, *given.hold_out))
     method = "repeats" if repeats else "upper-bound"
@@ -132,7 +133,3 @@ def write(given: Given, answer: Answer, out: Path) -> None:
         "next_experiment": None,
     }
     write_json(out / "gap.json", content)
-
-
-def _rms(parts: Sequence[FloatArray]) -> float:
-    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))

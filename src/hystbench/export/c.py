@@ -21,6 +21,7 @@ LIBRARY = (
     Path(__file__).with_name("inside.c"),
     Path(__file__).with_name("inverse_steps.c"),
 )
+#: Letters of a line of code.
 WIDTH = 88
 NO_STATE = ("none", 1)
 """State of a model that remembers nothing: no struct of C is empty."""

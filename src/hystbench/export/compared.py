@@ -7,6 +7,7 @@ import numpy as np
 from hystbench.errors import InputError
 from hystbench.export import python
 from hystbench.export.described import Described
+from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.record import FloatArray
 
@@ -59,4 +60,4 @@ def off(code: Described, model: Model, u: FloatArray) -> Off:
     made = python.loaded(code).simulate(u)[delay:]
     apart = np.abs(made - wanted[: len(made)]) / size
     place = int(np.argmax(apart))
-    return Off(float(apart[place]), float(np.sqrt(np.mean(apart**2))), place * dt)
+    return Off(float(apart[place]), rms(apart), place * dt)

@@ -11,8 +11,6 @@ from hystbench.export.described import Described
 from hystbench.export.names import filled
 from hystbench.scratch import scratch_folder
 
-WIDTH = 88
-
 
 def files(model: Described) -> dict[str, str]:
     """Give the text of the module and of the C that it calls, by their names."""
@@ -22,7 +20,7 @@ def files(model: Described) -> dict[str, str]:
 def module(model: Described) -> str:
     """Write the module: a class ``Model`` that keeps the state of the C."""
     told = [f"{model.title}: {model.about}.", *model.differences]
-    lines = [_quoted(line) for said in told for line in wrap(said, WIDTH - 4)]
+    lines = [_quoted(line) for said in told for line in wrap(said, c.WIDTH - 4)]
     return filled("module.txt", model=model, told=lines, states=c.states(model))
 
 

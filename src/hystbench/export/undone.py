@@ -17,7 +17,7 @@ from hystbench.blocks.rate_dependent_hysteresis import RateDependentHysteresis
 from hystbench.blocks.starts import PASTS
 from hystbench.blocks.state_space import StateSpace
 from hystbench.blocks.step import Sampling, Step, polynomial
-from hystbench.blocks.wrapping import Hysteresis
+from hystbench.blocks.wrapping import Wrappable
 from hystbench.record import FloatArray
 
 Ends = tuple[float, float]
@@ -27,12 +27,12 @@ Making = Callable[[Sampling], Step]
 
 KNOTS = 1001
 """Of the table that stands for a curve turned about."""
-FINER = 20
+FINER_TIMES = 20
 """Times as many points, by which the curve is sampled and the table judged."""
 ROUNDING = 1e-13
 """Share of the output's range within which the input of hysteresis stands still: where
 the output says nothing of it, it stays where it was."""
-NEAR = 0.01
+NEAR_SHARE = 0.01
 """Share by which a rate may be off in the band that is told."""
 
 
@@ -67,7 +67,7 @@ def curve(block: Block, ends: Ends, sampling: Sampling) -> Step:
         if slope == 0:
             raise CannotBe("its output does not depend on its input")
         return straight(offset, slope, sampling)
-    x = np.linspace(*ends, (KNOTS - 1) * FINER + 1)
+    x = np.linspace(*ends, (KNOTS - 1) * FINER_TIMES + 1)
     y = block.simulate(x, x, 1.0)
     if y[-1] < y[0]:
         x, y = x[::-1], y[::-1]
@@ -91,7 +91,7 @@ def curve(block: Block, ends: Ends, sampling: Sampling) -> Step:
 
 
 def hysteresis(
-    inner: Hysteresis, ends: Ends, by: RateDependentHysteresis | None = None
+    inner: Wrappable, ends: Ends, by: RateDependentHysteresis | None = None
 ) -> Making:
     """Find the input of hysteresis by trial, its thresholds growing with a rate or not.
 
@@ -200,7 +200,7 @@ def _derivatives(order: int, w: float, sampling: Sampling) -> Step:
         {"history": 1 + points},
         gains=AHEAD,
         differs=f"takes {many} of the curve through the newest {points}, within "
-        f"{100 * NEAR:g} % to {top:.3g} Hz",
+        f"{100 * NEAR_SHARE:g} % to {top:.3g} Hz",
     )
 
 
@@ -269,5 +269,5 @@ def _band(taps: FloatArray, ahead: int, order: int, turn: float) -> float:
     angle = 2j * np.pi * frequency
     made = np.exp(-np.outer(angle, np.arange(len(taps)) - ahead)) @ taps
     off = np.abs(made / (1 + angle / turn) ** order - 1)
-    beyond = np.flatnonzero(off > NEAR)
+    beyond = np.flatnonzero(off > NEAR_SHARE)
     return float(frequency[beyond[0]] if len(beyond) else frequency[-1])

@@ -48,7 +48,6 @@ FIGURES: dict[str, tuple[Any, ...]] = {
         {"where_hit": "first view is the right one"},
     ),
 }
-NAMES = tuple(FIGURES)
 
 
 def module_of(name: str) -> str:

@@ -32,6 +32,7 @@ MACHINES = {
 }
 #: How much of an effect's place its families take.
 _SPREAD = 0.8
+#: Panels side by side.
 _ACROSS = 4
 
 

@@ -19,6 +19,7 @@ from hystbench.files import read_json
 from hystbench.order_errors import OrderError
 from hystbench.record import FloatArray
 
+#: Panels side by side.
 _COLUMNS = 3
 
 

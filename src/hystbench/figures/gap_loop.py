@@ -11,6 +11,7 @@ from hystbench.errors import InputError
 from hystbench.figures import style
 from hystbench.figures.data import last_cycles, read_one
 from hystbench.files import read_json
+from hystbench.metrics import rms
 
 
 def draw(*, records: Sequence[Path], table: Path) -> Figure:
@@ -50,7 +51,7 @@ def draw(*, records: Sequence[Path], table: Path) -> Figure:
     for axes, (title, output), look in zip(panels, lines.items(), looks, strict=True):
         axes.plot(record.u[part], record.y[part], **style.BEHIND)
         axes.plot(record.u[part], output[part], **look)
-        left = np.sqrt(np.mean((record.y - output) ** 2))
+        left = rms(record.y - output)
         unit = style.unit_text(record.output.unit)
         axes.set_title(f"{title}: {left:.2g} {unit} rms off")
         axes.set_xlabel(style.axis_label(record.input))

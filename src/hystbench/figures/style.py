@@ -36,7 +36,6 @@ BLUE = "#0072B2"
 VERMILION = "#D55E00"
 PURPLE = "#CC79A7"
 SKY = "#56B4E9"
-PALETTE = (BLACK, GREY, ORANGE, GREEN, BLUE, VERMILION, PURPLE, SKY)
 
 _STYLE = Path(__file__).with_name("hystbench.mplstyle")
 _METADATA: dict[str, dict[str, None]] = {

@@ -39,7 +39,7 @@ EXPECTED = (
     "or WAV"
 )
 """What files may be, for messages."""
-_SOME = 128
+_FIRST_BYTES = 128
 """Bytes at the start of a file that tell its format."""
 
 
@@ -59,7 +59,7 @@ def format_of(path: Path) -> str:
     suffix = path.suffix.lower()
     try:
         with path.open("rb") as stream:
-            start = stream.read(_SOME)
+            start = stream.read(_FIRST_BYTES)
     except OSError:
         start = b""  # whoever reads it says so
     for beginning, module in BEGINNINGS.items():

@@ -25,6 +25,8 @@ FREQUENCIES = frozenset(
 INTERVALS = frozenset(
     {"dt", "ts", "tsample", "sampling_interval", "sampling_time", "wf_increment"}
 )
+#: Of a matrix: wider ones are pictures or tables of something else.
+MOST_COLUMNS = 256
 
 
 @dataclass(frozen=True, repr=False)
@@ -247,7 +249,3 @@ def told(path: Path, kind: str) -> Iterator[None]:
     except Exception as error:
         # Libraries raise anything of what is damaged.
         raise InputError(f"{path}: no readable {kind} ({in_line(error)})") from error
-
-
-#: Of a matrix: wider ones are pictures or tables of something else.
-MOST_COLUMNS = 256

@@ -29,11 +29,12 @@ LAYOUTS = (
 )
 """Separator and decimal mark; a space stands for any run of spaces, and the last is
 that of numbers in quotes."""
-LOOKED_AT = 500
+LINES_LOOKED_AT = 500
 """Lines from which the layout is found."""
 NO_NUMBER = frozenset({"", "nan", "-nan", "na", "n/a", "null", "none", "#n/a", "--"})
 """What stands in a cell that has no number, in small letters."""
-NAMES = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces", ",": "commas"}
+SIGNS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces", ",": "commas"}
+"""Names of separators."""
 
 _UNIT_CELL = re.compile(r"\s*(?:\[(?P<square>[^\]]*)\]|\((?P<round>[^)]*)\))\s*")
 
@@ -99,7 +100,7 @@ def read(path: Path, wanted: Collection[str] | None = None) -> Table:
         found.append(Column(layout.names[k], column, unit or None, in_groups=False))
     if layout.separator != "," or layout.decimal != ".":
         comma = ", decimal commas" if layout.decimal == "," else ""
-        notes.append(f"columns separated by {NAMES[layout.separator]}{comma}")
+        notes.append(f"columns separated by {SIGNS[layout.separator]}{comma}")
     others = [name for name in layout.names if name and name not in (wanted or ())]
     return Table(
         path,
@@ -126,9 +127,9 @@ def layout_of(lines: Sequence[str]) -> Layout | None:
     """Find how a text is laid out; None where it has no two rows of numbers."""
     some = [
         (k, line)
-        for k, line in enumerate(lines[: LOOKED_AT + 200])
+        for k, line in enumerate(lines[: LINES_LOOKED_AT + 200])
         if line.strip() and not line.lstrip().startswith(COMMENTS)
-    ][-LOOKED_AT:]
+    ][-LINES_LOOKED_AT:]
     # Where no row is of numbers alone, a column of words stands beside two of numbers.
     for is_row in (_is_numbers, _has_numbers):
         best: tuple[int, int, str, str] = (0, 0, "", "")

@@ -10,7 +10,7 @@ import numpy as np
 
 from hystbench.blocks.calls import USED_UP, Calls, current
 from hystbench.gap.asked import USUAL, Asked
-from hystbench.gap.experiment.excitations import Limits
+from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.experiment.tell_apart import Experiment, tell_apart
 from hystbench.gap.fitting.augmented_model import augmented, blocks_of
 from hystbench.gap.fitting.model_score import floor_with_steps, make_score, step_error

@@ -22,7 +22,7 @@ from hystbench.gap.fitting.on_records import compared_records, run_base, start_s
 from hystbench.gap.fitting.own_steps import too_long_steps
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
-from hystbench.gap.holdout.outcome import outcome
+from hystbench.gap.holdout.outcome import show_on_hold_out
 from hystbench.gap.holdout.show import Outcome
 from hystbench.gap.inside.named_inside import quantities_if_linear
 from hystbench.gap.judge_and_tell import Decision
@@ -171,7 +171,7 @@ def show(
     """
     fitted, vocabulary = decided.fitted, decided.vocabulary
     evidence = as_found(evidence, decided.base, fitted, say_in_words(say))
-    return evidence, outcome(
+    return evidence, show_on_hold_out(
         fitted, decided.content, evidence, vocabulary, decided.built_in
     )
 

@@ -15,7 +15,7 @@ from hystbench.gap.bases.known_about import known_about
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.effects.places import places_between_halves
-from hystbench.gap.experiment.excitations import Limits
+from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of

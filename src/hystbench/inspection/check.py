@@ -15,20 +15,21 @@ from hystbench.errors import InputError
 from hystbench.flat import flats
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.floor import Floor, noise_floor
-from hystbench.gap.records.scored_samples import Compared, rms
+from hystbench.gap.records.scored_samples import Compared
 from hystbench.inspection.entries import entry_text
 from hystbench.inspection.facts import Facts, facts_of, late
 from hystbench.inspection.visible import SmallestSeen, seen_effects
+from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.operators import play
 from hystbench.record import Record
 from hystbench.yaml_files import load_yaml
 
-ALIKE = 2.0
+SAME_RATIO = 2.0
 """Ratio of the fastest rate to the slowest below which records are of one rate."""
-JITTERS = 0.01
+UNEVEN_SHARE = 0.01
 """Of a step: a clock that is less even than that is told."""
-OPERATORS = 10
+PLAY_OPERATORS = 10
 """Play operators, the first of threshold zero: the input itself."""
 
 
@@ -104,7 +105,7 @@ def check(dataset: Dataset, effects: bool = True) -> Check:
     ]
     to_fit = [item for item in compared if item.record.use == "fit"]
     floor = noise_floor(to_fit, dataset.about.get("noise_rms"))
-    left = rms(np.concatenate([x.residual[x.record.counted] for x in to_fit]))
+    left = rms(*(x.residual[x.record.counted] for x in to_fit))
     return Check(
         dataset,
         tuple(item.record for item in compared),
@@ -135,7 +136,7 @@ def loop_of_plays(records: Sequence[Record]) -> Model:
         A ``prandtl-ishlinskii`` block and a ``gain``.
     """
     amplitude = max(float(np.abs(record.u).max()) for record in records)
-    thresholds = amplitude * np.arange(OPERATORS) / OPERATORS
+    thresholds = amplitude * np.arange(PLAY_OPERATORS) / PLAY_OPERATORS
     tables, outputs = [], []
     for record in records:
         plays = play(record.u, thresholds)[0]
@@ -179,13 +180,13 @@ def _findings(
         _finding("late", name=x.name, ms=1e3 * x.delay_s, samples=x.delay_s / x.dt)
         for x in late(facts)
     ]
-    fit = [item.excitation for item in facts if item.use == "fit"]
+    fit = [item.input for item in facts if item.use == "fit"]
     rates, spans = ([x.rate for x in fit], [round(x.span, 12) for x in fit])
     on_the_whole = {
         "none held out": all(item.use == "fit" for item in facts),
         "no noise": floor.method == "upper-bound",
-        "one rate": max(rates) < ALIKE * min(rates),
-        "one amplitude": max(spans) < ALIKE * min(spans),
+        "one rate": max(rates) < SAME_RATIO * min(rates),
+        "one amplitude": max(spans) < SAME_RATIO * min(spans),
     }
     found += [_finding(topic) for topic, holds in on_the_whole.items() if holds]
     try:
@@ -205,7 +206,7 @@ def _still(dataset: Dataset, record: Record, item: Facts) -> Iterator[Finding]:
         yield _finding("stuck", paste=[line], **vars(item))
     given = ("input", record.input, record.u), ("output", record.output, record.y)
     for key, channel, values in given:
-        on_purpose = key == "input" and item.excitation.kind in ("steps", "ramps")
+        on_purpose = key == "input" and item.input.kind in ("steps", "ramps")
         if item.stuck or on_purpose or key in dataset.stands_still(item.name):
             continue
         for flat in flats(values):
@@ -219,7 +220,7 @@ def _holes(item: Facts) -> Iterator[Finding]:
     if item.missing:
         far = " too far" * item.bridged_too_far
         yield replace(_finding(f"bridged{far}", **vars(item)), topic="missing")
-    if item.jitter is not None and item.jitter > JITTERS:
+    if item.jitter is not None and item.jitter > UNEVEN_SHARE:
         yield _finding("jitter", name=item.name, percent=100 * item.jitter)
 
 

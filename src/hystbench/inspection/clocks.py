@@ -17,7 +17,7 @@ LONGEST_DAYS = 1.0
 """Of a record: a column of some ten thousand that runs further counts no days."""
 
 
-LOOSEST = 0.5
+LARGEST_TOLERANCE = 0.5
 """Of a step: what dataset.yaml may tolerate at most."""
 
 
@@ -96,8 +96,8 @@ def ticks_of(time: FloatArray, where: str, table: Table) -> Ticks:
     whole = np.abs(steps / quantum - np.round(steps / quantum)).max() < 1e-3
     if whole and mean > 0 and away.max() <= 1.01 * quantum and quantum > 0.5 * mean:
         return Ticks(mean, UNIFORM_TOLERANCE, True)
-    if uneven <= LOOSEST and away.max() <= LOOSEST * mean:
-        return Ticks(mean, min(LOOSEST, np.ceil(1100 * uneven) / 1000), False)
+    if uneven <= LARGEST_TOLERANCE and away.max() <= LARGEST_TOLERANCE * mean:
+        return Ticks(mean, min(LARGEST_TOLERANCE, np.ceil(1100 * uneven) / 1000), False)
     row = int(np.argmax(np.abs(steps - mean)))
     raise InputError(
         f"{where}: {table.place(row + 1)}: a step in time of "

@@ -16,7 +16,7 @@ from hystbench.inspection.names import choose, is_simulated, is_time, split_unit
 from hystbench.record import FloatArray
 from hystbench.units import NONE, check_known, is_known, plain
 
-LEAST = 20
+SHORTEST = 20
 """Samples of a signal; fewer are a table of something else."""
 
 _OF_MATRIX = re.compile(r"(?P<stem>.+)(?P<place>\(:,\d+\))")
@@ -88,7 +88,7 @@ def parts_of(table: Table) -> list[RecordColumns]:
     Columns of one group and one length belong together, with those of that length at
     the top of the file beside them. Of matrices alike the columns of one number do.
     """
-    long = [column for column in table.columns if len(column.values) >= LEAST]
+    long = [column for column in table.columns if len(column.values) >= SHORTEST]
     top = [column for column in long if not column.group]
     groups: dict[str, list[Column]] = {}
     for column in long:

@@ -11,7 +11,7 @@ from hystbench.doubts import doubts
 from hystbench.errors import InputError
 from hystbench.formats import Table, read_table
 from hystbench.inspection.columns import (
-    LEAST,
+    SHORTEST,
     Ask,
     Flags,
     RecordColumns,
@@ -73,8 +73,8 @@ def draft(files: Sequence[Path], place: Path, given: Flags, ask: Ask) -> Draft:
         found = parts_of(table)
         if not found:
             raise InputError(
-                f"{file}: no two columns of {LEAST} samples or more; expected an input "
-                f"and an output{_has(table)}"
+                f"{file}: no two columns of {SHORTEST} samples or more; expected an "
+                f"input and an output{_has(table)}"
             )
         parts += found
     signals = signals_of(parts, given, ask)

@@ -15,8 +15,14 @@ from numpy.typing import NDArray
 from hystbench.dataset import RECORD_NAME
 from hystbench.errors import InputError, refuse_unknown
 from hystbench.inspection.clocks import Ticks, ticks_of
-from hystbench.inspection.columns import LEAST, Ask, ChosenColumns, Flags, RecordColumns
-from hystbench.inspection.excitation import InputSummary, excitation_of
+from hystbench.inspection.columns import (
+    SHORTEST,
+    Ask,
+    ChosenColumns,
+    Flags,
+    RecordColumns,
+)
+from hystbench.inspection.input_summary import InputSummary, summary_of
 from hystbench.inspection.missing import cannot_be_bridged, runs
 from hystbench.inspection.names import split_unit
 from hystbench.periods import find_period
@@ -24,12 +30,12 @@ from hystbench.record import Record
 from hystbench.samples import UNIFORM_TOLERANCE
 from hystbench.units import seconds
 
-ONE_HELD_OUT = 3
+HELD_OUT_PART = 3
 """Of a lone record: a third is held out."""
-HEAD = (
+FIRST_COMMENT = (
     "# Proposed by hystbench init. Change what is wrong; the tutorial has all keys.\n"
 )
-ORDER = (
+KEY_ORDER = (
     *("file", "group", "rows", "name", "use", "period_samples", "missing"),
     *("sampling_frequency_hz", "stands_still", "meant", "sha256"),
 )
@@ -200,7 +206,7 @@ def _without_missing(
     entries, left = [], np.count_nonzero(~bad)
     for first, behind in runs(~cut):
         there = first + np.flatnonzero(~bad[first:behind])
-        if len(there) < LEAST:
+        if len(there) < SHORTEST:
             continue
         rows = [int(there[0]) + 1, int(there[-1]) + 1]
         piece = entry if rows == [1, len(bad)] else {**entry, "rows": rows}
@@ -216,7 +222,7 @@ def _without_missing(
             f"{len(entries)} pieces"
         )
     if left:
-        said += f"; {left} samples in pieces shorter than {LEAST} are left out"
+        said += f"; {left} samples in pieces shorter than {SHORTEST} are left out"
     notes.append(said)
     return entries
 
@@ -268,7 +274,7 @@ def with_roles(
             raise InputError("--hold-out: all records; expected at least one to fit")
     else:
         held, why = propose(
-            {record.name: excitation_of(record.u, record.dt) for record in records}
+            {record.name: summary_of(record.u, record.dt) for record in records}
         )
     notes.append(f"roles: {why}")
     return [
@@ -286,7 +292,7 @@ def cut_in_two(
     """
     first, last = entry.get("rows", (1, len(record)))
     samples = last - first + 1
-    part = samples - samples // ONE_HELD_OUT
+    part = samples - samples // HELD_OUT_PART
     period = find_period(record.u)
     if period is not None and samples >= 3 * period:
         part = max(round(part / period), 2) * period
@@ -367,7 +373,7 @@ def _beyond(inputs: Mapping[str, InputSummary], names: list[str]) -> tuple[bool,
 
 def yaml_text(about: Mapping[str, Any]) -> str:
     """Write a dataset.yaml, one line a key and one a record."""
-    lines = [HEAD]
+    lines = [FIRST_COMMENT]
     for key, value in about.items():
         if key != "records":
             lines.append(f"{key}: {_flow(value)}\n")
@@ -378,7 +384,7 @@ def yaml_text(about: Mapping[str, Any]) -> str:
 
 def entry_text(entry: Mapping[str, Any]) -> str:
     """Write a record's entry in one line."""
-    ordered = {key: entry[key] for key in ORDER if key in entry}
+    ordered = {key: entry[key] for key in KEY_ORDER if key in entry}
     return _flow(ordered)
 
 

@@ -10,24 +10,24 @@ from hystbench.dataset import Dataset
 from hystbench.errors import InputError
 from hystbench.formats import read_table
 from hystbench.gap.records.scored_samples import Compared
-from hystbench.gap.records.usable import REAL, check_usable
-from hystbench.inspection.excitation import InputSummary, excitation_of
+from hystbench.gap.records.usable import IF_REAL, check_usable
+from hystbench.inspection.input_summary import InputSummary, summary_of
 from hystbench.inspection.missing import cannot_be_bridged
 from hystbench.periods import find_period
 from hystbench.record import FloatArray, Record, Use
 from hystbench.units import seconds
 
-LATE = 1.0
+LATE_SAMPLES = 1.0
 """Samples by which a record is late against the others, worth telling."""
-MOST = 0.5
+DELAY_SHARE = 0.5
 """Of what the loop leaves of a record: the delay is then what is wrong with it."""
 SURE = 3.0
 """Standard errors of that difference."""
-NORMAL = 0.6745
+NORMAL_MEDIAN = 0.6745
 """Median size of a normal variable, in standard deviations."""
-OTHERS = 4
+LEAST_OTHERS = 4
 """Records at least that the one is held against."""
-INDEPENDENT = 20
+STRETCHES = 20
 """Stretches of a record whose delays are compared: model error is not white."""
 
 
@@ -47,7 +47,7 @@ class Facts:
     """Samples, as the dataset says or as it was found."""
     declared: bool
     """Whether the dataset says it."""
-    excitation: InputSummary
+    input: InputSummary
     low: float
     high: float
     """Range of the output."""
@@ -92,7 +92,7 @@ def facts_of(dataset: Dataset, item: Compared) -> Facts:
         jitter,
         record.period_samples or found,
         record.period_samples is not None,
-        excitation_of(record.u, record.dt),
+        summary_of(record.u, record.dt),
         float(record.y.min()),
         float(record.y.max()),
         _stuck(file, record, dataset.stands_still(record.name)),
@@ -131,7 +131,7 @@ def delay_of(item: Compared) -> tuple[float, float, float]:
 
 
 def _parts(values: FloatArray) -> list[FloatArray]:
-    return np.array_split(values, INDEPENDENT)
+    return np.array_split(values, STRETCHES)
 
 
 def late(facts: Sequence[Facts]) -> list[Facts]:
@@ -141,18 +141,18 @@ def late(facts: Sequence[Facts]) -> list[Facts]:
     that grows with the rate: each record's phase, its delay times its rate, is held
     against a straight line over the rate through those of the others.
     """
-    rates = np.array([item.excitation.relative_rate for item in facts])
+    rates = np.array([item.input.relative_rate for item in facts])
     phases = rates * [item.delay_s for item in facts]
     found = []
     for k, item in enumerate(facts):
         others = np.arange(len(facts)) != k
-        if np.count_nonzero(others) < OTHERS:
+        if np.count_nonzero(others) < LEAST_OTHERS:
             continue
         line = _middle_line(rates[others], phases[others])
         away = abs(phases[k] - np.polyval(line, rates[k])) / rates[k]
         usual = np.median(np.abs(phases[others] - np.polyval(line, rates[others])))
-        doubt = SURE * np.hypot(item.delay_error_s, usual / NORMAL / rates[k])
-        if away > max(LATE * item.dt, doubt) and item.delay_share > MOST:
+        doubt = SURE * np.hypot(item.delay_error_s, usual / NORMAL_MEDIAN / rates[k])
+        if away > max(LATE_SAMPLES * item.dt, doubt) and item.delay_share > DELAY_SHARE:
             found.append(item)
     return found
 
@@ -200,6 +200,6 @@ def _stuck(file: Path, record: Record, stands_still: Sequence[str]) -> str:
     except InputError as error:
         said = str(error).removeprefix(f"{file}: ")
         for channel in ("input", "output"):
-            said = said.removesuffix(REAL.format(channel))
+            said = said.removesuffix(IF_REAL.format(channel))
         return said
     return ""

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from hystbench.inspection.excitation import excitation_of
+from hystbench.inspection.input_summary import summary_of
 from hystbench.record import FloatArray, Mask
 
-QUARTER = 0.25
+BRIDGED_PERIODS = 0.25
 """Of the fastest period of an input, that a straight line may stand for: over more of
 it the line misses a turn, and hysteresis remembers turns."""
 
@@ -38,7 +38,7 @@ def cannot_be_bridged(u: FloatArray) -> Mask:
         return marked
     there = np.flatnonzero(~lost)
     bridged = np.interp(np.arange(len(u)), there, u[there])
-    fastest = excitation_of(bridged, 1.0).high_hz  # in periods a sample
+    fastest = summary_of(bridged, 1.0).high_hz  # in periods a sample
     for first, behind in runs(lost):
-        marked[first:behind] = (behind - first) * fastest > QUARTER
+        marked[first:behind] = (behind - first) * fastest > BRIDGED_PERIODS
     return marked

@@ -9,7 +9,7 @@ from hystbench.gap.report.pictures import EmbeddedPicture, draw
 from hystbench.inspection import pictures, words
 from hystbench.inspection.check import Check
 from hystbench.inspection.facts import Facts
-from hystbench.inspection.visible import TENTH, SmallestSeen
+from hystbench.inspection.visible import REVEALED, SmallestSeen
 from hystbench.report.layout import page_environment
 from hystbench.report.markup import one_micro
 from hystbench.report.table import Cell, Heading, PageTable, number, table_of
@@ -47,14 +47,14 @@ def _records(found: Check) -> PageTable:
         Heading("samples", True): lambda x: number(x.samples, str(x.samples)),
         Heading("rate (Hz)", True): lambda x: number(1 / x.dt, f"{1 / x.dt:.6g}"),
         Heading("jitter (%)", True): lambda x: number(x.jitter, _jitter(x)),
-        Heading("input"): attrgetter("excitation.kind"),
+        Heading("input"): attrgetter("input.kind"),
         Heading("period (samples)", True): lambda x: number(
             x.period, str(x.period or "none")
         ),
         Heading("periods", True): lambda x: number(x.periods, f"{x.periods:.3g}"),
         Heading("band"): words.band,
         Heading(f"input ({unit_text(record.input.unit)})"): lambda x: (
-            f"{x.excitation.low:.3g} to {x.excitation.high:.3g}"
+            f"{x.input.low:.3g} to {x.input.high:.3g}"
         ),
         Heading(f"output ({unit_text(record.output.unit)})"): lambda x: (
             f"{x.low:.3g} to {x.high:.3g}"
@@ -82,8 +82,8 @@ def _jitter(item: Facts) -> str:
 
 
 def _pictures(found: Check) -> list[EmbeddedPicture]:
-    count = min(len(found.records), pictures.LOOPS)
-    columns = min(count, pictures.ROW)
+    count = min(len(found.records), pictures.MOST_LOOPS)
+    columns = min(count, pictures.LOOPS_IN_ROW)
     rows = math.ceil(count / columns)
     more = len(found.records) - count
     rest = f"; {more} more are not drawn" if more else ""
@@ -114,7 +114,7 @@ def _chart(found: Check) -> EmbeddedPicture | None:
         pictures.strengths,
         found.effects,
         words="How strong each effect must be to be seen, and to be told from every "
-        f"other effect; beyond the dashed line, {100 * TENTH:g} % of the output, it "
+        f"other effect; beyond the dashed line, {100 * REVEALED:g} % of the output, it "
         "counts as not revealed",
         height=0.8 + 0.2 * len(shown),
     )

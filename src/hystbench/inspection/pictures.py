@@ -9,15 +9,15 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from hystbench.figures.style import BLUE, GREY, VERMILION, axis_label
 from hystbench.inspection.check import Check
-from hystbench.inspection.visible import TENTH, SmallestSeen
+from hystbench.inspection.visible import REVEALED, SmallestSeen
 
-LOOPS = 8
+MOST_LOOPS = 8
 """Records whose loops are drawn."""
-POINTS = 3000
+LOOP_POINTS = 3000
 """Of a loop, at most."""
-ROW = 4
+LOOPS_IN_ROW = 4
 """Loops in a row."""
-LEAST = 1e-4
+LEAST_STRENGTH = 1e-4
 """Share of the output below which the axis of strength ends."""
 
 
@@ -26,13 +26,13 @@ def loops(axes: Sequence[Axes], found: Check) -> None:
     flat = np.ravel(np.asarray(axes))
     record = found.records[0]
     for ax, item in zip(flat, found.records, strict=False):
-        step = max(1, len(item) // POINTS)
+        step = max(1, len(item) // LOOP_POINTS)
         colour = BLUE if item.use == "fit" else VERMILION
         ax.plot(item.u[::step], item.y[::step], color=colour, linewidth=0.7)
         ax.set_title(f"{item.name} ({item.use})", fontsize=7)
     for ax in flat[len(found.records) :]:
         ax.set_visible(False)
-    columns = min(ROW, len(found.records))
+    columns = min(LOOPS_IN_ROW, len(found.records))
     for k, ax in enumerate(flat[: len(found.records)]):
         if k % columns == 0:
             ax.set_ylabel(axis_label(record.output))
@@ -44,7 +44,7 @@ def bands(axes: Sequence[Axes], found: Check) -> None:
     """Draw each record's band, over the swing of its input."""
     (ax,) = axes
     for use, colour in (("fit", BLUE), ("hold-out", VERMILION)):
-        inputs = [item.excitation for item in found.facts if item.use == use]
+        inputs = [item.input for item in found.facts if item.use == use]
         for k, given in enumerate(inputs):
             ax.plot(
                 [given.low_hz, given.high_hz],
@@ -71,7 +71,7 @@ def strengths(axes: Sequence[Axes], effects: Sequence[SmallestSeen]) -> None:
     (ax,) = axes
     shown = [item for item in effects if math.isfinite(item.seen_from)]
     places = np.arange(len(shown))
-    seen = np.array([max(item.seen_from, LEAST) for item in shown])
+    seen = np.array([max(item.seen_from, LEAST_STRENGTH) for item in shown])
     told = np.array([item.told_from for item in shown])
     top = 3.0
     for place, low, high in zip(places, seen, told, strict=True):
@@ -96,7 +96,7 @@ def strengths(axes: Sequence[Axes], effects: Sequence[SmallestSeen]) -> None:
             markersize=5,
             label="never told from one",
         )
-    ax.axvline(TENTH, color=GREY, linestyle="--", linewidth=0.8)
+    ax.axvline(REVEALED, color=GREY, linestyle="--", linewidth=0.8)
     ax.set_xscale("log")
     ax.set_xlim(min(float(seen.min(initial=1e-2)), 1e-2) / 1.5, top * 1.25)
     ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g}"))

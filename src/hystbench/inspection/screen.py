@@ -12,7 +12,7 @@ from hystbench.inspection.check import Check, Finding
 from hystbench.inspection.facts import Facts
 from hystbench.inspection.visible import SmallestSeen
 from hystbench.inspection.words import (
-    EVEN,
+    EVEN_CLOCK,
     FLOORS,
     KINDS,
     band,
@@ -25,32 +25,32 @@ from hystbench.inspection.words import (
 
 WIDTH = 100
 """Letters of a line."""
-LINES = 40
+SCREEN_LINES = 40
 """Lines of a screen."""
-FEW = 6
+FEW_RECORDS = 6
 """Records up to which each has a line of its own."""
-SHARES = {"records": 9, "seen": 5, "alike": 4, "hidden": 5}
+PART_LINES = {"records": 9, "seen": 5, "alike": 4, "hidden": 5}
 """Lines of each part where all together are more than a screen; findings get the
 rest."""
 
 
 def lines(found: Check) -> list[str]:
-    """Give the lines for the terminal, at most ``LINES`` of ``WIDTH`` letters.
+    """Give the lines for the terminal, at most ``SCREEN_LINES`` of ``WIDTH`` letters.
 
     A path or a name that is longer by itself is not broken.
     """
     unit = found.records[0].input.unit
-    few = len(found.facts) <= FEW
+    few = len(found.facts) <= FEW_RECORDS
     parts = {
         "head": _head(found),
         "records": _each(found.facts, unit) if few else _grouped(found.facts, unit),
-        "findings": _findings(found.findings, FEW),
+        "findings": _findings(found.findings, FEW_RECORDS),
         **_effects(found),
     }
-    if sum(map(len, parts.values())) > LINES:
-        parts |= {key: _cut(parts[key], most) for key, most in SHARES.items()}
+    if sum(map(len, parts.values())) > SCREEN_LINES:
+        parts |= {key: _cut(parts[key], most) for key, most in PART_LINES.items()}
         parts["findings"] = []
-        room = LINES - sum(map(len, parts.values()))
+        room = SCREEN_LINES - sum(map(len, parts.values()))
         parts["findings"] = _cut(_findings(found.findings, 1), room)
     return [line for part in parts.values() for line in part]
 
@@ -96,7 +96,7 @@ def _each(facts: Sequence[Facts], unit: str) -> list[str]:
         jitter = "" if item.jitter is None else f", jitter {jitter_text(item.jitter)}"
         told += _lines(
             f"{item.name:{width}} {item.use:8} {item.samples} at {1 / item.dt:.5g} Hz"
-            f"{jitter}, {item.excitation.kind}, {period}, {band(item)}, "
+            f"{jitter}, {item.input.kind}, {period}, {band(item)}, "
             f"{level(item, unit)}"
         )
     return told
@@ -106,13 +106,13 @@ def _grouped(facts: Sequence[Facts], unit: str) -> list[str]:
     """Tell records of one use, kind of input and rate together."""
 
     def key(item: Facts) -> tuple[str, str, str]:
-        return item.use, item.excitation.kind, f"{1 / item.dt:.5g}"
+        return item.use, item.input.kind, f"{1 / item.dt:.5g}"
 
     told = []
     for (use, kind, rate), group in groupby(sorted(facts, key=key), key):
         items = list(group)
         jitter = max(item.jitter or 0.0 for item in items)
-        inputs = [item.excitation for item in items]
+        inputs = [item.input for item in items]
         low, high = min(x.low for x in inputs), max(x.high for x in inputs)
         said = [
             f"{len(items)} {use}, {kind}",
@@ -122,7 +122,7 @@ def _grouped(facts: Sequence[Facts], unit: str) -> list[str]:
             f"{max(x.high_hz for x in inputs):.3g} Hz",
             f"{low:.3g} to {quantity(high, unit)}",
         ]
-        if jitter >= EVEN:
+        if jitter >= EVEN_CLOCK:
             said.insert(2, f"jitter up to {jitter_text(jitter)}")
         told += _lines(", ".join(said))
         told.append("    " + _names([item.name for item in items], WIDTH - 4))

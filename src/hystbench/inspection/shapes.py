@@ -15,7 +15,7 @@ from hystbench.gap.fitting.beside import beside_columns
 from hystbench.gap.fitting.state import ModelState
 from hystbench.record import FloatArray
 
-POINTS = 6
+RANGE_POINTS = 6
 """Of an effect's range that are looked at; of further numbers of it, two."""
 
 
@@ -84,7 +84,7 @@ def _thinned(variant: Variant) -> list[Sequence[float]]:
     """Give a few values of each number that is searched."""
     axes: list[Sequence[float]] = []
     for k, axis in enumerate(variant.grids.values()):
-        count = min(POINTS if k == 0 else 2, len(axis))
+        count = min(RANGE_POINTS if k == 0 else 2, len(axis))
         places = np.linspace(0, len(axis) - 1, count).round().astype(int)
         axes.append([float(axis[place]) for place in places])
     return axes

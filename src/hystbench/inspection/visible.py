@@ -23,11 +23,11 @@ from hystbench.inspection.shapes import Shape, shapes_of
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 
-TENTH = 0.1
+REVEALED = 0.1
 """Of the output's rms: an effect that must be larger to be seen is not revealed."""
-NOTHING = 1e-9
+ROUNDING_SHARE = 1e-9
 """Share of the power of what an effect does that is rounding."""
-TAKEN = 0.99
+ABSORBED_SHARE = 0.99
 """Share of what an effect does that the base could do, worth telling."""
 
 
@@ -58,7 +58,7 @@ class SmallestSeen:
     @property
     def revealed(self) -> bool:
         """Whether it shows before it is a tenth of the output."""
-        return self.seen_from <= TENTH
+        return self.seen_from <= REVEALED
 
     @property
     def told_from(self) -> float:
@@ -186,7 +186,7 @@ class _Judge:
         if shape.effect != "hysteresis":  # that is the base's own, beside a line
             left = columns - self.own @ (self.own.T @ columns)
         total, rest = float(np.sum(columns**2)), float(np.sum(left**2))
-        if rest < NOTHING * total:
+        if rest < ROUNDING_SHARE * total:
             left, rest = np.zeros_like(left), 0.0
         size = float(np.sqrt(total / len(columns))) / self.reach
         needed = size * self._factor(left, shape.charge)
@@ -255,9 +255,9 @@ class _Judge:
         return tuple((name, float(value)) for name, value in ordered)
 
     def _why(self, item: _Measured, share: float) -> str:
-        if share <= TENTH:
+        if share <= REVEALED:
             return ""
-        if item.absorbed > TAKEN:
+        if item.absorbed > ABSORBED_SHARE:
             return (
                 f"{100 * item.absorbed:.4g} % of what it does is what another gain, "
                 "offset or shape of the hysteresis does too"

@@ -14,9 +14,9 @@ FLOORS = {
     "upper-bound": "an upper bound, as nothing repeats",
 }
 KINDS = {"wrong": "refused by 'hystbench gap'", "missing": "to add", "note": "note"}
-NAMED = 2
+RIVALS_TOLD = 2
 """Rivals that are named."""
-EVEN = 1e-6
+EVEN_CLOCK = 1e-6
 """Of a step: a clock that is as even as that."""
 
 
@@ -41,7 +41,7 @@ def quantity(value: float, unit: str) -> str:
 
 def mistaken(item: SmallestSeen) -> str:
     """Say what an effect may be mistaken for until it is how large."""
-    near = item.rivals[:NAMED]
+    near = item.rivals[:RIVALS_TOLD]
     if not near:
         return ""
     told = [
@@ -70,16 +70,16 @@ def headline(found: Check) -> str:
 
 def level(facts: Facts, unit: str) -> str:
     """Write the range of an input."""
-    item = facts.excitation
+    item = facts.input
     return f"{item.low:.3g} to {quantity(item.high, unit)}"
 
 
 def band(facts: Facts) -> str:
     """Write the band of an input."""
-    item = facts.excitation
+    item = facts.input
     return f"{item.low_hz:.3g} to {item.high_hz:.3g} Hz"
 
 
 def jitter_text(jitter: float) -> str:
     """Write a jitter in percent of a step; what is rounding is none."""
-    return "0 %" if jitter < EVEN else f"{100 * jitter:.1g} %"
+    return "0 %" if jitter < EVEN_CLOCK else f"{100 * jitter:.1g} %"

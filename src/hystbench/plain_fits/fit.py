@@ -9,7 +9,7 @@ from hystbench.blocks.rate_dependent_hysteresis import FORMS
 from hystbench.model import Model
 from hystbench.operators import play
 from hystbench.plain_fits.search import search
-from hystbench.plain_fits.table import PLACES, next_to, place_of, searched_of
+from hystbench.plain_fits.table import PLACE_IN_CHAIN, next_to, place_of, searched_of
 from hystbench.plain_fits.task import EffectFit, Task, through
 from hystbench.record import FloatArray, Record
 
@@ -47,7 +47,7 @@ def fit(task: Task, effect: str) -> EffectFit | None:
 
 def effects() -> tuple[str, ...]:
     """Name all effects that :func:`fit` knows."""
-    return (*PLACES, "hysteresis", "hysteresis-shape", "mains-pickup", "drift")
+    return (*PLACE_IN_CHAIN, "hysteresis", "hysteresis-shape", "mains-pickup", "drift")
 
 
 def within_noise(

@@ -35,7 +35,7 @@ class Searched:
 
 
 # Where an effect acts: before the chain, just behind the hysteresis, or at its end.
-PLACES = {
+PLACE_IN_CHAIN = {
     "input-delay": "start",
     "drive-lag": "start",
     "eddy-diffusion": "start",
@@ -59,7 +59,7 @@ PLACES = {
 
 def place_of(task: Task, effect: str) -> int | None:
     """Give the place of an effect's block in the chain; None where it has none."""
-    where, end = PLACES[effect], len(task.model.chain)
+    where, end = PLACE_IN_CHAIN[effect], len(task.model.chain)
     if where == "material":
         if task.hysteresis is None:
             return None if effect == "rate-dependent-hysteresis" else next_to(task, 0)

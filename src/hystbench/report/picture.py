@@ -13,7 +13,7 @@ _TAG = re.compile(r"<svg[^>]*>", re.S)
 _SIZE = re.compile(r'\s(width|height)="([\d.]+)pt"')
 
 #: A column of a journal is 3.5 inches wide, a page 7.2 (CSS pixels, 96 an inch).
-WIDE = 500
+COLUMN_PIXELS = 500
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class PagePicture:
     @property
     def wide(self) -> bool:
         """Whether it is as wide as a page of a journal, not as a column."""
-        return self.width > WIDE
+        return self.width > COLUMN_PIXELS
 
 
 def svg_source(content: bytes) -> str:

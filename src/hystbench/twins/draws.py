@@ -8,9 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from statistics import median
 from typing import Any
 
-import numpy as np
-
 from hystbench.compare.beside import Draw
+from hystbench.metrics import rms
 from hystbench.rdgpi import RateDependentGPI
 from hystbench.twins.fits import run_rdgpi
 from hystbench.twins.read import Twin
@@ -61,12 +60,12 @@ def run_draws(
         for draw in range(settings["draws"]):
             signals = draw_signals(job, draw).values()
             records = measure_twin(twin, signals, settings["measure"], draw)
-            rms = float(np.sqrt(np.mean(records[name].y ** 2)))
+            size = rms(records[name].y)
             runs = dict(run_rdgpi(rdgpi, records))
             for model, own in filter_jobs(settings).items():
                 runs |= run_records(model, own, records, identified)
             found += [
-                Draw(name, sines, draw, model, run.error("mse"), run.error("re"), rms)
+                Draw(name, sines, draw, model, run.error("mse"), run.error("re"), size)
                 for (_, model), run in runs.items()
             ]
     return found

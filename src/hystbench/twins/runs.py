@@ -10,11 +10,11 @@ from typing import Any
 from hystbench.adaptive import make_filter, steps_of
 from hystbench.compare.evidence import Cell, Run
 from hystbench.filters import AdaptiveFilter, Result, run_many
-from hystbench.measurement import measure
 from hystbench.metrics import mean_square_error, relative_error
 from hystbench.published import in_order
 from hystbench.record import Record
 from hystbench.signals import Signal, make_signal
+from hystbench.twin_record import record_of_twin
 from hystbench.twins.read import Twin
 
 Settings = Mapping[str, Any]
@@ -36,7 +36,9 @@ def measure_twin(
 ) -> dict[str, Record]:
     """Simulate a twin on signals; another seed draws another noise."""
     job = dict(settings) | {"seed": settings["seed"] + seed}
-    return {each.name: measure(each, twin.model, job, twin.place) for each in signals}
+    return {
+        each.name: record_of_twin(each, twin.model, job, twin.place) for each in signals
+    }
 
 
 def filter_jobs(settings: Settings) -> dict[str, Settings]:

@@ -31,7 +31,7 @@ CASES = [
 
 
 def test_a_form_a_family_and_an_unlisted_effect_have_a_row_each():
-    rows = {row[:2]: row[2:] for row in never_seen(frame(CASES), kept=1)}
+    rows = {row[:2]: row[2:] for row in never_seen(frame(CASES), group=1)}
     assert list(rows) == [
         ("form", "creep: fractional"),
         ("form", "all"),
@@ -52,7 +52,7 @@ def test_a_lost_case_is_no_right_answer():
     lost = {"status": "exit status 2", "gap": None, "seconds": 1.0, "cpu_seconds": 1.0}
     about = truth(effect("stick-slip", "only"), kind="unlisted")
     missed = judge("mine", "case", about, lost, SCHEMA, lambda members: members)
-    ((*_, cases, right, _, _, _, _), _) = never_seen(frame([missed, CASES[5]]), kept=1)
+    ((*_, cases, right, _, _, _, _), _) = never_seen(frame([missed, CASES[5]]), group=1)
     assert (cases, right) == (2, 0.5)
 
 

@@ -15,7 +15,7 @@ from hystbench.challenge.contest.plan import (
     sizes,
     strata,
 )
-from hystbench.challenge.kept import GROUPS, KEPT
+from hystbench.challenge.left_out_groups import GROUPS, LEFT_OUT_GROUP
 from hystbench.challenge.make import make
 from hystbench.challenge.plant.effects import IN_ACTUATOR, VOCABULARY
 from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES
@@ -63,7 +63,7 @@ def count(name, **wanted):
 
 def test_the_published_set_is_stratified_as_asked():
     for ratio, gpi, other in ((20.0, 200, 100), (10.0, 100, 50)):
-        for family in set(ACTUATORS) - set(GROUPS[KEPT].families):
+        for family in set(ACTUATORS) - set(GROUPS[LEFT_OUT_GROUP].families):
             expected = gpi if family == "gpi" else other
             about = {"kind": "single", "ratio_db": ratio, "family": family}
             assert count("published", **about) == expected
@@ -72,7 +72,7 @@ def test_the_published_set_is_stratified_as_asked():
     assert count("published", kind="triple") == 50
     assert count("published", kind="unlisted") == 100
     assert len(plan("development")) == 400
-    assert len(plan("small", kept=1)) == 12
+    assert len(plan("small", group=1)) == 12
 
 
 SETS_OF_ALL = [
@@ -111,9 +111,9 @@ def kinds_of(spec):
     return [known[name] for name in spec.effects]
 
 
-def met(kept, *names):
+def met(group, *names):
     """Families, unlisted effects and forms that sets may draw."""
-    specs = [entry.spec for name in names for entry in plan(name, kept=kept)]
+    specs = [entry.spec for name in names for entry in plan(name, group=group)]
     families = {spec.family for spec in specs}
     unlisted = {x for s in specs if s.kind == "unlisted" for x in s.effects}
     forms = {
@@ -125,14 +125,14 @@ def met(kept, *names):
     return families, unlisted, forms
 
 
-@pytest.mark.parametrize("kept", GROUPS)
-def test_no_set_but_those_of_transfer_holds_the_group_that_is_left_out(kept):
-    out = GROUPS[kept]
-    families, unlisted, forms = met(kept, *(set(SETS) - set(TRANSFER)))
+@pytest.mark.parametrize("group", GROUPS)
+def test_no_set_but_those_of_transfer_holds_the_group_that_is_left_out(group):
+    out = GROUPS[group]
+    families, unlisted, forms = met(group, *(set(SETS) - set(TRANSFER)))
     assert not families & set(out.families)
     assert not unlisted & set(out.unlisted)
     assert not forms & set(out.forms)
-    families, unlisted, forms = met(kept, *TRANSFER)
+    families, unlisted, forms = met(group, *TRANSFER)
     assert set(out.families) <= families
     assert unlisted == set(out.unlisted)
     assert set(out.forms) <= forms
@@ -148,12 +148,12 @@ def test_every_group_comes_back_when_another_is_left_out():
         assert set(back.forms) <= forms
 
 
-@pytest.mark.parametrize("kept", GROUPS)
+@pytest.mark.parametrize("group", GROUPS)
 @pytest.mark.parametrize(
     ("name", "known"), [("published", IN_ACTUATOR), ("mechanisms", IN_MACHINE)]
 )
-def test_every_listed_effect_is_hidden_whatever_is_left_out(kept, name, known):
-    hidden = {x for entry in plan(name, kept=kept) for x in entry.spec.effects}
+def test_every_listed_effect_is_hidden_whatever_is_left_out(group, name, known):
+    hidden = {x for entry in plan(name, group=group) for x in entry.spec.effects}
     assert {x for x, kind in known.items() if kind.listed} <= hidden
 
 
@@ -170,14 +170,14 @@ def test_groups_share_nothing_and_their_names_are_known():
         # a name of both an actuator's and a machine's effects hides in both
         for known in kinds:
             for kind in known.values():
-                assert item.allowed(kind, inside=False) or not kind.listed
+                assert item.allowed(kind, of_group=False) or not kind.listed
     # each kind of physics without a word is left out once
     assert sorted(x for g in GROUPS.values() for x in g.unlisted) == sorted(unlisted)
 
 
 def test_a_group_that_there_is_not_is_refused():
-    with pytest.raises(InputError, match="kept: 9; expected 1 to 3"):
-        plan("small", kept=9)
+    with pytest.raises(InputError, match="group: 9; expected 1 to 3"):
+        plan("small", group=9)
 
 
 @pytest.mark.parametrize(
@@ -191,12 +191,12 @@ def test_a_group_that_there_is_not_is_refused():
 def test_a_case_takes_the_form_that_is_left_out_in_the_transfer_set_alone(
     effect, family, form
 ):
-    def taken(of_kept, seed=1):
-        about = {"kept": 1, "of_kept": of_kept}
+    def taken(of_group, seed=1):
+        about = {"group": 1, "of_group": of_group}
         spec = CaseSpec(seed, "single", (effect,), family, 20.0, **about)
         return make(spec).truth["effects"][0]["form"]
 
-    assert taken(of_kept=True) == form
+    assert taken(of_group=True) == form
     assert form not in {taken(False, seed) for seed in range(4)}
 
 
@@ -210,12 +210,12 @@ def test_unlisted_effects_are_hidden_in_machines_too():
         if e.spec.kind == "unlisted"
     }
     assert set(hidden) == development
-    left_out = set(GROUPS[KEPT].unlisted) & set(IN_MACHINE)
+    left_out = set(GROUPS[LEFT_OUT_GROUP].unlisted) & set(IN_MACHINE)
     assert len(set(hidden) | left_out) >= 4
     assert left_out
     for family in {spec.family for spec in specs}:
         counts = Counter(s.effects[0] for s in specs if s.family == family)
-        assert set(counts) == set(effects_of("unlisted", family, KEPT))
+        assert set(counts) == set(effects_of("unlisted", family, LEFT_OUT_GROUP))
         assert max(counts.values()) - min(counts.values()) <= 1
 
 
@@ -234,7 +234,7 @@ def test_a_name_tells_nothing_of_the_case():
 
 
 def test_chunks_hold_each_case_once():
-    entries = plan("small", kept=1)
+    entries = plan("small", group=1)
     cut = chunks(entries, 5)
     assert [len(chunk) for chunk in cut.values()] == [5, 5, 2]
     assert tuple(e for chunk in cut.values() for e in chunk) == entries

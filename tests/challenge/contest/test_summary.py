@@ -12,7 +12,7 @@ from hystbench.challenge.contest.frames import frame
 from hystbench.challenge.contest.score import judge
 from hystbench.challenge.contest.summary import (
     carried_over,
-    further,
+    figures,
     reach,
     summary,
 )
@@ -173,7 +173,8 @@ def test_what_else_there_is_to_say_by_hand():
             strict=True,
         )
     ]
-    told = {name: (value, cases) for name, value, _, _, cases in further(frame(rows))}
+    reached = {each.name: each.of(frame(rows)) for each in figures("further")}
+    told = {name: (found.share, found.cases) for name, found in reached.items()}
     assert told["in_set gpi 20 dB"] == (pytest.approx(2 / 3), 3)
     assert told["in_set preisach 20 dB"] == (1.0, 1)
     assert told["in_set jiles-atherton 20 dB"] == (None, 0)
@@ -212,7 +213,7 @@ def test_the_confusion_counts_each_case_once():
 
 def test_what_was_confused_and_what_would_tell_it_apart():
     found = tables.confused(frame(a_contest()))
-    assert found == [("resonance", "creep", 1, 4, tables.UNKNOWN)]
+    assert found == [("resonance", "creep", 1, 4, tables.NO_EXPERIMENT)]
 
 
 @pytest.mark.parametrize(
@@ -222,7 +223,7 @@ def test_what_was_confused_and_what_would_tell_it_apart():
         ("eddy-diffusion", "input-delay", "a multisine up to half"),
         ("drift", "creep", "the same record again"),
         ("creep", "thermal-drift", "long holds"),
-        ("dropouts", "creep", tables.UNKNOWN),
+        ("dropouts", "creep", tables.NO_EXPERIMENT),
     ],
 )
 def test_experiments_go_both_ways(one, other, told):

@@ -8,9 +8,13 @@ from hypothesis import strategies as st
 
 from hystbench.blocks import registry
 from hystbench.errors import InputError
-from hystbench.gap.experiment.excitations import Limits, candidates
+from hystbench.gap.experiment.candidates import Limits, candidates
 from hystbench.gap.experiment.separation import Rival, RivalPair, separation
-from hystbench.gap.experiment.tell_apart import CLEAR, Experiment, next_experiment
+from hystbench.gap.experiment.tell_apart import (
+    CLEAR_FLOORS,
+    Experiment,
+    next_experiment,
+)
 from hystbench.gap.schema import EXPERIMENT
 from hystbench.model import Model
 from hystbench.schema import check_against_schema
@@ -254,7 +258,7 @@ def test_one_excitation_is_best_over_the_pairs_of_all_sets(both):
             )
         )
     merits = [
-        (sum(x >= 1 for x in each), sum(min(x, CLEAR) for x in each), min(each))
+        (sum(x >= 1 for x in each), sum(min(x, CLEAR_FLOORS) for x in each), min(each))
         for each in sizes
     ]
     best = merits.index(max(merits))

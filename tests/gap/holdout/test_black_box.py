@@ -5,7 +5,7 @@ from hystbench.gap.holdout.show import black_box_mapping
 from hystbench.gap.holdout.shrink import shrink
 from hystbench.gap.records.black_box import BlackBox
 from hystbench.gap.records.folds import make_folds
-from hystbench.gap.records.scored_samples import rms
+from hystbench.metrics import rms
 from tests.gap.made import compared, sine
 
 

@@ -14,7 +14,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.on_records import compared_records, start_state
-from hystbench.gap.holdout.show import FAR, bounded, reach, score_hold_out
+from hystbench.gap.holdout.show import RUNS_AWAY_RATIO, bounded, reach, score_hold_out
 from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.records.black_box import black_box
@@ -232,7 +232,7 @@ def test_the_bound_is_some_times_as_far_as_the_base_goes():
     one = record(np.zeros(3), name="rests")
     usual = reach([np.array([0.0, -2.0, 1.0]), np.zeros(3)], 0.5)
     assert usual == 2.5
-    inside = np.array([0.0, -FAR * usual, FAR * usual])
+    inside = np.array([0.0, -RUNS_AWAY_RATIO * usual, RUNS_AWAY_RATIO * usual])
     assert bounded("m", [one], [inside], usual) == ([inside], [])
     kept, found = bounded("m", [one], [inside * (1 + 1e-9)], usual)
     assert kept == [None]

@@ -14,7 +14,7 @@ from jsonschema import validate
 from hystbench.gap.effects import effects as vocabulary
 from hystbench.gap.locate import Contribution, View, locate, ranked
 from hystbench.gap.locate.distortion import BETWEEN, EVEN, ODD, take_distortion
-from hystbench.gap.locate.forms import HOLD, narrowest_bins
+from hystbench.gap.locate.forms import HELD_SHARE, narrowest_bins
 from hystbench.gap.locate.samples import take_samples
 from hystbench.gap.records.floor import noise_floor
 from hystbench.gap.schema import VIEW
@@ -324,7 +324,7 @@ def test_degenerate_records_give_views_and_no_warning():
 def test_the_narrowest_range_holds_enough_and_no_narrower_one_does(held):
     values = np.array(held)
     first, last = narrowest_bins(values)
-    wanted = HOLD * values.sum()
+    wanted = HELD_SHARE * values.sum()
     assert values[first : last + 1].sum() >= wanted - 1e-9
     width = last - first
     for start in range(len(values) - width + 1):

@@ -11,7 +11,12 @@ import pytest
 from hystbench.gap.locate import curves as curves_of
 from hystbench.gap.locate import locate
 from hystbench.gap.locate.distortion import EITHER, EVEN, ODD, take_distortion
-from hystbench.gap.locate.picture import COLUMNS, FEWEST, over_plane, rate_edges
+from hystbench.gap.locate.picture import (
+    LEAST_SAMPLES,
+    MAP_COLUMNS,
+    over_plane,
+    rate_edges,
+)
 from hystbench.gap.locate.samples import take_samples
 from hystbench.gap.records.floor import noise_floor
 from hystbench.gap.records.scored_samples import Compared
@@ -244,14 +249,14 @@ def test_cells_of_few_samples_hold_nothing():
     cells, u, speed = found.panels[0].cells, samples.input, samples.speed
     for row, low in enumerate(cells.rows[:-1]):
         high = cells.rows[row + 1]
-        for column in range(COLUMNS):
+        for column in range(MAP_COLUMNS):
             left, right = cells.columns[column : column + 2]
             # What stands on an edge may be in either of two cells.
             wide = (u >= left) & (u <= right) & (speed >= low) & (speed <= high)
             tight = (u > left) & (u < right) & (speed > low) & (speed < high)
-            if np.sum(wide) < FEWEST:
+            if np.sum(wide) < LEAST_SAMPLES:
                 assert cells.values[row][column] is None
-            if np.sum(tight) >= FEWEST:
+            if np.sum(tight) >= LEAST_SAMPLES:
                 assert cells.values[row][column] is not None
 
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from hystbench.gap.simulation.reshape import (
     OPERATORS,
-    SMALLEST,
+    WEAKEST,
     orthonormal,
     reshapings,
 )
@@ -33,9 +33,9 @@ def test_the_basis_is_orthonormal_and_holds_the_columns(seed, count, size):
     assert basis.shape[1] <= count
     usable = columns[:, : count + 2] / np.linalg.norm(columns[:, : count + 2], axis=0)
     outside = usable - basis @ (basis.T @ usable)
-    # Dropped: what is weaker than SMALLEST of the strongest, whose square is at most
+    # Dropped: what is weaker than WEAKEST of the strongest, whose square is at most
     # the number of columns.
-    limit = SMALLEST * np.sqrt(count + 2) + 1e-9
+    limit = WEAKEST * np.sqrt(count + 2) + 1e-9
     assert np.linalg.norm(outside, axis=0).max() < limit
 
 

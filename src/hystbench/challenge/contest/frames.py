@@ -10,10 +10,10 @@ from hystbench.challenge.contest.score import COLUMNS, Row
 from hystbench.compare.rows import read_items
 from hystbench.files import write_csv
 
-#: What an effect must be stated with at least to be called confident.
-CONFIDENT = 0.8
+#: An effect that is stated with a higher confidence is called confident.
+CONFIDENT_ABOVE = 0.8
 #: Types of columns; but for text, cells may be missing.
-TYPES = {"str": "str", "bool": "boolean", "int": "Int64", "float": "Float64"}
+COLUMN_TYPES = {"str": "str", "bool": "boolean", "int": "Int64", "float": "Float64"}
 
 
 def read_rows(paths: Sequence[Path]) -> pd.DataFrame:
@@ -33,12 +33,12 @@ def frame(rows: Iterable[Row]) -> pd.DataFrame:
     Figures that mean nothing for a case are missing. Added are ``stated``, the effects
     named with the confidence of each; ``given``, the same where the verdict is
     ``named``, as names beside another do not count; and ``confident``, whether one is
-    stated with more than :data:`CONFIDENT`.
+    stated with more than :data:`CONFIDENT_ABOVE`.
     """
     told = [astuple(row) for row in rows]
     table = pd.DataFrame(told, columns=list(COLUMNS), dtype=object)
     kinds = {item.name: str(item.type).partition(" ")[0] for item in fields(Row)}
-    table = table.astype({name: TYPES[kind] for name, kind in kinds.items()})
+    table = table.astype({name: COLUMN_TYPES[kind] for name, kind in kinds.items()})
     table["stated"] = table["confidences"].map(_stated).astype(object)
     named = table["verdict"] == "named"
     given = [x if y else {} for x, y in zip(table["stated"], named, strict=True)]
@@ -60,5 +60,5 @@ def _stated(confidences: str) -> dict[str, float]:
 
 
 def sure(names: Mapping[str, float]) -> bool:
-    """Tell whether a name is stated with more than :data:`CONFIDENT`."""
-    return any(confidence > CONFIDENT for confidence in names.values())
+    """Tell whether a name is stated with more than :data:`CONFIDENT_ABOVE`."""
+    return any(confidence > CONFIDENT_ABOVE for confidence in names.values())

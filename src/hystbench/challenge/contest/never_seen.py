@@ -13,12 +13,12 @@ import pandas as pd
 
 from hystbench.challenge.contest.frames import sure
 from hystbench.challenge.contest.tables import how_often, names_that_count, wilson
-from hystbench.challenge.kept import KEPT, group_of
+from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP, group_of
 from hystbench.challenge.spec import NAMELESS
 
-LEFT_OUT = ("left_out", "cases", "no_name", "low", "high", "confident", "called")
+COLUMNS = ("left_out", "cases", "no_name", "low", "high", "confident", "called")
 """Columns of the table of what is left out."""
-EVERY = "all"
+ALL_NAMES = "all"
 """The last row of each sort."""
 
 
@@ -39,17 +39,19 @@ def left_out(cases: pd.DataFrame) -> pd.DataFrame:
     """
     nameless = cases.assign(truth="")
     found = list(_rows(nameless, cases["truth"]))
-    return pd.DataFrame(found, columns=list(LEFT_OUT)).round(4)
+    return pd.DataFrame(found, columns=list(COLUMNS)).round(4)
 
 
-def never_seen(cases: pd.DataFrame, kept: int = KEPT) -> Iterator[tuple[Any, ...]]:
-    """Sum up cases of one hidden effect, or none, by what was kept from all other sets.
+def never_seen(
+    cases: pd.DataFrame, group: int = LEFT_OUT_GROUP
+) -> Iterator[tuple[Any, ...]]:
+    """Sum up cases of one hidden effect, or none, by what all other sets leave out.
 
     Parameters
     ----------
     cases : DataFrame
         Judged cases of one solver on the transfer set.
-    kept : int
+    group : int
         The group that all other sets left out.
 
     Yields
@@ -61,7 +63,7 @@ def never_seen(cases: pd.DataFrame, kept: int = KEPT) -> Iterator[tuple[Any, ...
         interval; in what share a wrong name is stated with more than .8; and which
         wrong names were given how often.
     """
-    held = group_of(kept)
+    held = group_of(group)
     single = cases[cases["kind"] == "single"]
     forms = single["truth"] + ": " + single["form"]
     ours = cases["family"].isin(held.families)
@@ -78,7 +80,7 @@ def never_seen(cases: pd.DataFrame, kept: int = KEPT) -> Iterator[tuple[Any, ...
 
 def _rows(cases: pd.DataFrame, names: pd.Series[Any]) -> Iterator[tuple[Any, ...]]:
     """Give ``name, cases, right, low, high, confidently_wrong, called`` by name."""
-    groups = [*cases.groupby(names), (EVERY, cases)] if len(cases) else []
+    groups = [*cases.groupby(names), (ALL_NAMES, cases)] if len(cases) else []
     for name, group in groups:
         said = names_that_count(group)
         hidden = [set(truth.split()) - set(NAMELESS) for truth in group["truth"]]

@@ -7,7 +7,7 @@ from typing import Any
 from hystbench.challenge.contest import table
 
 #: Half the width of a 95 % interval, in standard errors.
-WIDTH = NormalDist().inv_cdf(0.975)
+HALF_WIDTH = NormalDist().inv_cdf(0.975)
 
 
 def recovered(
@@ -45,7 +45,7 @@ def recovered(
                 errors.append(abs(value - true) / abs(true))
                 if error is not None:
                     intervals += 1
-                    covered += abs(value - true) <= WIDTH * error
+                    covered += abs(value - true) <= HALF_WIDTH * error
     return {
         "parameters": len(errors),
         "intervals": intervals,

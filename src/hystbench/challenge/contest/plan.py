@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hystbench.challenge.contest import table
-from hystbench.challenge.kept import KEPT, group_of
+from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP, group_of
 from hystbench.challenge.plant.effects import IN_ACTUATOR
 from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES
 from hystbench.challenge.spec import (
@@ -46,7 +46,7 @@ class Entry:
 
 _SETS: dict[str, Any] = table("sets")
 SETS = tuple(_SETS)
-TRANSFER = tuple(name for name, about in _SETS.items() if about.get("of_kept"))
+TRANSFER = tuple(name for name, about in _SETS.items() if about.get("of_group"))
 """Sets of what is left out of all others."""
 #: By which cases are left out: effects, families of plants, kinds of cases.
 WORDS = tuple(dict.fromkeys([*CASE_KINDS, *FAMILIES, *IN_ACTUATOR, *IN_MACHINE]))
@@ -57,7 +57,7 @@ def plan(
     scale: float = 1.0,
     without: Sequence[str] = (),
     only: Sequence[str] = (),
-    kept: int = KEPT,
+    group: int = LEFT_OUT_GROUP,
 ) -> tuple[Entry, ...]:
     """List the cases of a set.
 
@@ -75,7 +75,7 @@ def plan(
     without, only : sequence of str
         Effects, families and kinds of cases: those that are left out, and those of
         which a case holds at least one. The cases that stay keep their seeds.
-    kept : int
+    group : int
         The group that all other sets leave out.
 
     Returns
@@ -92,13 +92,13 @@ def plan(
     for key, asked in (("without", without), ("only", only)):
         for word in asked:
             refuse_unknown(word, WORDS, f"blind: {key}: {word!r}")
-    counts = sizes(name, scale, kept)
-    held = zip(strata(name, kept), counts, strict=True)
+    counts = sizes(name, scale, group)
+    held = zip(strata(name, group), counts, strict=True)
     entries = []
     for number, (stratum, cases) in enumerate(held):
         first = _SETS[name]["first_seed"] + number * _SETS[name]["seeds"]
         for k in range(cases):
-            spec = _spec(name, stratum, first + k, number + k, kept)
+            spec = _spec(name, stratum, first + k, number + k, group)
             words = {spec.kind, spec.family, *spec.effects}
             if words.isdisjoint(without) and not (only and words.isdisjoint(only)):
                 told = hashlib.sha256(f"{name} {spec.seed}".encode()).hexdigest()
@@ -111,18 +111,18 @@ def plan(
     return tuple(sorted(entries, key=lambda entry: entry.name))
 
 
-def strata(name: str, kept: int = KEPT) -> tuple[Stratum, ...]:
+def strata(name: str, group: int = LEFT_OUT_GROUP) -> tuple[Stratum, ...]:
     """Give the strata of a set, without what it has no effects for.
 
     The family that is left out stands in the sets of :data:`TRANSFER` alone, where
-    ``kept`` is its name.
+    ``left-out`` is its name.
     """
     refuse_unknown(name, SETS, f"blind: set: no set {name!r}")
-    inside = name in TRANSFER
-    actuator, machine = group_of(kept).families
-    own = machine if name.startswith("mechanisms") else actuator
+    of_group = name in TRANSFER
+    actuator, machine = group_of(group).families
+    names = {"left-out": machine if name.startswith("mechanisms") else actuator}
     found = (
-        Stratum(row["kind"], own if family == "kept" else family, row["ratio_db"], n)
+        Stratum(row["kind"], names.get(family, family), row["ratio_db"], n)
         for row in _SETS[name]["strata"]
         for family, n in row["cases"].items()
         if family not in (actuator, machine)
@@ -130,14 +130,14 @@ def strata(name: str, kept: int = KEPT) -> tuple[Stratum, ...]:
     return tuple(
         item
         for item in found
-        if item.kind == "none" or effects_of(item.kind, item.family, kept, inside)
+        if item.kind == "none" or effects_of(item.kind, item.family, group, of_group)
     )
 
 
-def sizes(name: str, scale: float = 1.0, kept: int = KEPT) -> list[int]:
+def sizes(name: str, scale: float = 1.0, group: int = LEFT_OUT_GROUP) -> list[int]:
     """Count the cases of each stratum of a set, as for :func:`plan`."""
     counts = []
-    for stratum in strata(name, kept):
+    for stratum in strata(name, group):
         most = _SETS[name]["seeds"]
         counts.append(max(1, round(stratum.cases * scale)))
         if counts[-1] > most:
@@ -161,14 +161,14 @@ def chunks(entries: tuple[Entry, ...], size: int) -> dict[str, tuple[Entry, ...]
     }
 
 
-def _spec(name: str, stratum: Stratum, seed: int, place: int, kept: int) -> CaseSpec:
-    inside = name in TRANSFER
-    about: dict[str, Any] = {"kept": kept, "of_kept": inside}
-    if inside and stratum.family not in MACHINES:
+def _spec(name: str, stratum: Stratum, seed: int, place: int, group: int) -> CaseSpec:
+    of_group = name in TRANSFER
+    about: dict[str, Any] = {"group": group, "of_group": of_group}
+    if of_group and stratum.family not in MACHINES:
         about |= {"spread": 3.0, "campaign": "other"}
     kind, family, ratio_db = stratum.kind, stratum.family, stratum.ratio_db
     if kind in ("single", "unlisted"):
-        known = effects_of(kind, family, kept, inside)
+        known = effects_of(kind, family, group, of_group)
         # a stride that shares no factor with the count: few cases are mixed too
         effect = known[_STRIDE * place % len(known)]
         return CaseSpec(seed, kind, (effect,), family, ratio_db, **about)

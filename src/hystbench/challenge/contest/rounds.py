@@ -3,14 +3,14 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from hystbench.challenge.contest.never_seen import EVERY
+from hystbench.challenge.contest.never_seen import ALL_NAMES
 
 ROUND = ("set", "group", "first_seed", "sort")
 """Columns that tell one score from another."""
 COLUMNS = (*ROUND, "cases", "right", "low", "high", "confidently_wrong")
 
 
-def further(
+def new_rows(
     before: Iterable[Mapping[str, Any]],
     summary: Mapping[str, Any],
     never_seen: Iterable[Mapping[str, Any]],
@@ -31,10 +31,10 @@ def further(
     """
     about = {
         "set": summary["set"],
-        "group": summary["kept"],
+        "group": summary["kept"],  # its name in the file since the first round
         "first_seed": summary["seeds"][0],
     }
     there = {tuple(str(row[name]) for name in ROUND) for row in before}
-    now = [{**row, **about} for row in never_seen if row["name"] == EVERY]
+    now = [{**row, **about} for row in never_seen if row["name"] == ALL_NAMES]
     rows = [tuple(str(row[name]) for name in COLUMNS) for row in now]
     return [row for row in rows if row[: len(ROUND)] not in there]

@@ -16,11 +16,12 @@ from hystbench.errors import InputError
 from hystbench.files import write_csv
 from hystbench.schema import check_against_schema
 
-SHAPE = "hysteresis-shape"
+#: Beside a plant of another family than the base's it is no name.
+FREE_SHAPE = "hysteresis-shape"
 #: What tables can hold: names are parted by spaces there.
-NAME = re.compile("[a-z0-9-]+")
+NAME_OF_EFFECT = re.compile("[a-z0-9-]+")
 #: Numbers beyond it are no measurement, and their squares no numbers.
-LARGEST = 1e100
+LARGEST_NUMBER = 1e100
 #: Says which members of a set the judge's own fits find within the noise.
 Confirm = Callable[[tuple[str, ...]], tuple[str, ...]]
 
@@ -142,8 +143,8 @@ def judge(
     foreign = truth["family"] != "gpi" and not machine
     hidden = [effect["name"] for effect in truth["effects"]]
     strict = [effect["name"] for effect in gap["effects"]]
-    tolerated = foreign and SHAPE not in hidden
-    effects = [e for e in gap["effects"] if not (tolerated and e["name"] == SHAPE)]
+    tolerated = foreign and FREE_SHAPE not in hidden
+    effects = [e for e in gap["effects"] if not (tolerated and e["name"] == FREE_SHAPE)]
     named = [effect["name"] for effect in effects]
     single, one = kind == "single", effects[0] if effects else None
     # An answer is one thing: names beside another verdict than this name nothing.
@@ -154,7 +155,7 @@ def judge(
         else ()
     )
     if tolerated:
-        members = tuple(name for name in members if name != SHAPE)
+        members = tuple(name for name in members if name != FREE_SHAPE)
     confirmed = confirm(members) if single and len(members) > 1 else members
     # An effect outside the vocabulary has no name to be called by.
     shape_alone = kind == "none" and names and bool(strict) and not named
@@ -196,7 +197,7 @@ def judge(
         else None,
         place_right=names
         and one is not None
-        and one["place"] in PLACES[truth["effects"][0]["place"]]
+        and one["place"] in PLACE_WORDS[truth["effects"][0]["place"]]
         if single and machine
         else None,
         shrink=_shrink(truth, gap["gap"]) if hidden else None,
@@ -218,7 +219,7 @@ def _why_lost(answer: Mapping[str, Any], schema: Mapping[str, Any]) -> str:
     if answer["status"] != "answered":
         return str(answer["status"])
     if _too_large(answer["gap"]):
-        return f"gap.json: a number beyond {LARGEST:g}"
+        return f"gap.json: a number beyond {LARGEST_NUMBER:g}"
     try:
         check_against_schema(answer["gap"], schema, "gap.json")
     except InputError as error:
@@ -226,7 +227,7 @@ def _why_lost(answer: Mapping[str, Any], schema: Mapping[str, Any]) -> str:
     effects = answer["gap"]["effects"]
     names = [effect["name"] for effect in effects]
     for name in (*names, *(tie for e in effects for tie in e["cannot_be_told_from"])):
-        if not NAME.fullmatch(name):
+        if not NAME_OF_EFFECT.fullmatch(name):
             return f"gap.json: effects: {name[:40]!r}; expected letters a-z, digits, -"
     for effect in effects:
         for key, said in effect["parameters"].items():
@@ -248,7 +249,7 @@ def _too_large(content: Any) -> bool:
         item = left.pop()
         if isinstance(item, dict | list):
             left += item.values() if isinstance(item, dict) else item
-        elif isinstance(item, int | float) and abs(item) > LARGEST:
+        elif isinstance(item, int | float) and abs(item) > LARGEST_NUMBER:
             return True
     return False
 
@@ -271,7 +272,7 @@ def _right(kind: str, hidden: list[str], verdict: str, named: list[str]) -> bool
 
 
 #: Words of gap.json for each place; a force beside an impedance is one inside it.
-PLACES = {
+PLACE_WORDS = {
     "before": ("before", "drive"),
     "inside": ("inside", "beside", "around"),
     "behind": ("behind", "sensor"),

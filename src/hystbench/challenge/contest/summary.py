@@ -4,6 +4,7 @@ All take a data frame of :func:`hystbench.challenge.contest.frames.frame`.
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import pandas as pd
@@ -11,15 +12,15 @@ import pandas as pd
 from hystbench.challenge.contest import table
 from hystbench.challenge.contest.tables import (
     Share,
+    average,
     brier,
     calibration_error,
     coverage,
-    mean,
-    middle,
     shares,
 )
 from hystbench.challenge.plant.inside import MACHINES
 
+#: Families of plants by one word.
 FAMILIES = {
     "gpi": ("gpi",),
     "foreign": ("preisach", "jiles-atherton", "duhem"),
@@ -27,6 +28,7 @@ FAMILIES = {
     "jiles-atherton": ("jiles-atherton",),
     "machines": MACHINES,
 }
+#: Kinds of cases that hide what can be named.
 HIDDEN = ("single", "pair", "triple")
 KINDS = {"hidden": HIDDEN, "several": ("pair", "triple")}
 """Kinds of cases by one word; every other word is a kind."""
@@ -38,7 +40,7 @@ class Figure(NamedTuple):
     name: str
     column: str
     """The share of cases of which this is true; or, before the name of a column, what
-    is made of it, as :data:`MADE` has it."""
+    is made of it, as :data:`STATISTICS` has it."""
     kind: str = "all"
     family: str = "all"
     """``all``, or a kind of case (or of :data:`KINDS`) and one of :data:`FAMILIES`."""
@@ -78,12 +80,12 @@ class Figure(NamedTuple):
             return shares(cases, column)
         if made == "known median":
             made, cases = "median", cases.dropna(subset=column)
-        return Share(MADE[made](cases, column), None, None, len(cases))
+        return Share(STATISTICS[made](cases, column), None, None, len(cases))
 
 
-MADE: dict[str, Callable[[pd.DataFrame, str], Any]] = {
-    "mean": mean,
-    "median": middle,
+STATISTICS: dict[str, Callable[[pd.DataFrame, str], Any]] = {
+    "mean": partial(average, how="mean"),
+    "median": average,
     "distance": lambda cases, _: calibration_error(cases),
     "square": lambda cases, _: brier(cases),
 }
@@ -142,11 +144,11 @@ def summary(cases: pd.DataFrame) -> dict[str, Any]:
         },
         "brier": brier(cases),
         "calibration_error": calibration_error(cases),
-        "parameter_error_median": middle(hidden, "parameter_error"),
+        "parameter_error_median": average(hidden, "parameter_error"),
         "coverage": coverage(hidden)._asdict(),
         "without_interval": int((hidden["parameters"] - hidden["intervals"]).sum()),
-        "seconds_per_case": middle(cases, "cpu_seconds"),
-        "clock_seconds_per_case": middle(cases, "seconds"),
+        "seconds_per_case": average(cases, "cpu_seconds"),
+        "clock_seconds_per_case": average(cases, "seconds"),
     }
 
 
@@ -162,22 +164,6 @@ def carried_over(cases: pd.DataFrame, transfer: pd.DataFrame) -> AskedFigure:
         return AskedFigure(TOP1_20.name, "", None, None, None, there.cases, None)
     asked = TOP1_20._replace(bound=here - 0.05)
     return _asked(asked, there)._replace(asked=f">= {asked.bound:.3f}")
-
-
-def further(cases: pd.DataFrame) -> list[tuple[str, Any, Any, Any, int]]:
-    """Give what else there is to say of a score: strict figures, sizes, errors.
-
-    Parameters
-    ----------
-    cases : DataFrame
-        Of one solver on one set.
-
-    Returns
-    -------
-    list of (str, float or None, float or None, float or None, int)
-        A figure, what was reached, its interval where it is a share, and the cases.
-    """
-    return [(figure.name, *figure.of(cases)) for figure in figures("further")]
 
 
 def of(cases: pd.DataFrame, kinds: Sequence[str]) -> pd.DataFrame:
@@ -207,7 +193,7 @@ _SUMS: dict[str, Callable[[pd.DataFrame, str], Any]] = {
     "ratio": _by_ratio,
     "family": _by_family,
     "share": _share,
-    **MADE,
+    **STATISTICS,
 }
 
 

@@ -14,18 +14,18 @@ import numpy as np
 import pandas as pd
 
 from hystbench.challenge.contest import table
-from hystbench.challenge.contest.score import SHAPE
+from hystbench.challenge.contest.score import FREE_SHAPE
 
-#: Of an interval.
+#: With which an interval holds the true share.
 CONFIDENCE = 0.95
 #: Edges of the bins of stated confidence.
-CONFIDENCES = (0.0, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0)
+CONFIDENCE_EDGES = (0.0, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0)
 #: First answers that are no effect.
 NO_EFFECT = ("no-gap", "unnamed", "parameters", "lost")
 #: Of two effects that no experiment in ``contest.yaml`` is about.
-UNKNOWN = "none written down"
+NO_EXPERIMENT = "none written down"
 #: Kinds of cases in which at most one effect is hidden, in the order they are told.
-ONE = ("single", "unlisted", "none")
+AT_MOST_ONE = ("single", "unlisted", "none")
 
 
 class Share(NamedTuple):
@@ -65,7 +65,7 @@ def names_that_count(cases: pd.DataFrame) -> list[dict[str, float]]:
     """
     both = zip(cases["given"], cases["family"], strict=True)
     return [
-        {name: x for name, x in names.items() if family == "gpi" or name != SHAPE}
+        {name: x for name, x in names.items() if family == "gpi" or name != FREE_SHAPE}
         for names, family in both
     ]
 
@@ -86,7 +86,7 @@ def confusion(cases: pd.DataFrame) -> list[tuple[Any, ...]]:
         beside a plant of another family than the base's, the shape is right too.
     """
     counted: list[tuple[Any, ...]] = []
-    for kind in ONE:
+    for kind in AT_MOST_ONE:
         mine = cases[cases["kind"] == kind]
         first = mine.apply(_first, axis=1) if len(mine) else mine["truth"]
         right = {
@@ -128,7 +128,7 @@ def experiment(one: str, other: str) -> str:
     for here, there, told in table("experiments"):
         if (one in here and other in there) or (other in here and one in there):
             return str(told)
-    return UNKNOWN
+    return NO_EXPERIMENT
 
 
 def _first(case: pd.Series[Any]) -> str:
@@ -137,8 +137,8 @@ def _first(case: pd.Series[Any]) -> str:
     if case["verdict"] == "unnamed":
         return "unnamed"
     names = str(case["named"]).split()
-    if case["family"] != "gpi" and case["truth"] != SHAPE and len(names) > 1:
-        names = [name for name in names if name != SHAPE] or [SHAPE]
+    if case["family"] != "gpi" and case["truth"] != FREE_SHAPE and len(names) > 1:
+        names = [name for name in names if name != FREE_SHAPE] or [FREE_SHAPE]
     return names[0] if names else str(case["verdict"])
 
 
@@ -215,7 +215,7 @@ def reliability(cases: pd.DataFrame) -> list[tuple[Any, ...]]:
     """
     pairs = _outcomes(cases)
     out: list[tuple[Any, ...]] = []
-    for low, high in itertools.pairwise(CONFIDENCES):
+    for low, high in itertools.pairwise(CONFIDENCE_EDGES):
         inside = [x for x in pairs if low <= x[0] < high or (x[0] == high == 1.0)]
         if inside:
             said, right = zip(*inside, strict=True)
@@ -248,15 +248,9 @@ def shares(cases: pd.DataFrame, figure: str) -> Share:
     return wilson(int(values.sum()), len(values))
 
 
-def middle(cases: pd.DataFrame, figure: str) -> float | None:
-    """Median of a figure; None where no case has it."""
-    value = cases[figure].median()
-    return None if pd.isna(value) else float(value)
-
-
-def mean(cases: pd.DataFrame, figure: str) -> float | None:
-    """Mean of a figure; None where no case has it."""
-    value = cases[figure].mean()
+def average(cases: pd.DataFrame, figure: str, how: str = "median") -> float | None:
+    """Median of a figure, or its mean; None where no case has it."""
+    value = cases[figure].agg(how)
     return None if pd.isna(value) else float(value)
 
 

@@ -12,11 +12,11 @@ from hystbench.challenge.contest.never_seen import never_seen
 from hystbench.challenge.contest.summary import (
     AskedFigure,
     carried_over,
-    further,
+    figures,
     reach,
     summary,
 )
-from hystbench.challenge.kept import GROUPS
+from hystbench.challenge.left_out_groups import GROUPS
 from hystbench.files import write_csv, write_json
 
 #: With room for the rounding of a difference of two shares.
@@ -47,7 +47,7 @@ def write_score(
         Whose score it is.
     about : mapping
         What summary.json says of the contest: ``set``, ``scale``, ``transfer_set``,
-        ``transfer_scale``, ``kept``, the group that all sets but the transfer set left
+        ``transfer_scale``, ``kept``, the group that all sets but the transfer set leave
         out, its seeds and ``seeds_used_while_mending`` (first and last, by what they
         were used for).
     out : Path
@@ -63,7 +63,7 @@ def write_score(
         "contest.csv": _held(own, transfer, about),
         "kept.csv": list(_groups(about["kept"])),
         "reach.csv": asked,
-        "further.csv": further(own),
+        "further.csv": [(each.name, *each.of(own)) for each in figures("further")],
         "transfer.csv": carried,
         "confusion.csv": tables.confusion(own),
         "never-seen.csv": never_seen(transfer, about["kept"]),
@@ -107,11 +107,11 @@ def _held(
     return [*told, *((name, None, None, *ends) for name, ends in mended.items())]
 
 
-def _groups(kept: int) -> Iterator[tuple[Any, ...]]:
+def _groups(group: int) -> Iterator[tuple[Any, ...]]:
     """Say which group was left out, and which come next."""
     for number, item in GROUPS.items():
         parts = (item.families, item.unlisted, item.forms)
-        yield number, number == kept, *(", ".join(names) for names in parts)
+        yield number, number == group, *(", ".join(names) for names in parts)
 
 
 def _carried(

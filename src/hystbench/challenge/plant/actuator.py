@@ -14,7 +14,7 @@ from hystbench.challenge.plant.kind import HiddenEffect, PlantRun, Stage
 from hystbench.record import FloatArray
 
 #: Least steps of the fine grid a sample, and least steps a second.
-OVERSAMPLING, LEAST_RATE = 8, 8000.0
+OVERSAMPLING, LEAST_HZ = 8, 8000.0
 
 Command = Callable[[FloatArray], FloatArray]
 Act = Callable[[Stage, FloatArray], FloatArray]
@@ -72,7 +72,7 @@ class Actuator:
             In um. The reading is sampled as it is: inputs are smooth, and what lies
             above half the sampling rate is orders below the noise.
         """
-        step = max(OVERSAMPLING, int(np.ceil(LEAST_RATE * dt)))
+        step = max(OVERSAMPLING, int(np.ceil(LEAST_HZ * dt)))
         # some samples more, so that a clock that is off still finds a reading
         count = (samples + 8) * step
         fine = dt / step

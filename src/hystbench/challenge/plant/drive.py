@@ -6,8 +6,8 @@ from hystbench.challenge import kernels
 from hystbench.challenge.plant.kind import Parameters, PlantRun
 from hystbench.record import FloatArray
 
-#: Layers of the cross-section in which the diffusion is solved.
-CELLS = 40
+#: Layers of the cross-section, or lags, in which the diffusion is solved.
+LAYERS = 40
 
 
 def delay(time: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
@@ -22,12 +22,12 @@ def lag(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
 
 def slab(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Mean field in a slab, ``tau dh/dt = d2h/dx2`` with the field given outside."""
-    return kernels.run("hc_diffusion", CELLS, 0, run.dt, p["time_constant_s"], over=z)
+    return kernels.run("hc_diffusion", LAYERS, 0, run.dt, p["time_constant_s"], over=z)
 
 
 def rod(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     """Mean field in a round rod, the same in cylinder coordinates."""
-    return kernels.run("hc_diffusion", CELLS, 1, run.dt, p["time_constant_s"], over=z)
+    return kernels.run("hc_diffusion", LAYERS, 1, run.dt, p["time_constant_s"], over=z)
 
 
 def square_root(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
@@ -36,7 +36,7 @@ def square_root(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
     The mean is over angles ``a`` from 0 to a right angle; at high frequencies the
     response falls by 10 dB a decade, at 45 degrees.
     """
-    angles = (np.arange(CELLS) + 0.5) * 0.5 * np.pi / CELLS
+    angles = (np.arange(LAYERS) + 0.5) * 0.5 * np.pi / LAYERS
     lags = [
         # what is shorter than half a step, Runge-Kutta cannot follow, nor can the grid
         kernels.run("hc_lag", run.dt, time, over=z) if time > 0.5 * run.dt else z

@@ -5,10 +5,11 @@ Fields are currents in A, outputs are displacements in um that are zero at the s
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -22,22 +23,26 @@ LARGEST_CURRENT = 0.6
 PUBLISHED = (1.2878, 0.36, 0.6025, -0.6671, 0.3223, 1.2233, 0.1104, -0.0248)
 
 
-class PlantLoop(Protocol):
+@dataclass(frozen=True)
+class PlantLoop(ABC):
     """A quasi-static loop."""
 
-    @property
-    def family(self) -> str:
-        """Name of the family."""
+    family: ClassVar[str]
+    sizes: ClassVar[tuple[str, ...]]
+    """Fields that its displacement is proportional to, together."""
 
+    @abstractmethod
     def respond(self, v: FloatArray) -> FloatArray:
         """Compute the displacement in um for a current that starts at rest."""
 
-    def scaled(self, factor: float) -> PlantLoop:
+    def scaled(self, factor: float) -> Self:
         """Multiply the displacement."""
+        sizes = {name: getattr(self, name) * factor for name in self.sizes}
+        return replace(self, **sizes)
 
 
 @dataclass(frozen=True)
-class GeneralizedPlays:
+class GeneralizedPlays(PlantLoop):
     """Weighted generalized plays, each kept between two moved envelopes.
 
     References
@@ -49,7 +54,8 @@ class GeneralizedPlays:
     envelope: tuple[float, ...]
     thresholds: FloatArray
     weights: FloatArray
-    family: str = "gpi"
+    family = "gpi"
+    sizes = ("weights",)
 
     def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
         """Sum the plays; ``growth`` multiplies the thresholds sample by sample."""
@@ -73,13 +79,9 @@ class GeneralizedPlays:
         )
         return y
 
-    def scaled(self, factor: float) -> GeneralizedPlays:
-        """Multiply the weights."""
-        return replace(self, weights=self.weights * factor)
-
 
 @dataclass(frozen=True)
-class Everett:
+class Everett(PlantLoop):
     """Preisach's operator by Everett's function and its memory of turning points.
 
     The density of relays is normal in their interaction field and lognormal in their
@@ -101,7 +103,8 @@ class Everett:
     knee: float  # A
     limit: float = 1.0
     points: int = 601
-    family: str = "preisach"
+    family = "preisach"
+    sizes = ("irreversible", "reversible")
 
     @cached_property
     def table(self) -> FloatArray:
@@ -139,17 +142,9 @@ class Everett:
         y = kernels.run("hc_everett", *plane, over=v) - start
         return np.asarray(y + self.reversible * np.tanh(v / self.knee))
 
-    def scaled(self, factor: float) -> Everett:
-        """Multiply both parts."""
-        return replace(
-            self,
-            irreversible=self.irreversible * factor,
-            reversible=self.reversible * factor,
-        )
-
 
 @dataclass(frozen=True)
-class JilesAthertonLoop:
+class JilesAthertonLoop(PlantLoop):
     """Equation of Jiles and Atherton about a bias, strain as magnetization squared.
 
     It starts on the bias, demagnetized there by cycles that shrink.
@@ -166,7 +161,8 @@ class JilesAthertonLoop:
     pinning: float  # A
     reversible: float
     strain: float  # um at saturation
-    family: str = "jiles-atherton"
+    family = "jiles-atherton"
+    sizes = ("strain",)
 
     def respond(self, v: FloatArray) -> FloatArray:
         """Integrate the magnetization over the field, by Runge-Kutta."""
@@ -184,13 +180,9 @@ class JilesAthertonLoop:
         kernels.call("hc_jiles_atherton", len(field), *constants, field, state, m)
         return np.asarray(self.strain * (m**2 - start**2))
 
-    def scaled(self, factor: float) -> JilesAthertonLoop:
-        """Multiply the strain."""
-        return replace(self, strain=self.strain * factor)
-
 
 @dataclass(frozen=True)
-class Duhem:
+class Duhem(PlantLoop):
     """Duhem's equation as Coleman and Hodgdon write it.
 
     ``dy/dt = rate |dv/dt| (f(v) - y) + stiff f'(v) dv/dt``, with ``f(v)`` a tanh about
@@ -209,16 +201,13 @@ class Duhem:
     knee: float  # A
     bias: float  # A
     height: float  # um
-    family: str = "duhem"
+    family = "duhem"
+    sizes = ("height",)
 
     def respond(self, v: FloatArray) -> FloatArray:
         """Follow the equation in steps of the input, exactly for a straight f."""
         constants = (self.rate, self.stiff, self.knee, self.bias)
         return self.height * kernels.run("hc_duhem", *constants, over=v)
-
-    def scaled(self, factor: float) -> Duhem:
-        """Multiply the displacement."""
-        return replace(self, height=self.height * factor)
 
 
 def draw_plays(random: np.random.Generator) -> GeneralizedPlays:

@@ -63,6 +63,11 @@ class PlantRun:
     """Source of what is new in every record: a phase, a path."""
 
 
+def log_uniform(random: np.random.Generator, low: float, high: float) -> float:
+    """Draw a number between two, evenly in its logarithm."""
+    return float(np.exp(random.uniform(np.log(low), np.log(high))))
+
+
 @dataclass(frozen=True)
 class Range:
     """Interval that a parameter is drawn from, evenly in its logarithm."""
@@ -82,7 +87,7 @@ class Range:
     def draw(self, random: np.random.Generator, spread: float = 1.0) -> float:
         """Draw a value."""
         scale = spread if self.shifts else 1.0
-        value = scale * np.exp(random.uniform(np.log(self.low), np.log(self.high)))
+        value = scale * log_uniform(random, self.low, self.high)
         # drawn in any case, so that a sign more does not change what follows
         coin = 1.0 if random.uniform() < 0.5 else -1.0
         value = float(np.clip(value, self.least, self.most))
@@ -143,7 +148,7 @@ class Form:
 
 
 @dataclass(frozen=True)
-class Kind:
+class EffectKind:
     """A physical effect: where it acts, where it shows, how it may be written."""
 
     name: str
@@ -165,7 +170,7 @@ class Kind:
 class HiddenEffect:
     """An effect with its form and parameters drawn."""
 
-    kind: Kind
+    kind: EffectKind
     form: str
     parameters: Parameters
 
@@ -227,7 +232,7 @@ class HiddenEffect:
 
 
 def draw(
-    kind: Kind,
+    kind: EffectKind,
     random: np.random.Generator,
     spread: float,
     allowed: tuple[str, ...] = (),
@@ -242,7 +247,7 @@ def draw(
 
 def read_kinds(
     table: str, *modules: ModuleType
-) -> tuple[dict[str, Kind], list[set[str]]]:
+) -> tuple[dict[str, EffectKind], list[set[str]]]:
     """Read effects from a table beside this module, by name and in its order.
 
     Beside them stand pairs of effects that are never hidden together.
@@ -264,12 +269,12 @@ def read_kinds(
 
 def _kind(
     known: Mapping[str, Any], name: str, forms: Mapping[str, Any], **about: Any
-) -> Kind:
+) -> EffectKind:
     lists = {key: tuple(about.pop(key, ())) for key in ("views", "families")}
     about |= lists | {
         "forms": {form: _form(known, **said) for form, said in forms.items()}
     }
-    return Kind(name, **about)
+    return EffectKind(name, **about)
 
 
 def _form(

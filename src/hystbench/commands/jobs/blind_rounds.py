@@ -21,7 +21,7 @@ def blind_rounds(scores: tuple[Folder, ...], *, to: Table) -> None:
 
     Rows that are there stay as they are.
     """
-    from hystbench.challenge.contest.rounds import COLUMNS, further  # late: pandas
+    from hystbench.challenge.contest.rounds import COLUMNS, new_rows  # late: pandas
 
     before = to.read_text(encoding="utf-8") if to.exists() else ""
     table = csv.DictReader(before.splitlines())
@@ -32,7 +32,7 @@ def blind_rounds(scores: tuple[Folder, ...], *, to: Table) -> None:
     for folder in scores:
         summary = read_json(folder / "summary.json")
         with (folder / "never-seen.csv").open(newline="", encoding="utf-8") as stream:
-            found = further(rows, summary, csv.DictReader(stream))
+            found = new_rows(rows, summary, csv.DictReader(stream))
         rows += [dict(zip(COLUMNS, row, strict=True)) for row in found]
         added += found
     with to.open("a", newline="", encoding="utf-8") as stream:

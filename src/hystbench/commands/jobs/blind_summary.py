@@ -23,7 +23,7 @@ def blind_summary(
         "scale": held["scale"],
         "without": held["without"],
         "only": held["only"],
-        "kept": held["kept"],
+        "kept": held["group"],
         "transfer_set": settings["transfer_set"],
         "transfer_scale": settings["transfer_scale"],
         "seeds": [min(seeds), max(seeds)],

@@ -37,7 +37,7 @@ MEASURES = {
 }
 
 #: Columns of claims.csv; of a renamed one also the attribute of a Judgement.
-COLUMNS = (
+CLAIM_COLUMNS = (
     *("id=claim.id", "claim=claim.claim", "where=claim.where", "kind=claim.kind"),
     *("basis=claim.basis", "reading=claim.reading", "verdict"),
     *("on_held_out=held_out_verdict", "holds_on", "evidence"),

@@ -32,7 +32,7 @@ def step_sizes(evidence: ClaimEvidence) -> Numbers:
     edges = evidence.edges
     if not edges:
         raise NotTestable("not run: a sweep of step sizes")
-    inside = [edge for edge in edges if edge.inside]
+    inside = [edge for edge in edges if edge.fails_below_bound]
     ratios = [e.edge_over_power for e in edges if e.edge_over_power is not None]
     power = (
         f"the edges lie at {min(ratios):.2f} to {max(ratios):.2f} times 1/max|H|^2, "

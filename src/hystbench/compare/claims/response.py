@@ -15,6 +15,7 @@ from hystbench.compare.evidence import ClaimEvidence
 from hystbench.published import signals, sine_frequency
 from hystbench.record import FloatArray, Record
 
+#: The sum of sines of random phases.
 RANDOM = "multisine-random-0-100hz"
 
 

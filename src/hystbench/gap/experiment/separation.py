@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.gap.records.scored_samples import rms
+from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.record import FloatArray
 

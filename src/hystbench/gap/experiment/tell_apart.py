@@ -12,7 +12,7 @@ from itertools import combinations
 from typing import Any
 
 from hystbench.errors import InputError
-from hystbench.gap.experiment.excitations import Excitation, Limits, candidates
+from hystbench.gap.experiment.candidates import Excitation, Limits, candidates
 from hystbench.gap.experiment.separation import Rival, RivalPair, Sets, separations
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.state import ModelState
@@ -21,11 +21,11 @@ from hystbench.gap.naming.rounds import Candidate, near
 from hystbench.model import Model
 from hystbench.record import Record
 
-CLEAR = 3.0
+CLEAR_FLOORS = 3.0
 """A pair that differs by so many floors is told apart: more of it helps no other."""
-TOLD = 1.0
+TOLD_FLOORS = 1.0
 """A pair that differs by less is not told apart."""
-SHOWN = 3
+PAIRS_SHOWN = 3
 """Pairs that a sentence names: all of them are in the table."""
 REFITTED = "after both are refitted"
 ELSEWHERE = (
@@ -53,7 +53,7 @@ class Experiment:
     @property
     def sentence(self) -> str:
         """What to do and what it gives, in words."""
-        told = [pair for pair, size in self.pairs.items() if size >= TOLD]
+        told = [pair for pair, size in self.pairs.items() if size >= TOLD_FLOORS]
         return " ".join([self._lead(told), *self._not_told(told)])
 
     def _lead(self, told: Sequence[RivalPair]) -> str:
@@ -83,9 +83,9 @@ class Experiment:
     def _not_told(self, told: Sequence[RivalPair]) -> list[str]:
         """Say what the excitation does not tell, and who would."""
         rest = [pair for pair in self.pairs if pair not in told]
-        known = [pair for pair in rest if self.existing[pair] >= TOLD]
+        known = [pair for pair in rest if self.existing[pair] >= TOLD_FLOORS]
         unknown = [pair for pair in rest if pair not in known]
-        never = [pair for pair in unknown if self.largest[pair] < TOLD]
+        never = [pair for pair in unknown if self.largest[pair] < TOLD_FLOORS]
         other = [pair for pair in unknown if pair not in never]
         found = [
             f"{who} {self._listed(pairs)}."
@@ -106,7 +106,7 @@ class Experiment:
         return " from ".join(pair.names) + place
 
     def _listed(self, pairs: Sequence[RivalPair]) -> str:
-        shown = [self._words(pair) for pair in pairs[:SHOWN]]
+        shown = [self._words(pair) for pair in pairs[:PAIRS_SHOWN]]
         more = len(pairs) - len(shown)
         return ", ".join(shown) + (f" and {more} more" if more else "")
 
@@ -166,13 +166,13 @@ def next_experiment(
         RMS in output units, above zero.
     limits : Limits, optional
     excitations : sequence of Excitation, optional
-        Instead of :func:`~hystbench.gap.experiment.excitations.candidates`.
+        Instead of :func:`~hystbench.gap.experiment.candidates.candidates`.
 
     Returns
     -------
     Experiment
         Of the excitations that tell most pairs apart, the one that separates all pairs
-        most, each counted up to ``CLEAR``; of equals, the hardest pair decides.
+        most, each counted up to ``CLEAR_FLOORS``; of equals, the hardest pair decides.
 
     Raises
     ------
@@ -207,8 +207,8 @@ def next_experiment(
 def _merit(pairs: dict[RivalPair, float]) -> tuple[int, float, float]:
     """Rank by pairs told apart, then by how clearly, then by the hardest."""
     sizes = list(pairs.values())
-    told = sum(size >= TOLD for size in sizes)
-    return told, sum(min(size, CLEAR) for size in sizes), min(sizes)
+    told = sum(size >= TOLD_FLOORS for size in sizes)
+    return told, sum(min(size, CLEAR_FLOORS) for size in sizes), min(sizes)
 
 
 def tell_apart(

@@ -24,10 +24,11 @@ from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.nuisance import left_rms
 from hystbench.gap.thresholds import ABOVE_NOISE, AS_GOOD
 from hystbench.gap.vocabulary import Vocabulary, with_device
+from hystbench.metrics import rms
 from hystbench.units import sized
 
 
-def outcome(
+def show_on_hold_out(
     fitted: FitResult,
     decided: Mapping[str, Any],
     evidence: Evidence,
@@ -82,18 +83,7 @@ def outcome(
 
 
 def more_than_on_fit_records(content: Mapping[str, Any]) -> list[str]:
-    """Say that hold-out records show a gap where the fit records show none.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-
-    Returns
-    -------
-    list of str
-        One sentence, or none.
-    """
+    """Say that hold-out records show a gap where the fit records show none, if so."""
     before, floor = content["gap"]["before"], content["gap"]["noise_floor"]
     if content["verdict"] != "no-gap" or before is None:
         return []
@@ -124,7 +114,7 @@ def worse_than_a_constant(before: float, evidence: Evidence, floor: float) -> li
     """
     mean = np.mean(np.concatenate([record.y for record in evidence.fit]))
     outputs = np.concatenate([record.y for record in evidence.hold_out])
-    still = float(np.sqrt(np.mean((outputs - mean) ** 2)))
+    still = rms(outputs - mean)
     noisy = still**2 <= (1 + AS_GOOD) * floor**2
     if noisy or before**2 <= (1 + AS_GOOD) * still**2:
         return []
@@ -146,18 +136,12 @@ def _alone(built_in: BuiltIn, fitted: FitResult, evidence: Evidence) -> float:
     return size
 
 
-LEAST = 5e-4
+LEAST_TOLD = 5e-4
 """Share that is told as none: it would read 0.0 %."""
 
 
 def first_figure(content: Mapping[str, Any]) -> str:
-    """Say what is gone on the hold-out records, and of what it is a share.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-    """
+    """Say what is gone on the hold-out records, and of what it is a share."""
     gap, unit = content["gap"], content["unit"]
     sizes = f"{gap['before']:.3g} to {sized(gap['after'], unit)} rms"
     share, floor = gap["explained"], gap["noise_floor"]
@@ -165,7 +149,7 @@ def first_figure(content: Mapping[str, Any]) -> str:
         return f"on the hold-out records the base leaves no more than noise: {sizes}"
     ends = share if isinstance(share, list | tuple) else [share]
     told = " to ".join(dict.fromkeys(f"{100 * end:.1f} %" for end in ends))
-    if max(ends) < LEAST:
+    if max(ends) < LEAST_TOLD:
         told = "none"
     return (
         f"on the hold-out records {told} of the gap's power above the noise floor is "
@@ -238,14 +222,7 @@ def without_names(
 def with_what_was_asked(
     content: Mapping[str, Any], vocabulary: Vocabulary
 ) -> dict[str, Any]:
-    """Tell in the reason which effects the user put in or left out.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-    vocabulary : Vocabulary
-    """
+    """Tell in the reason which effects the user put in or left out."""
     words = vocabulary.words()
     if not words:
         return dict(content)

@@ -11,9 +11,10 @@ from typing import Any
 
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Effect
+from hystbench.gap.locate.along_axes import RECORDS_TOLD
 from hystbench.gap.thresholds import AS_GOOD, MOST
 
-LESS = 0.15
+ONLY_FITTED = 0.15
 """Share of the gap's power that is gone on fit records alone, to be told."""
 WORTH_A_REASON = 0.05
 """Share that what is new in every record takes, to be named as a reason."""
@@ -21,11 +22,6 @@ WORTH_A_REASON = 0.05
 
 def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
     """Compare what is gone on the hold-out records with what is gone on the fit ones.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
 
     Returns
     -------
@@ -47,7 +43,7 @@ def _less(
 ) -> str:
     """Say by how much less is gone than was promised, and why."""
     names = [item["name"] for item in content["effects"]]
-    if not names or promised is None or kept is None or promised - kept < LESS:
+    if not names or promised is None or kept is None or promised - kept < ONLY_FITTED:
         return ""
     sentence = (
         f"On the fit records {100 * promised:.0f} % of the gap's power above the noise "
@@ -61,10 +57,6 @@ def _less(
     if reasons:
         sentence += f": {'; '.join(reasons)}"
     return f"{sentence}."
-
-
-SPELLED = 3
-"""Records that are told by name, at most."""
 
 
 def _widens(content: Mapping[str, Any]) -> list[str]:
@@ -87,13 +79,7 @@ def _steps_up(content: Mapping[str, Any]) -> list[tuple[Any, Any]]:
 
 
 def no_surer_than_even(content: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Give the effects: a name that widens the gap there is no surer than even.
-
-    Parameters
-    ----------
-    content : mapping
-        What gap.json holds.
-    """
+    """Give the effects: a name that widens the gap there is no surer than even."""
     doubtful = {
         name for _, step in _steps_up(content) for name in step["name"].split(" + ")
     }
@@ -142,7 +128,7 @@ def _outside(content: Mapping[str, Any]) -> list[str]:
     return [
         f"{' and '.join(names)} {'lies' if len(names) == 1 else 'lie'} outside the fit "
         f"records in {how}"
-        if len(names) <= SPELLED
+        if len(names) <= RECORDS_TOLD
         else f"{len(names)} records lie outside the fit records in {how}"
         for how, names in alike.items()
     ]

@@ -23,8 +23,8 @@ from hystbench.gap.records.nuisance import (
     left_rms,
     path_and_mains,
 )
-from hystbench.gap.records.scored_samples import rms
 from hystbench.gap.simulation.simulation import Simulation
+from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 
@@ -143,7 +143,7 @@ def _run(
     return bounded(name, records, outputs, usual, refused)
 
 
-FAR = 1e6
+RUNS_AWAY_RATIO = 1e6
 """Times as far as the base ever goes: an output beyond it runs away, finite or not."""
 
 
@@ -208,7 +208,7 @@ def bounded(
     found = []
     for record, output in zip(records, outputs, strict=True):
         # What is no number is not within either.
-        beyond = np.flatnonzero(~(np.abs(output) <= FAR * usual))
+        beyond = np.flatnonzero(~(np.abs(output) <= RUNS_AWAY_RATIO * usual))
         kept.append(None if len(beyond) else output)
         if len(beyond):
             why = (refused or {}).get(record.name)

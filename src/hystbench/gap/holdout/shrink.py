@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 
 from hystbench.gap.records.nuisance import Nuisance, left_over
-from hystbench.gap.records.scored_samples import rms
+from hystbench.metrics import rms
 from hystbench.record import FloatArray, Mask, Record
 
 #: Draws of the bootstrap, and the part of them that its interval holds.
-DRAWS = 400
-LEVEL = 0.95
+BOOTSTRAP_DRAWS = 400
+INTERVAL_SHARE = 0.95
 #: Blocks of a record that the bootstrap draws from: each longer than what a residual
 #: remembers, and enough of them to vary.
-BLOCKS = 12
+BOOTSTRAP_BLOCKS = 12
 
 #: Share of the power above the floor that is gone: a number, a range where the floor
 #: is only an upper bound, None where there is no power above it.
@@ -121,13 +121,13 @@ def shrink(
         for item in shrunk
         if item.residual_after is not None
     ]
-    size = rms(np.concatenate(olds))
+    size = rms(*olds)
     if len(news) < len(olds):
         (drawn,) = resampled_rms([(old,) for old in olds])
         whole = (size, None, noise_floor, floor_method, 0.0)
         return Shrink(*whole, rms_interval(drawn), None, None, tuple(shrunk))
     drawn, left_drawn = resampled_rms(list(zip(olds, news, strict=True)))
-    left = rms(np.concatenate(news))
+    left = rms(*news)
     return Shrink(
         size,
         left,
@@ -197,22 +197,22 @@ def resampled_rms(residuals: Sequence[Sequence[FloatArray]]) -> FloatArray:
     """
     random = np.random.default_rng(0)
     lengths = np.array([len(models[0]) for models in residuals])
-    blocks = np.maximum(1, lengths // BLOCKS)
+    blocks = np.maximum(1, lengths // BOOTSTRAP_BLOCKS)
     # Sums over a block are differences of cumulative sums.
     sums = [
         np.stack([_sums(np.square(each), block) for each in models])
         for models, block in zip(residuals, blocks.tolist(), strict=True)
     ]
     counts = lengths // blocks
-    powers = np.zeros((len(sums), DRAWS, len(residuals[0])))
+    powers = np.zeros((len(sums), BOOTSTRAP_DRAWS, len(residuals[0])))
     for place, total in enumerate(sums):
         block, count = blocks[place], counts[place]
-        starts = random.integers(0, lengths[place], (DRAWS, count))
+        starts = random.integers(0, lengths[place], (BOOTSTRAP_DRAWS, count))
         powers[place] = (total[:, starts + block] - total[:, starts]).sum(axis=-1).T
         powers[place] *= lengths[place] / (block * count)
-    drawn = random.integers(0, len(sums), (DRAWS, len(sums)))
+    drawn = random.integers(0, len(sums), (BOOTSTRAP_DRAWS, len(sums)))
     # A record that is drawn twice is rebuilt twice.
-    rebuilt = random.integers(0, DRAWS, drawn.shape)
+    rebuilt = random.integers(0, BOOTSTRAP_DRAWS, drawn.shape)
     power = powers[drawn, rebuilt].sum(axis=1)
     power /= lengths[drawn].sum(axis=1)[:, None]
     # Differences of sums may fall below zero by rounding.
@@ -248,7 +248,7 @@ def share_interval(
     pairs = zip(before.tolist(), after.tolist(), strict=True)
     shares = [share_explained(old, new, floor, upper_bound) for old, new in pairs]
     known = [each for each in shares if each is not None]
-    if len(known) < LEVEL * len(shares):
+    if len(known) < INTERVAL_SHARE * len(shares):
         return None
     ends = np.array(
         [each if isinstance(each, list) else [each, each] for each in known]
@@ -257,7 +257,7 @@ def share_interval(
 
 
 def _between(lowest: FloatArray, highest: FloatArray) -> list[float]:
-    outside = (1 - LEVEL) / 2
+    outside = (1 - INTERVAL_SHARE) / 2
     ends = np.quantile(lowest, outside), np.quantile(highest, 1 - outside)
     return [float(end) for end in ends]
 

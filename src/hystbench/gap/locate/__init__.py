@@ -25,7 +25,7 @@ from hystbench.gap.thresholds import BY_CHANCE
 
 __all__ = ["LEVEL", "Contribution", "View", "curves", "locate", "ranked"]
 
-LEVEL = BY_CHANCE
+CHANCE_LEVEL = BY_CHANCE
 """Of a view's p-value times the number of views, for more than chance."""
 NOT_DRAWN = {
     "distortion": "distortion, as no record repeats with a gap above the noise",
@@ -101,7 +101,7 @@ def ranked(views: Sequence[View]) -> tuple[View, ...]:
     """Put named views first, then those that save most, then what chance may give."""
 
     def order(view: View) -> tuple[bool, bool, float]:
-        by_chance = view.p_value * len(views) >= LEVEL
+        by_chance = view.p_value * len(views) >= CHANCE_LEVEL
         return not view.named, by_chance, -view.saved
 
     return tuple(sorted(views, key=order))

@@ -35,27 +35,27 @@ from hystbench.sentences import percent, shortly
 
 KNOTS = 9
 """Of a curve over an axis."""
-ONE_SIDED = 0.8
+ONE_SIDED_SHARE = 0.8
 """Share of what is explained on one side, or branch, for the other to be left out."""
 THRESHOLDS = np.array([0.02, 0.05, 0.09, 0.13, 0.18, 0.24, 0.3, 0.37, 0.45, 0.54, 0.7])
 """Of play operators, as shares of the input's largest magnitude."""
-EXPONENTS = (0.25, 0.5, 1.0)
+RATE_EXPONENTS = (0.25, 0.5, 1.0)
 """Of the rate."""
-MEMORIES = 4
+TIME_CONSTANTS = 4
 """Time constants, from a fifth of the slowest period to twice the longest record."""
-STARTS = 61
+DELAY_STARTS = 61
 """Delays that are tried, of both signs, before the best is refined."""
-ROUGHLY = 4
+ROUGH_STRIDE = 4
 """Of the samples of a view, one of so many chooses a start."""
-NEWTON = 8
+NEWTON_STEPS = 8
 """Steps of Gauss and Newton from there, at most."""
-FINER = 1e-4
+TOLERANCE = 1e-4
 """Of a step between two starts, to which a delay is found."""
-PERIODS = 1.5
+LONGEST_PERIODS = 1.5
 """Of the fastest input: further a shift is not told from those by whole periods."""
 QUIET = 1.5
 """Of the noise's power, that a record's residual has where the gap is not."""
-NAMED = 3
+RECORDS_TOLD = 3
 """Records that are told by name; of more, how many they are."""
 
 
@@ -71,7 +71,7 @@ def amplitude(samples: ViewSamples) -> View:
     form = named_or(samples, "amplitude", curves)
     power = form.fitted**2
     above = _share_of(power, samples.input > 0)
-    one_sided = max(above, 1 - above) > ONE_SIDED
+    one_sided = max(above, 1 - above) > ONE_SIDED_SHARE
     axis = samples.input if one_sided else np.abs(samples.input)
     name = "input" if one_sided else "magnitude of the input"
     start, end = narrowest(axis, power)
@@ -103,8 +103,8 @@ def branch(samples: ViewSamples) -> View:
         f"{shortly(float(np.mean(np.abs(form.fitted))))} {samples.units[1]} on average."
     )
     ends = (
-        "falling" if rising < 1 - ONE_SIDED else "rising",
-        "rising" if rising > ONE_SIDED else "falling",
+        "falling" if rising < 1 - ONE_SIDED_SHARE else "rising",
+        "rising" if rising > ONE_SIDED_SHARE else "falling",
     )
     drawn = [over_input(samples)]
     return view_of("branch", form, "branch", ends, "", told, drawn)
@@ -114,7 +114,7 @@ def rate(samples: ViewSamples) -> View:
     """Fit odd powers of the rate, alone and by the input's magnitude."""
     top = max(float(np.max(np.abs(samples.speed))), 1e-300)
     speed, size = np.abs(samples.speed) / top, np.abs(samples.input) / samples.reach
-    powers = [np.sign(samples.speed) * speed**exponent for exponent in EXPONENTS]
+    powers = [np.sign(samples.speed) * speed**exponent for exponent in RATE_EXPONENTS]
     wider = [power * factor for power in powers for factor in (1.0, size)]
     words = "a loop that widens with rate and amplitude"
     form = named_or(samples, "rate", [fit_form(samples, words, wider)])
@@ -132,7 +132,7 @@ def slow_time(samples: ViewSamples) -> View:
     """Fit low-passed output (as creep is) and square of the input (as heat is)."""
     longest = float(np.max(samples.durations))
     shortest = min(0.2 / float(np.min(samples.main_frequencies)), longest)
-    times = np.geomspace(shortest, 2 * longest, MEMORIES)
+    times = np.geomspace(shortest, 2 * longest, TIME_CONSTANTS)
     slow = [
         column
         for signals in (
@@ -200,7 +200,7 @@ def fit_delay(samples: ViewSamples) -> tuple[float, FloatArray]:
     """
     runs = [(item.simulated, item.record.dt) for item in samples.compared]
     longest = 4 * max(dt for _, dt in runs)
-    most = max(PERIODS / float(np.max(samples.main_frequencies)), longest)
+    most = max(LONGEST_PERIODS / float(np.max(samples.main_frequencies)), longest)
     inner = []
     for (signal, dt), at in zip(runs, samples.places, strict=True):
         ends = min(int(most / dt) + AHEAD, len(signal) // 4)
@@ -212,9 +212,9 @@ def fit_delay(samples: ViewSamples) -> tuple[float, FloatArray]:
         for (signal, dt), at, part, own in zip(
             runs, samples.places, samples.slices, inner, strict=True
         ):
-            few = at[own][::ROUGHLY]
+            few = at[own][::ROUGH_STRIDE]
             late = np.interp(few - shift / dt, np.arange(len(signal)), signal)
-            rest = samples.residual[part][own][::ROUGHLY] - (late - signal[few])
+            rest = samples.residual[part][own][::ROUGH_STRIDE] - (late - signal[few])
             missed += float(rest @ rest)
         return missed
 
@@ -226,13 +226,14 @@ def fit_delay(samples: ViewSamples) -> tuple[float, FloatArray]:
     def missed(moved: FloatArray) -> float:
         return float(np.sum((samples.residual - moved)[counted] ** 2))
 
-    starts = np.linspace(-most, most, STARTS).tolist()
-    step = 2 * most / (STARTS - 1)
+    starts = np.linspace(-most, most, DELAY_STARTS).tolist()
+    step = 2 * most / (DELAY_STARTS - 1)
+    fine = TOLERANCE * step
 
     def refined(shift: float) -> tuple[float, float, FloatArray]:
         low, high, moved = shift - step, shift + step, change(shift)
-        for _ in range(NEWTON):
-            slope = (change(shift + FINER * step) - moved)[counted] / (FINER * step)
+        for _ in range(NEWTON_STEPS):
+            slope = (change(shift + fine) - moved)[counted] / fine
             power = float(slope @ slope) or np.inf
             there = shift + float(slope @ (samples.residual - moved)[counted]) / power
             there = float(np.clip(there, low, high))
@@ -240,7 +241,7 @@ def fit_delay(samples: ViewSamples) -> tuple[float, FloatArray]:
             if missed(after) >= missed(moved):
                 break
             shift, moved = there, after
-            if by < FINER * step:
+            if by < fine:
                 break
         return missed(moved), shift, moved
 
@@ -276,7 +277,7 @@ def record(samples: ViewSamples) -> View:
     parts = zip(names, samples.slices, strict=True)
     quiet = [x for x, at in parts if np.mean(squares[at]) <= QUIET * samples.noise]
     alone = " and ".join(quiet)
-    if len(quiet) > NAMED:
+    if len(quiet) > RECORDS_TOLD:
         alone = f"{len(quiet)} records, {quiet[0]} among them,"
     told = (
         f"lies in {last - first + 1} of {len(names)} records, {where}; a gain and an "

@@ -31,12 +31,12 @@ DRAWN = (
     (EVEN, "even lines", "even lines"),
     (EITHER, "other lines", "odd or even"),
 )
-EXCITED = 1e-6
+EXCITED_POWER = 1e-6
 """Of its strongest line's power, that a line of the input holds."""
 ABOVE_NOISE = 20.0
 """Times what noise on the input gives a line: of a thousand such lines of noise none is
 so high."""
-LINES = 100
+LINES_DRAWN = 100
 """Of a kind in the picture."""
 
 
@@ -115,9 +115,9 @@ class Distortion:
         seen = one.amplitude > 0.1 * floor
         places = [np.flatnonzero(seen & (one.kind == kind)) for kind, _, _ in DRAWN]
         lines = [
-            series(role, one.frequency[at[:LINES]], one.amplitude[at[:LINES]], label)
-            for at, (_, role, label) in zip(places, DRAWN, strict=True)
-            if len(at)
+            series(role, one.frequency[at], one.amplitude[at], label)
+            for every, (_, role, label) in zip(places, DRAWN, strict=True)
+            if len(at := every[:LINES_DRAWN])
         ]
         ends = one.frequency[[0, -1]]
         lines.append(series("noise", ends, [floor, floor], "noise floor"))
@@ -199,5 +199,5 @@ def _excited(u: FloatArray) -> IntArray:
     mean = u.mean(axis=0)
     cause = np.abs(fft.rfft(mean - mean.mean())) ** 2
     scatter = float(np.sum((u - mean) ** 2)) / (count - 1) / count
-    floor = max(EXCITED * float(np.max(cause)), ABOVE_NOISE * scatter)
+    floor = max(EXCITED_POWER * float(np.max(cause)), ABOVE_NOISE * scatter)
     return np.flatnonzero(cause > floor)

@@ -16,13 +16,13 @@ from hystbench.record import FloatArray
 FACTS = 300
 """The residual counts as so many independent facts, however finely sampled: an error of
 a model is not white (docs/gap-method.md, "The score")."""
-HOLD = 0.8
+HELD_SHARE = 0.8
 """Of what a view explains, that its range holds."""
-BINS = 50
+RANGE_BINS = 50
 """Of as many samples each, in which the narrowest range is looked for."""
-SMOOTH = 17
+SMOOTHED_BINS = 17
 """Bins over which the spectrum of what is left is smoothed."""
-DEPENDENT = 1e-5
+LEAST_SINGULAR = 1e-5
 """Of the largest singular value of columns of one length: below it there is none."""
 
 
@@ -109,7 +109,7 @@ def _least_squares(rows: FloatArray, wanted: FloatArray) -> tuple[FloatArray, in
     size = np.sqrt(gram.diagonal())
     size = np.where(size > 0, size, 1.0)
     squares, vectors = np.linalg.eigh(gram / np.outer(size, size))
-    there = squares > max(DEPENDENT**2 * squares[-1], 0.0)
+    there = squares > max(LEAST_SINGULAR**2 * squares[-1], 0.0)
     vectors = vectors[:, there]
     along = vectors.T @ (rows @ wanted / size) / squares[there]
     return vectors @ along / size, int(there.sum())
@@ -184,7 +184,7 @@ def effective_count(
     rests, fits = [], []
     for part in slices:
         power = np.abs(fft.rfft(rest[part])) ** 2
-        window = np.ones(min(SMOOTH, len(power)))
+        window = np.ones(min(SMOOTHED_BINS, len(power)))
         covered = np.convolve(np.ones_like(power), window, mode="same")
         rests.append(np.convolve(power, window, mode="same") / covered)
         fits.append(np.abs(fft.rfft(fitted[part])) ** 2)
@@ -208,7 +208,7 @@ def narrowest(axis: FloatArray, weights: FloatArray) -> tuple[float, float]:
     axis, weights : ndarray, shape (n,)
     """
     order = np.argsort(axis)
-    starts = np.unique(np.linspace(0, len(axis), BINS + 1)[:-1].astype(np.int64))
+    starts = np.unique(np.linspace(0, len(axis), RANGE_BINS + 1)[:-1].astype(np.int64))
     first, last = narrowest_bins(np.add.reduceat(weights[order], starts))
     end = starts[last + 1] if last + 1 < len(starts) else len(axis) - 1
     return float(axis[order[starts[first]]]), float(axis[order[end]])
@@ -217,7 +217,7 @@ def narrowest(axis: FloatArray, weights: FloatArray) -> tuple[float, float]:
 def narrowest_bins(held: FloatArray) -> tuple[int, int]:
     """Give the first and the last of the fewest neighbours that hold most."""
     sums = np.concatenate([[0.0], np.cumsum(held)])
-    wanted = (HOLD - 1e-12) * sums[-1]
+    wanted = (HELD_SHARE - 1e-12) * sums[-1]
 
     def most(count: int) -> float:
         return float(np.max(sums[count:] - sums[:-count]))

@@ -30,7 +30,7 @@ from hystbench.sentences import percent, shortly
 
 BANDS = 12
 """With a gain and a phase of their own."""
-BINS = 401
+EDGES = 401
 """Edges of the common axis, evenly spaced in the logarithm of frequency."""
 
 
@@ -101,7 +101,7 @@ def _power(
     found = [periodogram(signal, item.record.dt) for signal, item in pairs]
     power = np.concatenate([each[1:] for each, _ in found])
     at = np.concatenate([each[1:] for _, each in found])
-    edges = np.geomspace(0.999 * at.min(), 1.001 * at.max(), BINS)
+    edges = np.geomspace(0.999 * at.min(), 1.001 * at.max(), EDGES)
     return np.histogram(at, edges, weights=power)
 
 
@@ -159,7 +159,7 @@ U, R, S = range(3)
 """Input, residual and simulated output, as rows and columns of a spectral matrix."""
 SEGMENTS = 4
 """Of a record without as many periods, that overlap by half."""
-EXCITED = 1e-5
+EXCITED_POWER = 1e-5
 """Of the strongest bin's input power, that an excited bin holds."""
 
 
@@ -189,7 +189,7 @@ class BinSpectra:
     def excited(self) -> Mask:
         """Bins in which the input has power."""
         power = self.power(U)
-        return np.asarray(power > EXCITED * float(np.max(power)))
+        return np.asarray(power > EXCITED_POWER * float(np.max(power)))
 
     def coherence(self, a: int, b: int) -> FloatArray:
         """Coherence of two signals in each bin, from 0 to 1."""
@@ -201,7 +201,7 @@ def take_spectra(samples: ViewSamples) -> BinSpectra:
     """Average the spectra of each record by Welch's method, and add the records."""
     lines = [_lines(item) for item in samples.compared]
     frequencies = np.concatenate([frequency for frequency, _ in lines])
-    edges = np.geomspace(0.999 * frequencies.min(), 1.001 * frequencies.max(), BINS)
+    edges = np.geomspace(0.999 * frequencies.min(), 1.001 * frequencies.max(), EDGES)
     total = sum(len(item.record) for item in samples.compared)
     # The noise is white: each line of a record has as much of it.
     weights = [

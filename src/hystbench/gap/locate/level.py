@@ -22,7 +22,7 @@ from scipy import special
 
 from hystbench.gap.locate.forms import saved
 from hystbench.gap.locate.mode import (
-    LINES,
+    LEAST_LINES,
     LevelLines,
     Mode,
     find_modes,
@@ -70,12 +70,12 @@ IN_A_CHAIN = (
 )
 """Those of them that do so in a chain as well."""
 
-SURE = 3.0
+SURE_ERRORS = 3.0
 """Standard errors by which a number has to move."""
-STEADY = np.array([1e-4, 1e-2, 1e-2, 1e-2])
+LEAST_ERRORS = np.array([1e-4, 1e-2, 1e-2, 1e-2])
 """Smallest relative error of frequency, damping twice, and gain that is believed: from
 one record to the next temperature alone moves them by as much."""
-BENDS = 0.75
+CLEARANCE_BEND = 0.75
 """Share of a rise in frequency squared that lies in the lower half of the mean square
 of the motion: half of it of a cubic spring, next to all of it of a clearance."""
 
@@ -106,7 +106,7 @@ class Moving:
     def errors(self) -> FloatArray:
         """Relative standard errors of the numbers, shape (levels, 4)."""
         found = np.array([mode.errors for mode in self.modes])
-        return np.asarray(np.maximum(found, STEADY))
+        return np.asarray(np.maximum(found, LEAST_ERRORS))
 
     @property
     def told(self) -> tuple[FloatArray, FloatArray]:
@@ -130,7 +130,7 @@ class Moving:
         away = (size - size[0]) / np.hypot(errors, errors[0])
         away[0] = 0.0
         most = away[np.argmax(np.abs(away), axis=0), range(3)]
-        ways = np.where(np.abs(most) > SURE, np.sign(most), 0.0).astype(int)
+        ways = np.where(np.abs(most) > SURE_ERRORS, np.sign(most), 0.0).astype(int)
         frequency, damping, gain = ways.tolist()
         return frequency, damping, gain
 
@@ -141,7 +141,7 @@ class Moving:
         if damping < 0 and not (frequency > 0 and self.stiffens):
             return "Coulomb friction"
         if frequency > 0:
-            return "clearance" if self.bend > BENDS else "hardening"
+            return "clearance" if self.bend > CLEARANCE_BEND else "hardening"
         if frequency < 0:
             return "micro-slip or hysteresis" if damping > 0 else "softening"
         if damping > 0:
@@ -222,16 +222,18 @@ def _with_error(value: float, error: float) -> str:
 
 APART = 1.2
 """Of two input levels, rms over rms, at least."""
-FEWEST = 3
+LEAST_LEVELS = 3
 """Levels that show how something moves."""
-BLURRED = 0.5
+BLURRED_ERROR = 0.5
 """Relative error of damping or gain above which there is no peak to speak of."""
-MODES = 2
+MODES_SHOWN = 2
 """That are shown."""
 NUMBERS = 8
 """Of a mode at a level: its pole, and three complex numbers of its band."""
 INTEGRALS = {"position": 0, "velocity": 1, "acceleration": 2}
+"""That lead from an output to a position."""
 ROLES = (("first", "first by width"), ("second", "second by width"))
+"""Of the lines of the first and the second mode."""
 
 
 def take_levels(samples: ViewSamples) -> tuple[Moving, ...]:
@@ -244,7 +246,7 @@ def take_levels(samples: ViewSamples) -> tuple[Moving, ...]:
         at three of them.
     """
     levels = _levels(samples.compared)
-    if len(levels) < FEWEST:
+    if len(levels) < LEAST_LEVELS:
         return ()
     lines = [[lines_of(item) for item in level] for level in levels]
     inputs = np.array([np.mean([_rms(one) for one in level]) for level in levels])
@@ -257,14 +259,14 @@ def take_levels(samples: ViewSamples) -> tuple[Moving, ...]:
     ends = [(mode, k) for k in (0, -1) for mode in find_modes(lines[k], integrals)]
     for mode, end in sorted(ends, key=lambda item: item[0].left / item[0].held):
         fits = dict(_followed(lines, end, mode, integrals))
-        if len(fits) >= FEWEST:
+        if len(fits) >= LEAST_LEVELS:
             places = sorted(fits, key=peaks.__getitem__)
             modes = tuple(fits[place] for place in places)
             one = Moving(inputs[places], modes, integrals, len(levels))
             if not any(_same(one, other) for other in moving):
                 moving.append(one)
     moving.sort(key=lambda one: -sum(mode.held for mode in one.modes))
-    return tuple(moving[:MODES])
+    return tuple(moving[:MODES_SHOWN])
 
 
 def level(samples: ViewSamples) -> View | None:
@@ -373,7 +375,7 @@ def picture_of(moving: Sequence[Moving], unit: str) -> ViewPicture:
 def _levels(compared: Sequence[Compared]) -> list[list[Compared]]:
     """Group records of a broadband input by its rms, the smallest first."""
     broad = [
-        item for item in compared if int(np.sum(lines_of(item).excited)) >= 2 * LINES
+        item for item in compared if np.sum(lines_of(item).excited) >= 2 * LEAST_LINES
     ]
     levels: list[list[Compared]] = []
     for item in sorted(broad, key=_rms):
@@ -396,7 +398,7 @@ def _followed(
     found = []
     for place in order if end == 0 else reversed(order):
         fitted = fit_mode(lines[place], mode.frequency, mode.damping, integrals)
-        if fitted is not None and float(np.max(fitted.errors)) <= BLURRED:
+        if fitted is not None and float(np.max(fitted.errors)) <= BLURRED_ERROR:
             mode = fitted
             found.append((place, fitted))
     return found

@@ -24,9 +24,9 @@ from scipy import fft
 from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import ComplexArray, FloatArray, Mask
 
-EXCITED = 1e-3
+EXCITED_POWER = 1e-3
 """Of the strongest line's input power, that an excited line holds."""
-ENOUGH = 2**15
+MOST_SAMPLES = 2**15
 """Samples of a record without periods that are looked at, from its end on."""
 
 
@@ -52,7 +52,7 @@ class LevelLines(NamedTuple):
     def excited(self) -> Mask:
         """Lines that the input excites."""
         power = np.abs(self.u) ** 2
-        return np.asarray(power > EXCITED * float(np.max(power, initial=0.0)))
+        return np.asarray(power > EXCITED_POWER * float(np.max(power, initial=0.0)))
 
 
 def lines_of(compared: Compared) -> LevelLines:
@@ -66,7 +66,7 @@ def lines_of(compared: Compared) -> LevelLines:
         # Of two periods the first still holds the way from rest.
         signals = runs[:, -1] if runs.shape[1] == 2 else runs.mean(axis=1)
     else:
-        signals = signals[:, -ENOUGH:]
+        signals = signals[:, -MOST_SAMPLES:]
     n = signals.shape[1]
     centred = signals - signals.mean(axis=1, keepdims=True)
     u, y, missed = np.asarray(fft.rfft(centred))[:, 1:] * (np.sqrt(2) / n)
@@ -76,15 +76,15 @@ def lines_of(compared: Compared) -> LevelLines:
 
 DEGREE = 2
 """Of the local polynomials, in the distance from the middle of the band."""
-WIDE = 6.0
+HALF_BAND = 6.0
 """Half the width of a band, in damping ratios: nine tenths of a mode's energy."""
 NARROWEST, WIDEST = 0.08, 0.5
 """Ends of half the width of a band, as shares of its frequency."""
-LINES = 16
+LEAST_LINES = 16
 """Fewest excited lines of a band: twice the numbers that are fitted."""
 DAMPINGS, FREQUENCIES = 12, 25
 """Of the grid in which a mode is searched."""
-EDGE = 1e-3
+EDGE_TOLERANCE = 1e-3
 """Of a range: a fit that comes so near to its end has none, relative to its value."""
 
 
@@ -137,14 +137,14 @@ def fit_mode(
         None where the input excites too few lines of the band, or no peak is in it.
     """
     found: Mode | None = None
-    half = float(np.clip(2 * WIDE * damping, 2 * NARROWEST, WIDEST))
+    half = float(np.clip(2 * HALF_BAND * damping, 2 * NARROWEST, WIDEST))
     for search in (True, False, False):
         band = _Band.of(level, frequency, half, integrals)
         found = None if band is None else band.fitted(frequency, damping, search)
         if found is None:
             return None
         frequency, damping = found.frequency, found.damping
-        half = float(np.clip(WIDE * damping, NARROWEST, WIDEST))
+        half = float(np.clip(HALF_BAND * damping, NARROWEST, WIDEST))
     return found
 
 
@@ -167,7 +167,8 @@ class _Band:
             )
             away = near.frequency / centre - 1
             # Lines on both sides of the middle, half way out at least.
-            if len(away) >= LINES and away.min() < -half / 2 < half / 2 < away.max():
+            many = len(away) >= LEAST_LINES
+            if many and away.min() < -half / 2 < half / 2 < away.max():
                 parts.append(near)
         return cls(centre, tuple(parts), integrals) if parts else None
 
@@ -185,9 +186,9 @@ class _Band:
                 np.linspace(ends[0, 1], np.log(0.6), DAMPINGS),
             )
             start = min(map(np.array, grid), key=lambda at: _square(self._residual(at)))
-        inside = np.clip(start, ends[0] + EDGE, ends[1] - EDGE)
+        inside = np.clip(start, ends[0] + EDGE_TOLERANCE, ends[1] - EDGE_TOLERANCE)
         best = least_squares(self._residual, inside, x_scale=0.1, bounds=ends)
-        if np.any(np.abs(best.x - ends) < EDGE):
+        if np.any(np.abs(best.x - ends) < EDGE_TOLERANCE):
             return None
         nu, zeta = np.exp(best.x).tolist()
         return self._mode(nu, zeta, best.fun, best.jac)
@@ -279,11 +280,11 @@ def _square(values: FloatArray) -> float:
     return float(values @ values)
 
 
-PEAKS = 6
+MOST_PEAKS = 6
 """Of the output's spectrum, that are tried."""
-WIDTH = 0.03
+SMOOTHED_WIDTH = 0.03
 """Of a frequency, over which lines are averaged before peaks are sought."""
-GUESS = 0.01
+DAMPING = 0.01
 """Damping ratio from which a peak is fitted: in a narrow band, away from others."""
 LEAST_SHARE = 0.1
 """Of the output's power, that a mode worth a picture holds."""
@@ -305,7 +306,7 @@ def find_modes(level: Sequence[LevelLines], integrals: int) -> tuple[Mode, ...]:
         The one that explains most of the output first; each a width of it apart.
     """
     whole = sum(float(np.sum(np.abs(one.y) ** 2)) for one in level)
-    fits = [fit_mode(level, peak, GUESS, integrals) for peak in _peaks(level[0])]
+    fits = [fit_mode(level, peak, DAMPING, integrals) for peak in _peaks(level[0])]
     shares = [(float(mode.held - mode.left), mode) for mode in fits if mode is not None]
     found: list[Mode] = []
     for share, mode in sorted(shares, key=lambda item: -item[0]):
@@ -321,11 +322,12 @@ def _peaks(lines: LevelLines) -> list[float]:
     at, power = lines.frequency[lines.excited], np.abs(lines.y[lines.excited]) ** 2
     if not len(at):
         return []
-    ends = np.searchsorted(at, [at * (1 - WIDTH / 2), at * (1 + WIDTH / 2)], "right")
+    around = np.outer([1 - SMOOTHED_WIDTH / 2, 1 + SMOOTHED_WIDTH / 2], at)
+    ends = np.searchsorted(at, around, "right")
     sums = np.concatenate([[0.0], np.cumsum(power)])
     smooth = (sums[ends[1]] - sums[ends[0]]) / (ends[1] - ends[0])
     tops = _highest_points(smooth)
-    strongest = tops[np.argsort(-smooth[tops])][:PEAKS]
+    strongest = tops[np.argsort(-smooth[tops])][:MOST_PEAKS]
     return [float(at[top]) for top in strongest]
 
 

@@ -15,7 +15,7 @@ from hystbench.gap.locate.samples import ViewSamples
 from hystbench.record import FloatArray
 from hystbench.sentences import percent
 
-POINTS = 200
+MOST_POINTS = 200
 """Of a line, at most."""
 
 Number = float | None
@@ -108,9 +108,9 @@ def listed(values: ArrayLike) -> list[Number]:
 
 
 def thinned(*values: FloatArray) -> list[FloatArray]:
-    """Average neighbours, so that at most :data:`POINTS` are left."""
+    """Average neighbours, so that at most :data:`MOST_POINTS` are left."""
     count = len(values[0])
-    size = max(1, -(-count // POINTS))
+    size = max(1, -(-count // MOST_POINTS))
     return [block_means(each, size) for each in values]
 
 
@@ -128,17 +128,17 @@ def mean_in(edges: FloatArray, at: FloatArray, values: FloatArray) -> FloatArray
     return np.where(held > 0, total / np.maximum(held, 1), np.nan)
 
 
-CELLS = 40
+INPUT_CELLS = 40
 """Of the picture over the input."""
-COLUMNS = 18
+MAP_COLUMNS = 18
 """Cells of the map along the input, of one width."""
-ROWS = 6
+MAP_ROWS = 6
 """Cells along the rate's magnitude, for each sign, of about as many samples each.
 
 Fewer where the input rests."""
-FEWEST = 5
+LEAST_SAMPLES = 5
 """Samples of a cell that is shown: the mean of fewer is mostly noise."""
-BLOCKS = 25
+MOST_BLOCKS = 25
 """Means of a record over slow time, at most."""
 
 
@@ -146,7 +146,7 @@ def over_input(samples: ViewSamples) -> ViewPicture:
     """Draw the residual over the input, branch by branch."""
     u, residual = samples.input, samples.residual
     top = max(float(u.max()), u.min() + 1e-300)
-    edges = np.linspace(float(u.min()), top, CELLS + 1)
+    edges = np.linspace(float(u.min()), top, INPUT_CELLS + 1)
     middle = 0.5 * (edges[1:] + edges[:-1])
     lines = [
         series(role, middle, mean_in(edges, u[way], residual[way]), role)
@@ -177,11 +177,11 @@ def over_plane(samples: ViewSamples) -> ViewPicture | None:
     rows = rate_edges(samples.speed)
     if rows is None:
         return None
-    columns = np.linspace(float(u.min()), float(u.max()), COLUMNS + 1)
+    columns = np.linspace(float(u.min()), float(u.max()), MAP_COLUMNS + 1)
     at, edges = (u, samples.speed), (columns, rows)
     held, _, _ = np.histogram2d(*at, edges)
     total, _, _ = np.histogram2d(*at, edges, weights=residual)
-    enough = held >= FEWEST
+    enough = held >= LEAST_SAMPLES
     mean = np.where(enough, total / np.maximum(held, 1), np.nan)
     explained = float(np.sum(held * np.nan_to_num(mean) ** 2)) / len(u)
     share = samples.share(explained, int(enough.sum()))
@@ -206,7 +206,7 @@ def over_plane(samples: ViewSamples) -> ViewPicture | None:
 def rate_edges(speed: FloatArray) -> FloatArray | None:
     """Give edges that are alike for both signs; fast records do not hide slow ones."""
     size = np.abs(speed)
-    found = np.unique(np.quantile(size, np.linspace(0, 1, ROWS + 1)[1:]))
+    found = np.unique(np.quantile(size, np.linspace(0, 1, MAP_ROWS + 1)[1:]))
     found = found[found > 0]
     return np.concatenate([-found[::-1], [0.0], found]) if len(found) else None
 
@@ -219,7 +219,7 @@ def over_time(samples: ViewSamples) -> ViewPicture:
         main = float(samples.main_frequencies[k])
         period = item.record.period_samples or round(1 / max(main * dt, 1 / n))
         # Whole periods, so that what repeats cancels alike in every block.
-        size = min(n, max(1, period) * max(1, -(-n // (BLOCKS * max(1, period)))))
+        size = min(n, max(1, period) * max(1, -(-n // (MOST_BLOCKS * max(1, period)))))
         means = block_means(item.residual[: n // size * size], size)
         at = start + (np.arange(len(means)) + 0.5) * size * dt
         lines.append(series(("first", "second")[k % 2], at, means, item.record.name))

@@ -16,10 +16,10 @@ from hystbench.gap.view_kinds import ViewKind
 from hystbench.operators import play
 from hystbench.record import FloatArray
 
-ENOUGH = 14_000
+MOST_SAMPLES = 14_000
 """More samples than this tell a map over an axis nothing more."""
 PRIMES = (1, 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61)
-TURNS = 0.01
+TURN_SHARE = 0.01
 """Of the input's range, that it moves before a turn counts: noise is no turn."""
 
 
@@ -96,7 +96,7 @@ class ViewSamples:
     @cached_property
     def direction(self) -> FloatArray:
         """Plus one where the input rises, minus one where it falls."""
-        half = 0.5 * TURNS * self.reach
+        half = 0.5 * TURN_SHARE * self.reach
         return self.thinned([_direction(x.record.u, half) for x in self.compared])
 
     @cached_property
@@ -167,7 +167,7 @@ def take_samples(
 ) -> ViewSamples:
     """Choose the stride and gather the records."""
     total = sum(len(item.record) for item in compared)
-    least = max(1, total // ENOUGH)
+    least = max(1, total // MOST_SAMPLES)
     stride = next((prime for prime in PRIMES if prime >= least), least)
     # A short record keeps at least a hundred samples.
     shortest = min(len(item.record) for item in compared)

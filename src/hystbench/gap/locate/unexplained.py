@@ -15,16 +15,16 @@ from hystbench.record import FloatArray, Mask
 from hystbench.sentences import shortly
 
 DRIFT, LINE = "a drift", "a lone line"
-ORDERS = 4
+DRIFT_ORDERS = 4
 """Half-periods of the fastest drift within a record."""
-NEIGHBOURS = 48
+LEVEL_BINS = 48
 """Bins of a periodogram over which its own level is read."""
-HANN = 35 / 18
+HANN_VARIANCE = 35 / 18
 """What a Hann window does to the variance of a mean over bins: n sum w^4 over the
 square of sum w^2."""
 MEDIAN_EFFICIENCY = float(np.log(2) ** 2)
 """Variance of the mean over that of the median scaled to it, of exponential values."""
-CAUSED = 1e-5
+LINE_POWER = 1e-5
 """Of the strongest bin's power, that a line of the input holds."""
 STANDS_OUT = 10.0
 """Times the level around it, that a line holds."""
@@ -88,7 +88,7 @@ def _drift_columns(samples: ViewSamples) -> list[FloatArray]:
         np.where(
             order <= halves, 1 - np.cos(np.pi * order * samples.time / duration), 0.0
         )
-        for order in range(1, ORDERS + 1)
+        for order in range(1, DRIFT_ORDERS + 1)
     ]
 
 
@@ -124,7 +124,7 @@ def find_line(samples: ViewSamples) -> tuple[float | None, float]:
     often = seen >= max(0.5 * len(samples.compared), 1)
     # A bin exceeds x times its level with probability exp(-x); as the level is itself
     # read off a few neighbours, the tail is that of F with 2 and 2 nu degrees.
-    nu = NEIGHBOURS * MEDIAN_EFFICIENCY / HANN
+    nu = LEVEL_BINS * MEDIAN_EFFICIENCY / HANN_VARIANCE
     one = min((1 + strongest / nu) ** -nu, 1 - 1e-12)
     p_value = float(np.clip(-np.expm1(bins * np.log1p(-one)), 0.0, 1.0))
     if not np.any(often):
@@ -140,7 +140,7 @@ def find_line(samples: ViewSamples) -> tuple[float | None, float]:
 
 def _level(power: FloatArray) -> FloatArray:
     """Give the mean level of noise around each bin, by medians of blocks."""
-    blocks = max(1, len(power) // NEIGHBOURS)
+    blocks = max(1, len(power) // LEVEL_BINS)
     size = -(-len(power) // blocks)
     first = np.linspace(0, len(power) - size, blocks).round().astype(int)
     medians = np.median(power[first[:, None] + np.arange(size)], axis=1)
@@ -151,7 +151,7 @@ def _level(power: FloatArray) -> FloatArray:
 
 def _lines_of(cause: FloatArray) -> Mask:
     """Tell the bins in which the input has a line, and their neighbours."""
-    lone = (cause > CAUSED * np.max(cause)) & (cause > STANDS_OUT * _level(cause))
+    lone = (cause > LINE_POWER * np.max(cause)) & (cause > STANDS_OUT * _level(cause))
     return np.convolve(lone, np.ones(3), mode="same") > 0
 
 

@@ -22,12 +22,12 @@ from hystbench.operators import play, state_space
 from hystbench.record import FloatArray, Record
 
 #: Rows of all records together that are fitted: neighbouring samples say the same.
-ROWS = 6000
+MOST_ROWS = 6000
 #: Ridge penalties to choose from, per row of standardised columns; the largest leaves
 #: next to nothing, where nothing carries over from one fold to another.
 PENALTIES = np.geomspace(1e-7, 1e3, 6)
 #: Amplitude or rate beyond the training records' largest by more is outside.
-BEYOND = 1.02
+OUTSIDE_RATIO = 1.02
 #: Lags in shortest sampling intervals: dense where dynamics are fast.
 LAGS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
 #: Low-passes from the shortest sampling interval to a third of the longest record.
@@ -38,13 +38,13 @@ MODES, DAMPING = 12, 0.15
 #: Thresholds of play operators, as parts of the input's largest excursion.
 THRESHOLDS = (0.05, 0.15, 0.3, 0.5, 0.75)
 #: Widths over which a signal turns its sign, in its spreads: friction, dead zones.
-TURNS = (0.03, 0.3, 1.0)
+TURN_WIDTHS = (0.03, 0.3, 1.0)
 #: Points about which radial basis functions lie.
 LANDMARKS = 80
 #: Share by which two mean squares differ that are the same.
-ALIKE = 1e-9
+SAME_SHARE = 1e-9
 #: Singular value below which a direction of these functions is none.
-LEAST = 1e-12
+LEAST_SINGULAR = 1e-12
 
 
 @dataclass(frozen=True, repr=False)
@@ -110,7 +110,7 @@ class BlackBox:
         after = float(counts @ squares[np.arange(len(folds)), best] / counts.sum())
         before = float(np.mean(target**2))
         above = before - floor_rms**2
-        if abs(floor_rms**2 / max(after, LEAST) - 1.0) < ALIKE:
+        if abs(floor_rms**2 / max(after, LEAST_SINGULAR) - 1.0) < SAME_SHARE:
             above = before  # a floor that it tells itself is no measure of it
         inputs = np.concatenate([record.u for record in records])
         return cls(
@@ -151,9 +151,9 @@ class BlackBox:
         low, high = self.input_range
         middle, half = (low + high) / 2, (high - low) / 2
         ways = []
-        if float(np.abs(record.u - middle).max()) > BEYOND * half:
+        if float(np.abs(record.u - middle).max()) > OUTSIDE_RATIO * half:
             ways.append("amplitude")
-        if _fastest(record) > BEYOND * self.largest_rate:
+        if _fastest(record) > OUTSIDE_RATIO * self.largest_rate:
             ways.append("rate")
         return tuple(ways)
 
@@ -224,7 +224,7 @@ class BoxInputs:
         chosen = np.random.default_rng(0).permutation(len(cloud))[:LANDMARKS]
         found = replace(found, landmarks=cloud[chosen])
         left, size, right = np.linalg.svd(found.near_landmarks(cloud[chosen]))
-        root = np.sqrt(np.maximum(size, LEAST))
+        root = np.sqrt(np.maximum(size, LEAST_SINGULAR))
         found = replace(found, whitening=(left / root) @ right)
         raw = np.concatenate([np.hstack(found.columns(*pair)) for pair in pairs])
         middles, spreads = raw.mean(axis=0), raw.std(axis=0)
@@ -266,7 +266,7 @@ class BoxInputs:
         first, second = np.triu_indices(state.shape[1])
         return [
             np.array(lines).T,
-            *(np.tanh(state / width) for width in TURNS),
+            *(np.tanh(state / width) for width in TURN_WIDTHS),
             plays[rows],
             state[:, first] * state[:, second],
             self.near_landmarks(state),
@@ -316,7 +316,7 @@ def _rows(records: Sequence[Record]) -> list[NDArray[np.intp]]:
     total = sum(int(np.sum(record.counted)) for record in records)
     shares = [int(np.sum(record.counted)) / total for record in records]
     return [
-        ScoredSamples.of([record], max(1, round(ROWS * share))).positions[0]
+        ScoredSamples.of([record], max(1, round(MOST_ROWS * share))).positions[0]
         for record, share in zip(records, shares, strict=True)
     ]
 

@@ -18,10 +18,10 @@ from hystbench.blocks.held import Hold
 from hystbench.gap.records.scored_samples import SAMPLES
 from hystbench.record import FloatArray, Record
 
-BEYOND = 1e-4
+POWER_BEYOND = 1e-4
 """Share of the input's power that may lie beyond what the coarse samples tell: a
 hundredth of its rms."""
-TOLD = 0.25
+TOLD_BAND = 0.25
 """Of the sampling rate, up to where the curve through samples meets a sine well."""
 ENOUGH = 2 * SAMPLES
 """Samples that a record keeps, twice as many as are scored: it is simulated quickly."""
@@ -50,7 +50,7 @@ def sparing(records: Sequence[Record], hold: Hold) -> int:
         return 1
     fastest = max(_fastest(record.u) for record in records)
     fewest = min(len(record) for record in records)
-    most = min(int(TOLD / max(fastest, TOLD / fewest)), fewest // ENOUGH)
+    most = min(int(TOLD_BAND / max(fastest, TOLD_BAND / fewest)), fewest // ENOUGH)
     for factor in range(most, 1, -1):
         whole = all((item.period_samples or 0) % factor == 0 for item in records)
         counted = min(int(item.counted[::factor].sum()) for item in records)
@@ -63,7 +63,7 @@ def _fastest(x: FloatArray) -> float:
     """Give the frequency, per sample, beyond which hardly any power lies."""
     power = np.abs(np.fft.rfft((x - x.mean()) * np.hanning(len(x)))) ** 2
     beyond = np.cumsum(power[::-1])[::-1]
-    inside = beyond > BEYOND * beyond[0]
+    inside = beyond > POWER_BEYOND * beyond[0]
     return float(np.fft.rfftfreq(len(x))[inside][-1]) if inside.any() else 0.0
 
 

@@ -150,8 +150,8 @@ CUT = (
 def _check_length(file: Path, record: Record) -> None:
     """Refuse a record that is too short for its role, whatever will be named."""
     least, why = {
-        "fit": (folds.LEAST, "blocks of it judge what was fitted to the others"),
-        "hold-out": (nuisance.LEAST, "its first 30 % give what is new in it"),
+        "fit": (folds.SHORTEST, "blocks of it judge what was fitted to the others"),
+        "hold-out": (nuisance.SHORTEST, "its first 30 % give what is new in it"),
     }[record.use]
     if len(record) < least:
         raise InputError(

@@ -19,7 +19,7 @@ import numpy as np
 from scipy import fft
 
 from hystbench.gap.records.black_box import black_box
-from hystbench.gap.records.folds import LEAST
+from hystbench.gap.records.folds import SHORTEST
 from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import FloatArray, Record
 
@@ -28,7 +28,7 @@ Method = Literal["repeats", "declared", "upper-bound"]
 # The median of a chi-square variable of two degrees of freedom over its mean.
 MEDIAN_OF_CHI_SQUARE = float(np.log(2))
 # Below this share of the output's RMS nothing is called noise.
-TINY = 1e-9
+LEAST_NOISE = 1e-9
 # Fewer bins than this give no median worth the name.
 LEAST_BINS = 8
 
@@ -80,7 +80,7 @@ def noise_floor(compared: Sequence[Compared], declared: float | None = None) -> 
     if repeated:
         return Floor(float(np.median(repeated)), "repeats")
     bound = float(np.median([_from_residual(item) for item in compared]))
-    if sum(len(item.record) for item in compared) < LEAST:
+    if sum(len(item.record) for item in compared) < SHORTEST:
         return Floor(bound, "upper-bound")
     # What the input foretells is no noise: a broad gap reaches above the band too.
     foretold = black_box(compared, 0.0).left_on_folds
@@ -139,14 +139,14 @@ def _median_level(power: FloatArray) -> float:
 def _at_least(y: FloatArray, rms: float) -> float:
     """Keep the floor above that of quantisation, and above zero."""
     scale = float(np.max(np.abs(y)))
-    return float(max(rms, _step(y) / np.sqrt(12), TINY * scale, TINY**2))
+    return float(max(rms, _step(y) / np.sqrt(12), LEAST_NOISE * scale, LEAST_NOISE**2))
 
 
 def _step(y: FloatArray) -> float:
     """Give the step of quantised values: all differences are whole multiples of it."""
     values = np.unique(y)
     steps = np.diff(values)
-    steps = steps[steps > TINY * float(values[-1] - values[0])]
+    steps = steps[steps > LEAST_NOISE * float(values[-1] - values[0])]
     if not len(steps):
         return 0.0
     least = float(np.min(steps))
@@ -155,7 +155,7 @@ def _step(y: FloatArray) -> float:
     return least if bool(np.all(whole)) else 0.0
 
 
-FAR = 8.0
+FAR_DEVIATIONS = 8.0
 """Robust standard deviations: of normal noise no sample is so far off."""
 TO_SIGMA = 1.4826
 """Standard deviation of normal noise over its median absolute deviation."""
@@ -178,7 +178,7 @@ def lone_share(residuals: Sequence[FloatArray]) -> float:
         squares = about**2
         whole += float(squares.sum())
         if usual > 0:
-            far += float(squares[np.abs(about) > FAR * usual].sum())
+            far += float(squares[np.abs(about) > FAR_DEVIATIONS * usual].sum())
     return far / whole if whole > 0 else 0.0
 
 

@@ -14,15 +14,15 @@ import numpy as np
 from hystbench.record import Mask, Record
 
 #: With so many records whole ones are held out; with fewer, blocks of each.
-RECORDS = 3
+WHOLE_RECORDS = 3
 #: Never more folds: each of them is a refit of every candidate.
-FOLDS = 5
+MOST_FOLDS = 5
 #: Contiguous blocks of a record, where there are few records.
 BLOCKS = 4
 #: Part of a block on each side of it that neither fits nor judges.
-GUARD = 0.1
+GUARD_SHARE = 0.1
 #: Samples of a record that can be cut into blocks: with fewer than 25 one says nothing.
-LEAST = 25 * BLOCKS
+SHORTEST = 25 * BLOCKS
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def make_folds(
     Parameters
     ----------
     records : sequence of Record
-        Those with ``use: fit``, of at least ``LEAST`` samples each.
+        Those with ``use: fit``, of at least ``SHORTEST`` samples each.
     whole : bool, optional
         Whether whole records are held out. By default where there are three; False
         asks the easier question, whether a model interpolates within each record: of
@@ -63,7 +63,7 @@ def make_folds(
     tuple of Fold
     """
     if whole is None:
-        whole = len(records) >= RECORDS
+        whole = len(records) >= WHOLE_RECORDS
     folds = _by_record(records) if whole else _by_block(records)
     return tuple(
         Fold(_measured(fold.train, records), _measured(fold.validation, records))
@@ -78,7 +78,7 @@ def _measured(masks: Sequence[Mask], records: Sequence[Record]) -> tuple[Mask, .
 
 
 def _by_record(records: Sequence[Record]) -> tuple[Fold, ...]:
-    count = min(len(records), FOLDS)
+    count = min(len(records), MOST_FOLDS)
     group = np.empty(len(records), dtype=int)
     group[np.argsort([record.rate for record in records], kind="stable")] = (
         np.arange(len(records)) % count
@@ -100,7 +100,7 @@ def _by_block(records: Sequence[Record]) -> tuple[Fold, ...]:
         for record in records:
             edges = _edges(record)
             first, last = edges[block], edges[block + 1]
-            guard = max(1, round(GUARD * (last - first)))
+            guard = max(1, round(GUARD_SHARE * (last - first)))
             sample = np.arange(len(record))
             validation.append((sample >= first) & (sample < last))
             train.append((sample < first - guard) | (sample >= last + guard))

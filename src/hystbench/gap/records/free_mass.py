@@ -12,11 +12,11 @@ from hystbench.gap.thresholds import MOST
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
 
-SPRING = 0.1
+SPRING_SHARE = 0.1
 """Share of the input's rms below which a spring's force is none."""
-LASTS = 1e6
+UNBRAKED_S = 1e6
 """Time constant, in seconds, of a mass that nothing brakes."""
-LEAST = 100
+LEAST_WINDOW = 100
 """Samples of a window, at least."""
 NEIGHBOURS = 5
 """Samples on either side through which a parabola gives velocity and acceleration."""
@@ -46,7 +46,7 @@ def decay_of_free_mass(
         return None
     columns, wanted = [], []
     for record in records:
-        if record.use != "fit" or len(record) < 2 * LEAST:
+        if record.use != "fit" or len(record) < 2 * LEAST_WINDOW:
             continue
         velocity, acceleration = _derivatives(record)
         position = record.y - np.mean(record.y)
@@ -61,10 +61,10 @@ def decay_of_free_mass(
     found = np.linalg.lstsq(stacked / sizes, u, rcond=1e-10)[0]
     left = float(np.mean((u - (stacked / sizes) @ found) ** 2))
     total = float(np.var(u))
-    if left >= MOST * total or abs(found[2]) > SPRING * np.sqrt(total):
+    if left >= MOST * total or abs(found[2]) > SPRING_SHARE * np.sqrt(total):
         return None
     mass, damping = found[:2] / sizes[:2]
-    return float(mass / damping) if mass > 0 and damping > 0 else LASTS
+    return float(mass / damping) if mass > 0 and damping > 0 else UNBRAKED_S
 
 
 def windows(record: Record, decay_s: float | None = None) -> tuple[Record, ...]:
@@ -95,7 +95,7 @@ def windows(record: Record, decay_s: float | None = None) -> tuple[Record, ...]:
             decay_s=decay_s,
         )
         for k, (a, b) in enumerate(zip(starts, ends, strict=True))
-        if b - a >= LEAST or len(starts) == 1
+        if b - a >= LEAST_WINDOW or len(starts) == 1
     )
 
 
@@ -122,14 +122,14 @@ def runs(records: Sequence[Record]) -> tuple[tuple[int, ...], ...]:
 
 def _starts(record: Record) -> list[int]:
     """Give the samples where a window begins: the first, and those of no velocity."""
-    if len(record) < 2 * LEAST:
+    if len(record) < 2 * LEAST_WINDOW:
         return [0]
     velocity, _ = _derivatives(record)
     turns: NDArray[np.intp] = np.flatnonzero(np.diff(np.sign(velocity)) != 0)
     starts = [0]
     for turn in turns.tolist():
         nearer = turn + int(abs(velocity[turn + 1]) < abs(velocity[turn]))
-        if nearer - starts[-1] >= LEAST and len(record) - nearer >= LEAST:
+        if nearer - starts[-1] >= LEAST_WINDOW and len(record) - nearer >= LEAST_WINDOW:
             starts.append(nearer)
     return starts
 

@@ -11,14 +11,20 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from hystbench.gap.records.scored_samples import rms
 from hystbench.gap.thresholds import LOOSE
+from hystbench.metrics import rms
 from hystbench.record import FloatArray, Mask, Record
 
 #: Part of a hold-out record that estimates what is new in it.
 FIRST = 0.3
 #: Samples of a record that has such a part: with fewer than ten it estimates nothing.
-LEAST = math.ceil(10 / FIRST)
+SHORTEST = math.ceil(10 / FIRST)
+#: Degree of a path that may be carried on.
+HIGHEST_DEGREE = 2
+#: Periods, counted by crossings of the mean, of which two whole ones have three.
+REPEATING_PERIODS = 1.5
+#: Of the mean rate, for half of a record, to be a hold.
+HOLD_RATE = 0.1
 #: Regressors of what is new in a record: shape (n, m) from the record; m may be 0.
 Nuisance = Callable[[Record], FloatArray]
 
@@ -107,7 +113,7 @@ def left_rms(
         if output is not None
         for residual, scored in [left_over(record, output, nuisance)]
     ]
-    return rms(np.concatenate(left)) if len(left) == len(records) else None
+    return rms(*left) if len(left) == len(records) else None
 
 
 def path_and_mains(degree: int | None, mains_hz: Sequence[float] = ()) -> Nuisance:
@@ -159,24 +165,12 @@ def degree_that_carries_on(
         0 to 2; a higher one must leave clearly less.
     """
     best, least = 0, np.inf
-    for degree in range(HIGHEST + 1):
+    for degree in range(HIGHEST_DEGREE + 1):
         size = left_rms(records, simulated, path_and_mains(degree, mains_hz))
         assert size is not None  # noqa: S101  (on fit records no model runs away)
         if size**2 < (1 - LOOSE) * least**2:
             best, least = degree, size
     return best
-
-
-HIGHEST = 2
-"""Degree of a path that may be carried on."""
-
-
-TWICE = 1.5
-"""Periods, counted by crossings of the mean, of which two whole ones have three."""
-
-
-HOLDS = 0.1
-"""Of the mean rate, for half of a record, to be a hold."""
 
 
 def shows_a_path(record: Record) -> bool:
@@ -186,8 +180,8 @@ def shows_a_path(record: Record) -> bool:
     of the loop: nothing comes twice. A second period, or a hold, tells them apart.
     """
     moves = np.abs(np.diff(record.u))
-    holds = float(np.median(moves)) < HOLDS * float(np.mean(moves))
-    return holds or periods_of_input(record) >= TWICE
+    holds = float(np.median(moves)) < HOLD_RATE * float(np.mean(moves))
+    return holds or periods_of_input(record) >= REPEATING_PERIODS
 
 
 def periods_of_input(record: Record) -> float:

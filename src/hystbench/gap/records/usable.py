@@ -11,19 +11,19 @@ from hystbench.errors import InputError
 from hystbench.flat import COARSE, is_cut_off, repeats, smallest_step, stretches
 from hystbench.record import FloatArray, Record
 
-STUCK = 0.05
+STUCK_SHARE = 0.05
 """Share of a record, and of the input's range, over which no output stands still."""
-CLIPPED = 0.01
+CLIPPED_SHARE = 0.01
 """Share of the input's range that it goes on while a clipped output stands."""
 APPROACH = 5
 """Samples of motion before the input stops, or after it jumps."""
-JUMP = 10.0
+JUMP_RATIO = 10.0
 """Of the median step: a larger one is a jump."""
-PARTS = 12
+STRETCH_PARTS = 12
 """That a stretch is cut into; their means are free of noise and of fast ringing."""
-MOVES = 0.1
+MOVED_SHARE = 0.1
 """Of the output's range, that it goes meanwhile."""
-REAL = (
+IF_REAL = (
     "; if it is real, say 'stands_still: [{}]' of this record in dataset.yaml; if the "
     "recorder did it, leave this record out"
 )
@@ -67,9 +67,9 @@ def _check_output(file: Path, record: Record) -> None:
     reach, ends = float(np.ptp(u)), (y.min(), y.max())
     if ends[0] == ends[1]:
         return  # refused as such where records are read
-    told = max(CLIPPED, COARSE * smallest_step(y) / float(np.ptp(y))) * reach
-    for first, last in repeats(y, STUCK * len(y)):
-        if np.ptp(u[first:last]) <= STUCK * reach:
+    told = max(CLIPPED_SHARE, COARSE * smallest_step(y) / float(np.ptp(y))) * reach
+    for first, last in repeats(y, STUCK_SHARE * len(y)):
+        if np.ptp(u[first:last]) <= STUCK_SHARE * reach:
             continue
         past = is_cut_off(y, first, last) and _goes_beyond(u, first, last) > told
         if past or (last < len(y) and _jumps(y, last)):
@@ -80,7 +80,7 @@ def _check_output(file: Path, record: Record) -> None:
         for part in stretches(y)
         if part.kind == "clipped" and _goes_beyond(u, part.first, part.behind) > told
     ]
-    if sum(last - first for first, last in clipped) > STUCK * len(y):
+    if sum(last - first for first, last in clipped) > STUCK_SHARE * len(y):
         raise _refusal(file, record, "output", *clipped[0], "clipped")
 
 
@@ -107,7 +107,7 @@ def _refusal(
     return InputError(
         f"{file}: row {first + 2}: {channel.name} is {values[first]:g} {channel.unit} "
         f"for {last - first} samples while the {other}; expected a channel that is not "
-        f"{how}{REAL.format(side)}"
+        f"{how}{IF_REAL.format(side)}"
     )
 
 
@@ -135,9 +135,9 @@ def _check_input(file: Path, record: Record) -> None:
 def _flat(u: FloatArray) -> list[tuple[int, int]]:
     """Give the stretches, long enough to matter, where an input that moved is still."""
     moves = np.abs(np.diff(u))
-    usual = JUMP * float(np.median(moves[moves != 0]))
+    usual = JUMP_RATIO * float(np.median(moves[moves != 0]))
     found = []
-    for first, last in repeats(u, max(STUCK * len(u), 2 * PARTS)):
+    for first, last in repeats(u, max(STUCK_SHARE * len(u), 2 * STRETCH_PARTS)):
         # The motion that stops; of a stretch from the start, the one that goes on.
         beside = (
             moves[last : last + APPROACH]
@@ -151,27 +151,27 @@ def _flat(u: FloatArray) -> list[tuple[int, int]]:
 
 def _jumps(u: FloatArray, at: int) -> bool:
     moves = np.abs(np.diff(u))
-    return bool(moves[at - 1] > JUMP * np.median(moves[moves != 0]))
+    return bool(moves[at - 1] > JUMP_RATIO * np.median(moves[moves != 0]))
 
 
 def _unmoved(y: FloatArray, at: int, span: int) -> bool:
     """Tell whether an output goes on at its rate past a jump of the input."""
-    part = max(span // PARTS, 2)
+    part = max(span // STRETCH_PARTS, 2)
     before = y[at - 1] - y[max(at - 1 - part, 0)]
     after = y[min(at + part, len(y) - 1)] - y[at]
     return bool(abs(after - before) < 0.5 * abs(before))
 
 
 def _means(y: FloatArray) -> FloatArray:
-    return np.array([float(part.mean()) for part in np.array_split(y, PARTS)])
+    return np.array([float(part.mean()) for part in np.array_split(y, STRETCH_PARTS)])
 
 
 def _moves(y: FloatArray, reach: float) -> bool:
     """Tell whether an output goes far and is no slower in the end."""
     means = _means(y)
-    steps, third = np.abs(np.diff(means)), PARTS // 3
+    steps, third = np.abs(np.diff(means)), STRETCH_PARTS // 3
     settles = steps[-third:].mean() < steps[:third].mean() / 2
-    return bool(np.ptp(means) > MOVES * reach) and not settles
+    return bool(np.ptp(means) > MOVED_SHARE * reach) and not settles
 
 
 def _turns_half_way(y: FloatArray, reach: float) -> bool:
@@ -181,9 +181,9 @@ def _turns_half_way(y: FloatArray, reach: float) -> bool:
     there, back = abs(means[turn] - means[0]), abs(means[-1] - means[turn])
     steps = np.diff(means)
     turns = np.count_nonzero(np.diff(np.sign(steps[np.abs(steps) > 0.02 * reach])))
-    middle = PARTS / 3 <= turn + 0.5 <= 2 * PARTS / 3
+    middle = STRETCH_PARTS / 3 <= turn + 0.5 <= 2 * STRETCH_PARTS / 3
     return (
         middle
-        and min(there, back) > max(MOVES * reach, 0.5 * max(there, back))
+        and min(there, back) > max(MOVED_SHARE * reach, 0.5 * max(there, back))
         and (turns == 1)
     )

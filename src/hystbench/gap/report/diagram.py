@@ -13,10 +13,10 @@ from matplotlib.path import Path
 
 from hystbench.figures.style import BLACK, BLUE, GREY, ORANGE, PAGE, axis_label
 from hystbench.gap.report.diagram_layout import (
-    NAME,
     NAME_LINE,
-    NUMBER,
+    NAME_POINTS,
     NUMBER_LINE,
+    NUMBER_POINTS,
     PAD,
     RADIUS,
     Box,
@@ -42,7 +42,7 @@ SAID: dict[Whose, str] = {
 DRAWN = {"color": BLACK, "linewidth": 0.8}
 """Look of a line."""
 ARROW = "-|>,head_length=3.2,head_width=1.6"
-KEY = 0.24
+KEY_INCHES = 0.24
 """Height of the line that says what the colours mean, in inches."""
 
 
@@ -63,13 +63,13 @@ def figure_of(model: Model, gap: Mapping[str, Any]) -> Figure:
     """
     found = stages(model, gap)
     diagram = layout(found, axis_label(model.input), axis_label(model.output), PAGE)
-    size = (diagram.width, diagram.height + KEY)
+    size = (diagram.width, diagram.height + KEY_INCHES)
     figure = Figure(figsize=size)
     figure.set_layout_engine("none")  # all is in its place
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
     axes.set_xlim(0.0, diagram.width)
-    axes.set_ylim(-KEY, diagram.height)
+    axes.set_ylim(-KEY_INCHES, diagram.height)
     _paint(axes, diagram.shapes)
     _key(axes, {part.whose for stage in found for part in stage.parts})
     return figure
@@ -107,8 +107,8 @@ def _box(axes: Axes, box: Box) -> None:
         _frame(axes, *box[:4], box.whose)
         y -= PAD
     for lines, size, step in (
-        (box.words, NAME, NAME_LINE),
-        (box.numbers, NUMBER, NUMBER_LINE),
+        (box.words, NAME_POINTS, NAME_LINE),
+        (box.numbers, NUMBER_POINTS, NUMBER_LINE),
     ):
         for text in lines:
             _text(axes, box.x + box.width / 2, y - step / 2, text, size)
@@ -143,5 +143,5 @@ def _key(axes: Axes, there: Collection[Whose]) -> None:
     x = PAD
     for whose in (each for each in LOOKS if each in there):
         _frame(axes, x, -0.17, 0.16, 0.1, whose)
-        axes.text(x + 0.22, -0.12, SAID[whose], fontsize=NUMBER, va="center")
+        axes.text(x + 0.22, -0.12, SAID[whose], fontsize=NUMBER_POINTS, va="center")
         x += 1.5

@@ -18,7 +18,7 @@ from matplotlib.textpath import text_to_path
 from hystbench.gap.report.parts import Part, Stage, Whose
 
 #: Type of names and of numbers (points), and the height of a line (inches).
-NAME, NUMBER = 8.0, 7.0
+NAME_POINTS, NUMBER_POINTS = 8.0, 7.0
 NAME_LINE, NUMBER_LINE = 0.15, 0.13
 #: Letters of a line, at most: longer words are broken.
 NAME_LETTERS, NUMBER_LETTERS = 18, 24
@@ -204,7 +204,7 @@ def _group(stage: Stage) -> _Group:
 
 def _label(text: str) -> _Group:
     words = _lines(text, NAME_LETTERS)
-    width = max(text_width(line, NAME) for line in words)
+    width = max(text_width(line, NAME_POINTS) for line in words)
     height = NAME_LINE * len(words)
     label = Box(STUB / 2, -height / 2, width, height, words)
     return _Group(width + STUB, height / 2, height / 2, (label,))
@@ -220,8 +220,8 @@ def _box(part: Part) -> Box:
     numbers = tuple(
         line for text in part.numbers for line in _lines(text, NUMBER_LETTERS)
     )
-    widths = [text_width(line, NAME) for line in words]
-    widths += [text_width(line, NUMBER) for line in numbers]
+    widths = [text_width(line, NAME_POINTS) for line in words]
+    widths += [text_width(line, NUMBER_POINTS) for line in numbers]
     height = NAME_LINE * len(words) + NUMBER_LINE * len(numbers) + 2 * PAD
     width = max(widths) + 2 * PAD
     return Box(0.0, 0.0, width, height, words, numbers, part.whose)

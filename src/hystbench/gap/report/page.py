@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Any
 
 from hystbench.figures.style import BLUE, COLUMN, GREY, in_style, unit_text
-from hystbench.gap.locate import LEVEL
+from hystbench.gap.locate import CHANCE_LEVEL
 from hystbench.gap.report import diagram, pictures, words
 from hystbench.gap.report.pictures import EmbeddedPicture, draw, embedded
 from hystbench.gap.report.read import Content
@@ -52,14 +52,14 @@ def page(content: Content) -> str:
         input_column=_input_column(gap),
         where_pictures=drawn,
         missing=missing,
-        level=LEVEL,
+        level=CHANCE_LEVEL,
         ladder=_ladder(gap),
         ranking=_ranking(gap),
         ranked=_ranked(item for item in gap["ranking"] if not item["look"]),
         looks=_looks(gap),
         declined=_declined(gap),
         series=_series(content),
-        drawn=min(len(content.hold_out), pictures.RECORDS),
+        drawn=min(len(content.hold_out), pictures.MOST_RECORDS),
         held=len(content.hold_out),
     )
     return one_micro(page)
@@ -217,7 +217,7 @@ def _ladder(gap: dict[str, Any]) -> EmbeddedPicture | None:
 
 
 def _series(content: Content) -> EmbeddedPicture | None:
-    tables = pictures.worst(content.hold_out, pictures.RECORDS)
+    tables = pictures.worst(content.hold_out, pictures.MOST_RECORDS)
     if not tables:
         return None
 

@@ -23,7 +23,7 @@ from hystbench.model import Model
 Whose = Literal["simulator", "added", "put in"]
 
 #: Numbers of an effect that its box has.
-LEADING = 2
+NUMBERS_IN_BOX = 2
 _Number = tuple[object, str]
 """A value, and its unit."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -91,7 +91,7 @@ class _Owner:
             for name, (value, unit) in self.numbers.items()
             if isinstance(value, float | int) and value != 0
         ]
-        return Part(behaviour_of(self.effect), tuple(told[:LEADING]), self.whose)
+        return Part(behaviour_of(self.effect), tuple(told[:NUMBERS_IN_BOX]), self.whose)
 
 
 def stages(model: Model, gap: Mapping[str, Any]) -> tuple[Stage, ...]:

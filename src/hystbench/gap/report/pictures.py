@@ -31,9 +31,9 @@ from hystbench.report.picture import svg_source
 BARS = 20
 #: Hold-out records whose series are drawn, those on which the simulator is off most.
 #: Drawing is a good part of what a device costs, and more rows are not read.
-RECORDS = 4
+MOST_RECORDS = 4
 #: Periods of a record that are drawn large.
-PERIODS = 3
+PERIODS_DRAWN = 3
 #: Stretches of a line, of two points each: more than a page has pixels.
 STRETCHES = 750
 
@@ -210,7 +210,7 @@ def _window(table: HoldOut) -> slice:
     count = len(table.time_s)
     power = np.abs(np.fft.rfft(table.measured - table.measured.mean()))
     line = max(1, int(np.argmax(power[1:])) + 1)
-    width = min(count, max(50, PERIODS * count // line))
+    width = min(count, max(50, PERIODS_DRAWN * count // line))
     total = np.concatenate([[0], np.cumsum((table.measured - table.before) ** 2)])
     first = int(np.argmax(total[width:] - total[:-width]))
     return slice(first, first + width)

@@ -50,7 +50,7 @@ LOOKS: dict[str, tuple[str, str, str]] = {
 #: Series whose marks are hollow, as others lie on them.
 HOLLOW = ("first by width", "second by width")
 #: Inches of a row of panels: by what they show.
-HEIGHT, OF_A_MAP, LEAST, A_BAR = 2.4, 3.2, 0.8, 0.18
+ROW_INCHES, MAP_INCHES, LEAST_INCHES, BAR_INCHES = 2.4, 3.2, 0.8, 0.18
 
 
 def pictures_of(curves: Content | None) -> tuple[list[EmbeddedPicture], list[str]]:
@@ -83,7 +83,7 @@ def first_picture(curves: Content | None) -> Figure:
         figure = Figure(figsize=(PAGE, max(map(_height, panels))))
         _fill(figure.subplots(1, len(panels), squeeze=False)[0], picture)
         return figure
-    figure = Figure(figsize=(PAGE, LEAST))
+    figure = Figure(figsize=(PAGE, LEAST_INCHES))
     figure.text(0.5, 0.5, "no picture of where the gap is", ha="center", va="center")
     return figure
 
@@ -114,10 +114,10 @@ def _fill(axes: Any, picture: Content) -> None:
 
 def _height(panel: Content) -> float:
     if panel["cells"]:
-        return OF_A_MAP
+        return MAP_INCHES
     if panel["bars"]:
-        return LEAST + A_BAR * min(len(panel["bars"]["names"]), BARS)
-    return HEIGHT
+        return LEAST_INCHES + BAR_INCHES * min(len(panel["bars"]["names"]), BARS)
+    return ROW_INCHES
 
 
 def _paint(panel: Axes, content: Content) -> None:

@@ -12,10 +12,10 @@ from hystbench.record import Record
 
 REST = 6
 """Of the longest record, that the input rests after it has gone there and back."""
-REMAINS = 0.01
+REMEMBERED_SHARE = 0.01
 """Of the output's range, by which outputs must differ to remember the way; and of that
 difference, by which a linear function may miss superposition, as solvers do."""
-STAYS = 0.5
+STAYING_SHARE = 0.5
 """Of that difference, in the first half of the rest, that must be left in the other."""
 WEIGHT = 0.75
 """Of one way in the mean of two; of both halves an odd hysteresis would answer zero."""
@@ -57,11 +57,11 @@ def may_have_hysteresis(block: Block, records: Sequence[Record]) -> bool:
         return True
     early, late = (abs(float(x.mean())) for x in np.split((up - down)[2 * n :], 2))
     reach = max(float(np.ptp(up)), float(np.ptp(down)))
-    if late <= max(REMAINS * reach, STAYS * early):
+    if late <= max(REMEMBERED_SHARE * reach, STAYING_SHARE * early):
         return False
     mean, wanted = (WEIGHT * a + (1 - WEIGHT) * b for a, b in (ways, (up, down)))
     try:
         missed = block.simulate(mean, mean, longest.dt) - wanted
     except InputError:
         return True
-    return float(np.max(np.abs(missed))) > REMAINS * late
+    return float(np.max(np.abs(missed))) > REMEMBERED_SHARE * late

@@ -31,21 +31,20 @@ from hystbench.gap.simulation.simulation import Signals, Simulation
 from hystbench.operators import play
 from hystbench.record import FloatArray
 
-POWERS = 5
-OPERATORS = 10
-OPERATOR_POWERS = 3
+POWERS, OPERATORS, OPERATOR_POWERS = 5, 10, 3
+"""Of a signal; play operators of it; and of each of these."""
 MIXED = 6
 """Play operators, the input among them, of which products are taken."""
-WAYS = (0.05, 0.15, 0.4, 1.0, 3.0)
+FORGETTING_WAYS = (0.05, 0.15, 0.4, 1.0, 3.0)
 """In which loops forget, as shares of the largest input."""
 SLOPES, HEIGHTS, LEVELS = (1, 5), (0, 4), (0, 3, 4, 7)
 """Of the envelope functions' numbers a0 to a7 (Eqs. 5 and 6): per unit of input, how
 high they are, and what is in the unit of their output."""
-LEAST = 0.1
+LEAST_NUMBER = 0.1
 """Of its unit, that a number counts as at least."""
-SMALL = 1e-3
+CHANGE_SHARE = 1e-3
 """Size of a change beside the signal that it changes."""
-SMALLEST = 1e-3
+WEAKEST = 1e-3
 """Directions weaker than this share of the strongest are left out."""
 
 Maker = Callable[[Block, Signals, Signals, ScoredSamples | None], list[Signals]]
@@ -149,7 +148,7 @@ def orthonormal(columns: FloatArray) -> FloatArray:
     values, vectors = np.linalg.eigh(
         gram[np.ix_(usable, usable)] / np.outer(size, size)
     )
-    keep = values > (SMALLEST**2) * values[-1]
+    keep = values > (WEAKEST**2) * values[-1]
     turned = vectors[:, keep] / (size[:, None] * np.sqrt(values[keep]))
     return np.asarray(columns[:, usable] @ turned)
 
@@ -228,7 +227,7 @@ def _that_forget(
     scaled = tuple(np.concatenate([[0.0], z / amplitude]) for z in v)
     at = _at(tuple(z[1:] for z in scaled), sample)
     found: list[Signals] = []
-    for way in WAYS:
+    for way in FORGETTING_WAYS:
         law = HystereticForce(largest=way, yield_distance=way, sharing=0.0)
         loops = tuple(against((law,), z, np.zeros(len(z)), 1.0)[1:] for z in scaled)
         loops = _at(loops, sample)
@@ -252,7 +251,7 @@ def _own(block: GeneralizedPrandtlIshlinskii, v: Signals) -> list[Signals]:
     units = [slope if k in SLOPES else height if k in LEVELS else 1.0 for k in range(8)]
     for k, value in enumerate(block.envelope):
         moved = list(block.envelope)
-        moved[k] = value + SMALL * max(abs(value), LEAST * units[k])
+        moved[k] = value + CHANGE_SHARE * max(abs(value), LEAST_NUMBER * units[k])
         other = replace(block, envelope=tuple(moved))
         ways.append(
             tuple(other.grow(z, z, 1.0, None) - y for z, y in zip(v, now, strict=True))
@@ -270,7 +269,7 @@ def _sent(
     if _are_linear(behind):  # they answer to the change alone, of any size
         return simulation.run(behind, signals), 1.0
     now = simulation.before[simulation.behind_hysteresis]
-    size = SMALL * simulation.largest(simulation.behind_hysteresis)
+    size = CHANGE_SHARE * simulation.largest(simulation.behind_hysteresis)
     largest = float(max(max(s.max(), -s.min()) for s in signals))
     change = size / max(largest, 1e-300)
     moved = tuple(z + change * s for z, s in zip(now, signals, strict=True))

@@ -20,7 +20,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.stiffness_hardening import StiffnessHardening
 from hystbench.blocks.store import Store
 from hystbench.blocks.superposed import Superposed
-from hystbench.blocks.wrapping import Hysteresis, Wrapped, WrappingBlock
+from hystbench.blocks.wrapping import Wrappable, Wrapped, WrappingBlock
 from hystbench.gap.simulation.memory import may_have_hysteresis
 from hystbench.record import FloatArray, Record
 
@@ -110,7 +110,7 @@ class Simulation:
         if self.fine and isinstance(step, Driven | Superposed):
             return step.in_pieces(PIECES).simulate(z, record.u, record.dt)
         if self.quick and _takes_short_steps(step):
-            return _finely(step, z, record.dt, QUICK)
+            return _finely(step, z, record.dt, QUICK_STEPS)
         return self._known(step, z).simulate(z, record.u, record.dt)
 
     def _steps(self, blocks: Sequence[Block]) -> list[Any]:
@@ -150,13 +150,13 @@ class Simulation:
         inner = step.inner
         if isinstance(inner, Wrapped):
             return Wrapped(cast(Wrapped, self._known(inner, z)), step.by)
-        if all(inner is not cast(Hysteresis, block) for block in self.chain):
+        if all(inner is not cast(Wrappable, block) for block in self.chain):
             return step
         known = self._outputs.setdefault((id(z), inner), _Known(inner, z))
         return Wrapped(known, step.by)
 
     @cached_property
-    def _outputs(self) -> dict[tuple[int, Hysteresis], _Known]:
+    def _outputs(self) -> dict[tuple[int, Wrappable], _Known]:
         return {}
 
     @cached_property
@@ -278,7 +278,7 @@ class Simulation:
 class _Known:
     """A hysteresis that keeps what it gave for one input."""
 
-    def __init__(self, inner: Hysteresis, v: FloatArray) -> None:
+    def __init__(self, inner: Wrappable, v: FloatArray) -> None:
         self.inner, self.v = inner, v
         self.output: FloatArray | None = None
 
@@ -307,7 +307,7 @@ class _InLongSteps:
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Integrate the mode."""
-        return self.mode.integrated(z, dt, LONG)
+        return self.mode.integrated(z, dt, LONG_STEP)
 
 
 @lru_cache(maxsize=1024)
@@ -337,12 +337,12 @@ def _begun_once(block: Block) -> Block:
 
 LIMITED = "band-limited"
 NOT_LINEAR = (Mechanism, Store, StiffnessHardening)
-LONG = 0.3
+LONG_STEP = 0.3
 """Radians of a mode in a step, by which a ten-thousandth of its phase is missed."""
 PIECES, LONG_PIECES = 2, 0.25
 """Steps in place of each where forces act inside, fine and quick: what a step misses
 goes with its square."""
-QUICK = 2
+QUICK_STEPS = 2
 """Steps of an interval for hysteresis that depends on the rate, where quick."""
 
 
@@ -365,7 +365,7 @@ def _finely(step: Block | Wrapped, z: FloatArray, dt: float, factor: int) -> Flo
 def _plain(step: Block | Wrapped) -> Block | Wrapped:
     """Let what takes shorter steps by itself take those that it is given."""
     if isinstance(step, Wrapped):
-        inner = cast(Hysteresis, _plain(cast(Block, step.inner)))
+        inner = cast(Wrappable, _plain(cast(Block, step.inner)))
         if "hold" in step.by.parameters():
             straight: dict[str, Any] = {"hold": "linear"}
             return Wrapped(inner, replace(step.by, **straight))

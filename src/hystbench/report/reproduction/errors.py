@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from hystbench.compare.cells import ComparedCell
-from hystbench.compare.summary import FACTOR, nearness
+from hystbench.compare.summary import NEAR_FACTOR, nearness
 from hystbench.compare.tables import LEGEND, MARKS, METRIC_NAMES
 from hystbench.figures.style import look, signal_title, unit_text
 from hystbench.published import FILTERS, METRICS, MODELS, in_order
@@ -35,7 +35,7 @@ def filter_cells(cells: Iterable[ComparedCell], half: str) -> list[ComparedCell]
 
 def within(cells: Iterable[ComparedCell]) -> int:
     """Count errors that are within a factor of 2 of the paper's."""
-    return sum(cell.ran and cell.distance <= math.log10(FACTOR) for cell in cells)
+    return sum(cell.ran and cell.distance <= math.log10(NEAR_FACTOR) for cell in cells)
 
 
 def headline_table(cells: Sequence[ComparedCell], half: str) -> PageTable:

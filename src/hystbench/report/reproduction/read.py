@@ -112,7 +112,7 @@ def read_content(
             cells=read_items(compare / "cells.csv", ComparedCell),
             claims=read_rows(compare / "claims.csv", _CLAIMS),
             on_held_out=_on_held_out(compare / "summary.json"),
-            off=read_rows(compare / "off.csv", headers(off.COLUMNS)),
+            off=read_rows(compare / "off.csv", headers(off.OFF_COLUMNS)),
             audit=read_rows(compare / "audit.csv", names_of(AuditRow)),
             tables=[
                 shown(compare / "tables" / f"table-{number}.csv", "")
@@ -122,7 +122,7 @@ def read_content(
         )
         names = ["cells", "claims", "off", "audit"]
     else:
-        rows = read_rows(compare / "errors.csv", measured.COLUMNS)
+        rows = read_rows(compare / "errors.csv", measured.ERROR_COLUMNS)
         found = Measured(settings["dataset"], rows)
         names = ["errors"]
     return ReproductionContent(

@@ -11,6 +11,7 @@ from hystbench.report.reproduction.errors import within
 from hystbench.report.reproduction.read import Measured, Row
 from hystbench.sentences import listed
 
+#: Kind of error of a model that is simulated.
 FREE_RUN = "free-run simulation"
 
 #: Figures that a full run draws.

@@ -5,20 +5,22 @@ from typing import Literal
 
 import numpy as np
 
+from hystbench.metrics import rms
 from hystbench.record import FloatArray
 
-ExcitationKind = Literal["sine", "sum of sines", "sweep", "steps", "ramps", "broadband"]
+InputKind = Literal["sine", "sum of sines", "sweep", "steps", "ramps", "broadband"]
 
-STANDS = 0.8
+STILL_SHARE = 0.8
 """Share of samples at which the input stands still, of steps."""
-STRAIGHT = 0.25
+RAMP_SPREAD = 0.25
 """Spread of the slope's size over its mean, of ramps; a sine has 0.48."""
-LINES = 0.95
+POWER_IN_LINES = 0.95
 """Share of the power that the lines of a sine, or of a sum of sines, have."""
 MOST_LINES = 20
-PARTS = 16
-"""That a record is cut into, to see how its frequency goes."""
-IN_BAND = 0.99
+"""Of a sum of sines: more are broadband."""
+LEAST_CROSSINGS = 16
+"""Crossings of the mean from which the way of the frequency can be told."""
+POWER_SHARE = 0.99
 """Share of the input's power in its band."""
 
 
@@ -26,7 +28,7 @@ IN_BAND = 0.99
 class InputSummary:
     """An input in a few numbers."""
 
-    kind: ExcitationKind
+    kind: InputKind
     low_hz: float
     high_hz: float
     """Band that holds 99 % of the power of its changes about the mean."""
@@ -49,7 +51,7 @@ class InputSummary:
         return 2 * self.rate / self.span
 
 
-def excitation_of(u: FloatArray, dt: float) -> InputSummary:
+def summary_of(u: FloatArray, dt: float) -> InputSummary:
     """Describe an input.
 
     Parameters
@@ -60,7 +62,7 @@ def excitation_of(u: FloatArray, dt: float) -> InputSummary:
     """
     power = np.square(np.abs(np.fft.rfft((u - u.mean()) * np.hanning(len(u)))))
     total = np.cumsum(power)
-    edges = ((1 - IN_BAND) / 2 * total[-1], (1 + IN_BAND) / 2 * total[-1])
+    edges = ((1 - POWER_SHARE) / 2 * total[-1], (1 + POWER_SHARE) / 2 * total[-1])
     low, high = np.searchsorted(total, edges) / (len(u) * dt)
     slopes = np.diff(u) / dt
     return InputSummary(
@@ -69,17 +71,17 @@ def excitation_of(u: FloatArray, dt: float) -> InputSummary:
         max(float(high), 1 / (len(u) * dt)),
         float(u.min()),
         float(u.max()),
-        float(np.sqrt(np.mean(slopes**2))),
+        rms(slopes),
         float(np.abs(slopes).max()),
     )
 
 
-def _kind(u: FloatArray, power: FloatArray) -> ExcitationKind:
+def _kind(u: FloatArray, power: FloatArray) -> InputKind:
     steps = np.abs(np.diff(u))
     reach = float(np.ptp(u))
-    if np.mean(steps < 1e-6 * reach) > STANDS:
+    if np.mean(steps < 1e-6 * reach) > STILL_SHARE:
         return "steps"
-    if np.std(steps) < STRAIGHT * steps.mean():
+    if np.std(steps) < RAMP_SPREAD * steps.mean():
         return "ramps"
     lines = _lines(power)
     if lines == 1:
@@ -92,7 +94,7 @@ def _kind(u: FloatArray, power: FloatArray) -> ExcitationKind:
 def _lines(power: FloatArray) -> int:
     """Count the lines that hold nearly all of the power, each three bins wide."""
     left, total, count = power.copy(), float(power.sum()), 0
-    while count <= MOST_LINES and left.sum() > (1 - LINES) * total:
+    while count <= MOST_LINES and left.sum() > (1 - POWER_IN_LINES) * total:
         top = int(np.argmax(left))
         left[max(top - 2, 0) : top + 3] = 0.0
         count += 1
@@ -103,7 +105,7 @@ def _sweeps(u: FloatArray) -> bool:
     """Tell whether the frequency goes one way through the record, by crossings."""
     above = u > u.mean()
     crossings = np.flatnonzero(above[1:] != above[:-1])
-    if len(crossings) < PARTS:
+    if len(crossings) < LEAST_CROSSINGS:
         return False
     gaps = np.array([part.mean() for part in np.array_split(np.diff(crossings), 8)])
     ways = np.sign(np.diff(gaps))

@@ -1,7 +1,7 @@
 """What is left out in turn: a group of families, forms and kinds of physics.
 
-The groups stand in ``kept.yaml``. One of them is kept from every set but those of the
-score of what was left out, so that no solver is improved on it.
+The groups stand in ``kept.yaml``. One of them is in no set but those of the score of
+what was left out, so that no solver is improved on it.
 """
 
 from collections.abc import Mapping
@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hystbench.challenge.plant.kind import Kind
+from hystbench.challenge.plant.kind import EffectKind
 from hystbench.errors import InputError
 from hystbench.yaml_files import load_yaml
 
 
 @dataclass(frozen=True)
-class KeptGroup:
+class LeftOutGroup:
     """What is left out together."""
 
     families: tuple[str, ...]
@@ -25,31 +25,31 @@ class KeptGroup:
     forms: tuple[str, ...]
     """``effect: form`` of effects that it has a word for."""
 
-    def allowed(self, kind: Kind, inside: bool) -> tuple[str, ...]:
+    def allowed(self, effect: EffectKind, of_group: bool) -> tuple[str, ...]:
         """Give the forms of an effect that a set draws from.
 
         Parameters
         ----------
-        kind : Kind
-        inside : bool
+        effect : EffectKind
+        of_group : bool
             Whether the set is of the group: then its own forms, if there are any.
         """
-        own = [form for form in kind.forms if f"{kind.name}: {form}" in self.forms]
-        if inside and own:
+        own = [form for form in effect.forms if f"{effect.name}: {form}" in self.forms]
+        if of_group and own:
             return tuple(own)
-        return tuple(form for form in kind.forms if form not in own)
+        return tuple(form for form in effect.forms if form not in own)
 
 
 _TABLE: Mapping[str, Any] = load_yaml(Path(__file__).with_name("kept.yaml"))
 GROUPS = {
-    number: KeptGroup(**{key: tuple(names) for key, names in about.items()})
+    number: LeftOutGroup(**{key: tuple(names) for key, names in about.items()})
     for number, about in _TABLE["groups"].items()
 }
-KEPT: int = _TABLE["kept"]
+LEFT_OUT_GROUP: int = _TABLE["kept"]
 """The group that is left out now."""
 
 
-def group_of(number: int) -> KeptGroup:
+def group_of(number: int) -> LeftOutGroup:
     """Give a group.
 
     Raises
@@ -58,5 +58,5 @@ def group_of(number: int) -> KeptGroup:
         If there is none of this number.
     """
     if number not in GROUPS:
-        raise InputError(f"kept: {number}; expected 1 to {len(GROUPS)}")
+        raise InputError(f"group: {number}; expected 1 to {len(GROUPS)}")
     return GROUPS[number]

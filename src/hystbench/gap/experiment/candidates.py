@@ -16,14 +16,14 @@ from hystbench.signals import Signal
 from hystbench.waveforms.chirp import Chirp
 
 #: Part of the input's power below its bandwidth.
-IN_BAND = 0.999
+POWER_SHARE = 0.999
 #: Samples of a candidate: enough to tell two models apart.
-LONGEST = 20_000
+MOST_SAMPLES = 20_000
 #: Periods without which a sine has not settled.
-PERIODS = 3
-FREQUENCIES = 12
-AMPLITUDES = (0.25, 0.5, 1.0)
-BIASES = 5
+SETTLED_PERIODS = 3
+#: Frequencies of sines, their amplitudes as shares of half the range, and the levels
+#: about which minor loops are tried.
+FREQUENCIES, AMPLITUDES, BIASES = 12, (0.25, 0.5, 1.0), 5
 #: Units by the end of a parameter's name; without one it has the input's.
 UNITS = {"hz": "Hz", "s": "s"}
 
@@ -96,13 +96,13 @@ class Limits:
     @property
     def time(self) -> FloatArray:
         """Times of the samples of a candidate, in seconds."""
-        count = round(min(self.duration_s / self.dt, LONGEST))
+        count = round(min(self.duration_s / self.dt, MOST_SAMPLES))
         return np.asarray(np.arange(count) * self.dt, dtype=np.float64)
 
     @property
     def frequencies(self) -> FloatArray:
         """From a few periods in a record to the bandwidth, equal ratios apart."""
-        lowest = PERIODS / min(self.duration_s, LONGEST * self.dt)
+        lowest = SETTLED_PERIODS / min(self.duration_s, MOST_SAMPLES * self.dt)
         highest = min(self.bandwidth_hz, 0.2 / self.dt)
         count = FREQUENCIES if highest > lowest else 1
         return np.geomspace(lowest, max(highest, lowest), count)
@@ -173,9 +173,9 @@ def candidates(limits: Limits, unit: str) -> tuple[Excitation, ...]:
         smaller.
     """
     makers = [(make, limits) for make in (_sines, _wide_bands, _slow)]
-    if limits.duration_s > LONGEST * limits.dt:
+    if limits.duration_s > MOST_SAMPLES * limits.dt:
         # What is slow is sampled more coarsely, so that it lasts as long as it may.
-        makers.append((_slow, replace(limits, dt=limits.duration_s / LONGEST)))
+        makers.append((_slow, replace(limits, dt=limits.duration_s / MOST_SAMPLES)))
     return tuple(
         Excitation(kind, _with_units(numbers, unit, len(u) * own.dt), own.dt, u)
         for make, own in makers
@@ -275,5 +275,5 @@ def _bandwidth(record: Record) -> float:
     """Frequency below which nearly all of the input's power lies."""
     power = np.square(np.abs(np.fft.rfft(record.u - record.u.mean())))
     total = np.cumsum(power)
-    line = int(np.searchsorted(total, IN_BAND * total[-1])) if total[-1] > 0 else 1
+    line = int(np.searchsorted(total, POWER_SHARE * total[-1])) if total[-1] > 0 else 1
     return max(line, 1) / (len(record) * record.dt)

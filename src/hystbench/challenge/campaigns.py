@@ -11,22 +11,23 @@ from functools import partial
 
 import numpy as np
 
+from hystbench.challenge.plant.hysteresis import LARGEST_CURRENT
 from hystbench.challenge.plant.interpolation import cubic
 from hystbench.record import FloatArray, Use
 
 Function = Callable[[FloatArray], FloatArray]
 
-#: Sampling rates in Hz of the slower and of the faster records, and the largest
-#: current in A. No line lies above a tenth of the rate, so that a model which knows
-#: the samples alone does not miss the turning points.
-RATE, FAST, LARGEST = 2000.0, 4000.0, 0.6
+#: Sampling rates of the slower and of the faster records. No line lies above a tenth
+#: of the rate, so that a model which knows the samples alone does not miss the turning
+#: points.
+SLOW_HZ, FAST_HZ = 2000.0, 4000.0
 #: Samples of a multisine's period.
-PERIOD = 2000
+PERIOD_SAMPLES = 2000
 #: Points of a period's table for each sample of the record.
-TABLE = 32
+TABLE_POINTS = 32
 #: Length of a switch-on and of the edge of a step: at least so long, in seconds and
 #: in samples.
-EDGE_SECONDS, EDGE_SAMPLES = 0.02, 12
+EDGE_S, EDGE_SAMPLES = 0.02, 12
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ class RecordCommand:
 
     def __call__(self, time: FloatArray) -> FloatArray:
         """Compute the command; zero before the start, and switched on smoothly."""
-        fade = max(EDGE_SECONDS, EDGE_SAMPLES * self.dt)
+        fade = max(EDGE_S, EDGE_SAMPLES * self.dt)
         switch = 0.5 - 0.5 * np.cos(np.pi * np.clip(time / fade, 0.0, 1.0))
         return np.asarray(switch * self.function(np.maximum(time, 0.0)))
 
@@ -91,7 +92,7 @@ def multisine(
     odd : bool
         Only odd lines: even distortion then falls between them.
     """
-    seconds = PERIOD / FAST
+    seconds = PERIOD_SAMPLES / FAST_HZ
     lines = np.arange(max(1, np.ceil(low * seconds)), high * seconds + 1e-9, dtype=int)
     if odd:
         lines = lines[lines % 2 == 1]
@@ -100,11 +101,11 @@ def multisine(
         spectrum = np.zeros(lines[-1] + 1, dtype=complex)
         phases = random.uniform(0.0, 2.0 * np.pi, len(lines))
         spectrum[lines] = lines ** (-colour) * np.exp(1j * phases)
-        values = np.fft.irfft(spectrum, 4 * PERIOD)
+        values = np.fft.irfft(spectrum, 4 * PERIOD_SAMPLES)
         crest = float(np.abs(values).max() / np.sqrt(np.mean(values**2)))
         if crest < flattest:
             flattest, kept = crest, spectrum
-    table = np.fft.irfft(kept, PERIOD * TABLE)
+    table = np.fft.irfft(kept, PERIOD_SAMPLES * TABLE_POINTS)
     table *= peak / np.abs(table).max()
     return lambda t: _periodic(table, t, seconds)
 
@@ -187,19 +188,19 @@ def standard(random: np.random.Generator) -> tuple[RecordCommand, ...]:
     strong = tones(200, uniform(0.45, 0.6), colour=0.3)
     minor = add(staircase(levels(6, 0.4), 0.67, 0.1), sine(ripple, uniform(0.06, 0.18)))
     return (
-        fit("slow-loop", RATE, 6000, sine(1.0, LARGEST), 2000),
-        fit("sine-low", RATE, 4000, sine_low, int(RATE) // low),
-        fit("sine-high", FAST, 4000, sine_high, int(FAST) // high),
-        fit("multisine-wide", FAST, 8000, wide, 2000),
-        fit("multisine-strong", FAST, 8000, strong, 2000),
-        fit("minor-loops", RATE, 8000, minor),
+        fit("slow-loop", SLOW_HZ, 6000, sine(1.0, LARGEST_CURRENT), 2000),
+        fit("sine-low", SLOW_HZ, 4000, sine_low, int(SLOW_HZ) // low),
+        fit("sine-high", FAST_HZ, 4000, sine_high, int(FAST_HZ) // high),
+        fit("multisine-wide", FAST_HZ, 8000, wide, 2000),
+        fit("multisine-strong", FAST_HZ, 8000, strong, 2000),
+        fit("minor-loops", SLOW_HZ, 8000, minor),
         fit("steps", 500.0, 6000, staircase(levels(8, 0.6), 1.5, 0.03)),
         fit("long", 125.0, 6000, slow),
-        held_out("chirp", FAST, 6000, chirp(2.0, 300.0, uniform(0.2, 0.4), 1.5)),
-        held_out("multisine-other", FAST, 6000, tones(320, uniform(0.3, 0.5)), 2000),
+        held_out("chirp", FAST_HZ, 6000, chirp(2.0, 300.0, uniform(0.2, 0.4), 1.5)),
+        held_out("multisine-other", FAST_HZ, 6000, tones(320, uniform(0.3, 0.5)), 2000),
         held_out(
             "two-tones",
-            RATE,
+            SLOW_HZ,
             4000,
             add(sine(2.0, uniform(0.45, 0.5)), sine(43.0, uniform(0.06, 0.1))),
         ),
@@ -223,15 +224,15 @@ def other(random: np.random.Generator) -> tuple[RecordCommand, ...]:
     white = tones(300, uniform(0.3, 0.5))
     beats = add(sine(31.0, uniform(0.2, 0.3)), sine(34.0, uniform(0.2, 0.3)))
     return (
-        fit("triangle", RATE, 12000, triangle(0.5, LARGEST), 4000),
-        fit("ringing", RATE, 6000, ringing(4.0, 0.58, 0.8)),
-        fit("sweep", FAST, 8000, sweep),
-        fit("sweep-strong", RATE, 6000, strong),
-        fit("pink", FAST, 8000, pink, 2000),
-        fit("biased-tones", RATE, 6000, biased),
+        fit("triangle", SLOW_HZ, 12000, triangle(0.5, LARGEST_CURRENT), 4000),
+        fit("ringing", SLOW_HZ, 6000, ringing(4.0, 0.58, 0.8)),
+        fit("sweep", FAST_HZ, 8000, sweep),
+        fit("sweep-strong", SLOW_HZ, 6000, strong),
+        fit("pink", FAST_HZ, 8000, pink, 2000),
+        fit("biased-tones", SLOW_HZ, 6000, biased),
         fit("walk", 125.0, 6000, walk),
-        held_out("white", FAST, 8000, white, 2000),
-        held_out("beats", RATE, 6000, beats, 2000),
+        held_out("white", FAST_HZ, 8000, white, 2000),
+        held_out("beats", SLOW_HZ, 6000, beats, 2000),
         held_out("walk-other", 250.0, 4000, staircase(levels(12, 0.55), 1.4, 0.06)),
     )
 

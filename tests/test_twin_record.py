@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.errors import InputError
-from hystbench.measurement import measure
 from hystbench.model import Model
 from hystbench.signals import Signal
+from hystbench.twin_record import record_of_twin
 
 PLANT = Model.from_mapping(
     {
@@ -27,7 +27,7 @@ seeds = st.integers(0, 2**32 - 1)
 
 def record(*, seed=1, zero=0.0, noise=0.0, name="sine", unit="A"):
     settings = {"seed": seed, "input_zero_error": zero, "input_noise": noise}
-    return measure(Signal(name, 1e-4, WAVE, unit), PLANT, settings, "plant.yaml")
+    return record_of_twin(Signal(name, 1e-4, WAVE, unit), PLANT, settings, "plant.yaml")
 
 
 @given(seeds, zeros, noises)

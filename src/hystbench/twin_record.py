@@ -1,4 +1,4 @@
-"""A twin measured: a model simulated on a signal, as a record."""
+"""A record of the twin: its model simulated on a signal, with noise."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,8 +11,8 @@ from hystbench.record import Record
 from hystbench.signals import Signal
 
 
-def measure(
-    excitation: Signal, plant: Model, settings: Mapping[str, Any], place: str
+def record_of_twin(
+    signal: Signal, plant: Model, settings: Mapping[str, Any], place: str
 ) -> Record:
     """Simulate a model on a signal.
 
@@ -23,7 +23,7 @@ def measure(
 
     Parameters
     ----------
-    excitation : Signal
+    signal : Signal
     plant : Model
     settings : mapping
         ``seed``, ``input_zero_error`` and ``input_noise``, both in the input's unit.
@@ -35,19 +35,19 @@ def measure(
     InputError
         If the model's input has another unit than the signal.
     """
-    if excitation.unit != plant.input.unit:
+    if signal.unit != plant.input.unit:
         raise InputError(
             f"{place}: input: unit {plant.input.unit!r}; "
-            f"expected {excitation.unit!r}, the unit of signal {excitation.name}"
+            f"expected {signal.unit!r}, the unit of signal {signal.name}"
         )
-    streams = [settings["seed"], *excitation.name.encode()]
-    noise = np.random.default_rng([*streams, 1]).standard_normal(len(excitation.u))
-    recorded = excitation.u + settings["input_zero_error"]
+    streams = [settings["seed"], *signal.name.encode()]
+    noise = np.random.default_rng([*streams, 1]).standard_normal(len(signal.u))
+    recorded = signal.u + settings["input_zero_error"]
     return Record(
-        name=excitation.name,
-        dt=excitation.dt,
+        name=signal.name,
+        dt=signal.dt,
         u=recorded + settings["input_noise"] * noise,
-        y=plant.simulate(excitation.u, excitation.dt, np.random.default_rng(streams)),
+        y=plant.simulate(signal.u, signal.dt, np.random.default_rng(streams)),
         input=plant.input,
         output=plant.output,
         origin="twin",
