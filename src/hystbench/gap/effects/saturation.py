@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.saturation import Saturation as Limit
 from hystbench.gap.effects.effect import Effect
+from hystbench.gap.effects.law import Law, Passed
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.effects.variant import Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
@@ -44,6 +46,14 @@ class Saturation(Effect):
             yield from self._at(simulation, place)
         if simulation.hysteresis is not None:
             yield from self._at(simulation, simulation.hysteresis, "field")
+
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer it behind the host, by each law, met hard and hardly."""
+        for share in (1.1, 2.0):
+            level = share * passed.shown
+            yield self.curve("behind", level=level)
+            corner = self.curve("behind", "algebraic", level=level, sharpness=3.0)
+            yield replace(corner, ranges={"sharpness": (SOFTEST, SHARPEST)})
 
     def _at(
         self, simulation: Simulation, place: int, of: str = ""

@@ -53,11 +53,15 @@ class StiffnessHardening(Effect):
         if moved.anywhere:
             return
         linear = moved.force / moved.reach
-        for sign in (1.0, -1.0):
+        for sign, share in ((1.0, AS_STIFF), (-1.0, HALF_LOST)):
             cubic = sign * 0.03 * linear / moved.reach**2
             block = Stiffness(quadratic=0.0, cubic=cubic)
             yield Law("cube", block, ("cubic",))
             yield Law("square and cube", block, ("quadratic", "cubic"))
+            # Where the mode moves by more than its width, little tells nothing of much.
+            much = sign * share * moved.stiffness / moved.reach**2
+            if abs(much) > abs(cubic):
+                yield Law("cube", replace(block, cubic=much), ("cubic",))
         steep = ExponentialStiffness(coefficient=0.03 * linear, reach=moved.reach / 2)
         yield Law("steep", steep, ("coefficient", "reach"))
 
@@ -103,6 +107,11 @@ class StiffnessHardening(Effect):
 STIFFER, SOFTER = np.geomspace(2e-3, 4.0, 9), -np.geomspace(0.5, 2e-3, 6)
 """Share of the linear force that the cube has at the largest static displacement. At
 resonance a mode moves by far more; softer by all of it, a spring has no force left."""
+
+AS_STIFF, HALF_LOST = 1.0, 1 / 6
+"""Share of the linear spring's force that a cube has at the largest displacement, where
+a fit starts with much of it. The softer spring still pulls: a sixth takes half of its
+slope there."""
 
 MODE = ("frequency_hz", "damping_ratio", "participation")
 DAMPED = 0.5
