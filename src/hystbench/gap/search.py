@@ -35,7 +35,7 @@ from hystbench.gap.inside.named_inside import (
     beats_chain,
     named_inside,
 )
-from hystbench.gap.inside.timing import better_timed, in_time_words, timed_in_chain
+from hystbench.gap.inside.timing import better_timed, in_time_words, timed_as_named
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.naming.beside_forces import beside_forces
@@ -100,7 +100,7 @@ def search(
     if about is not None and found.may_be_simpler():
         asked.say("the base's numbers or timing may be off: naming beside that")
         again = _beside(about, evidence, asked, quantities)
-        if _stays(found, again):
+        if _stays(found, again, re_tuned=True):
             asked.say("that explains no more: they stay as they are")
         else:
             found = again
@@ -191,22 +191,24 @@ class _Searched:
         )
 
 
-def _stays(found: _Searched, again: _Searched) -> bool:
-    """Tell whether a base stays as it was, and not with numbers that were re-tuned.
+def _stays(found: _Searched, again: _Searched, re_tuned: bool = False) -> bool:
+    """Tell whether a base stays as it was, and not with other numbers or timing.
 
-    What was given is believed unless as much speaks against it as makes a gap.
+    What was given is believed unless as much speaks against it as makes a gap. Numbers
+    that were re-tuned are charged as an effect; timing is a matter of the records.
     """
     score = found.score_beside(again)
     alike = len(again.start.sample) == len(found.start.sample)
-    value = again.value(score, re_tuned=True)
+    value = again.value(score, re_tuned)
     return not alike or value >= found.value(score) - PAYS
 
 
 def _in_better_time(found: _Searched) -> Model | None:
     """Give an identified base with the timing that effects show, if that is another."""
-    if found.inside is not None:
-        return better_timed(found.base, found.named.state, found.floor.rms)
-    return timed_in_chain(found.base, found.named.state)
+    named = timed_as_named(found.base, found.named.state)
+    if named is not None or found.inside is None:
+        return named
+    return better_timed(found.base, found.named.state, found.floor.rms)
 
 
 def _pay(effects: int) -> float:

@@ -121,8 +121,8 @@ def worse_than_a_constant(before: float, evidence: Evidence, floor: float) -> li
     unit = evidence.fit[0].output.unit
     return [
         f"on the hold-out records the base leaves {sized(before, unit)} rms, and a "
-        f"constant, the mean output of the fit records, {sized(still, unit)}: as it is, "
-        "the base predicts nothing. Check its units, its start and its numbers"
+        f"constant, the mean output of the fit records, {sized(still, unit)}: as it "
+        "is, the base predicts nothing. Check its units, its start and its numbers"
     ]
 
 

@@ -47,16 +47,16 @@ def better_timed(base: Model, found: ModelState, floor_rms: float) -> Model | No
     return timed(base, _shift(best.state.chain[0]) - _given(base))
 
 
-def timed_in_chain(base: Model, found: ModelState) -> Model | None:
-    """Give a base with the delay that is named beside another effect in a chain.
+def timed_as_named(base: Model, found: ModelState) -> Model | None:
+    """Give a base with the delay that is named beside another effect.
 
-    None without one, or where it is longer than a sample.
+    None without one, or where the input then comes later than by a sample.
     """
     step = MOST * min(record.dt for record in found.records)
-    shift = sum(_shift(x) for x in found.chain) - sum(_shift(x) for x in base.chain)
-    if shift == 0.0 or abs(shift) > step or len(found.added) < 2:
+    late, given = (sum(map(_shift, chain)) for chain in (found.chain, base.chain))
+    if late == given or abs(late) > step or len(found.added) < 2:
         return None
-    return timed(base, shift)
+    return timed(base, late - given)
 
 
 def in_time_words(found: ModelState) -> str:
