@@ -136,6 +136,8 @@ class _Searched:
     inside: Inside | None
     """Forces inside the dynamics, where they do better than a chain."""
     own: OwnValues
+    tried: Inside | None = None
+    """Forces inside that were found, whether they do better or not."""
 
     @property
     def named(self) -> Named:
@@ -205,10 +207,9 @@ def _stays(found: _Searched, again: _Searched, re_tuned: bool = False) -> bool:
 
 def _in_better_time(found: _Searched) -> Model | None:
     """Give an identified base with the timing that effects show, if that is another."""
-    named = timed_as_named(found.base, found.named.state)
-    if named is not None or found.inside is None:
-        return named
-    return better_timed(found.base, found.named.state, found.floor.rms)
+    tried = found.tried
+    better = tried and better_timed(found.base, tried.named.state, found.floor.rms)
+    return better or timed_as_named(found.base, found.named.state)
 
 
 def _pay(effects: int) -> float:
@@ -258,11 +259,12 @@ def _beside(
         enough = _why_enough(inside.start, inside.named.state, floor, share)
         if enough:
             say(f"inside: {enough}, so no chain of effects is tried")
-            return _Searched(base, start, floor, None, inside, own)
+            return _Searched(base, start, floor, None, inside, own, inside)
     chain = in_a_chain() if start is first else add_effects(start, floor.rms, asked)
+    tried = inside
     if inside is not None and not beats_chain(inside, chain, floor.rms, say):
         inside = None
-    return _Searched(base, start, floor, chain, inside, own)
+    return _Searched(base, start, floor, chain, inside, own, tried)
 
 
 def _apart(found: _Searched, asked: Asked) -> _Searched:

@@ -84,19 +84,19 @@ def _gain(before: ModelState, after: ModelState, score: Score) -> float:
 def _shows_in_the_farthest_alone(
     before: ModelState, after: ModelState, score: Score
 ) -> bool:
-    """Tell whether an effect gains in one record alone, in which the device went far.
+    """Tell whether an effect gains in one record and changes no other.
 
-    That is the record of the largest input or of the largest output.
+    The device has to go far in it: its input or its output is the largest.
     """
     records = before.records
     every = tuple(np.ones(len(x), dtype=bool) for x in before.sample.positions)
     was, now = (_terms(_split(x, score)[0], score, every) for x in (before, after))
-    (shows,) = np.nonzero(was - now > SCALE)
+    (shows,) = np.nonzero(np.abs(was - now) > SCALE)
     far = [
         np.argmax([np.ptp(x.u) for x in records]),
         np.argmax([np.ptp(x.y) for x in records]),
     ]
-    return len(shows) == 1 and shows[0] in far
+    return len(shows) == 1 and shows[0] in far and was[shows[0]] > now[shows[0]]
 
 
 @lru_cache(maxsize=2)
