@@ -133,14 +133,14 @@ def _strange_time(dataset: Dataset, records: Sequence[Record]) -> Iterator[str]:
         return
     if named_otherwise(about["column"], about["unit"]) is not None:
         return  # the column's name has told it
-    if dataset.quantities.causality == "storage":
-        return  # tanks and heated bodies are slow
     # Slow records beside fast ones are what creep is measured with.
+    slow = dataset.quantities.causality == "storage"  # as tanks and heated bodies are
     fastest = max(records, key=_fastest_hz)
     factor = seconds(f"{dataset.path}: time: unit", about["unit"])
     for record in (fastest, *(item for item in records if item is not fastest)):
-        why = _absurd(record, 1.0)
-        if record is fastest and why is None and _fastest_hz(record) < SLOWEST_HZ:
+        why = _absurd(record, 1.0, slow)
+        crawls = not slow and _fastest_hz(record) < SLOWEST_HZ
+        if record is fastest and why is None and crawls:
             hz = _fastest_hz(record)
             why = f"nothing in any record is faster than {hz:.2g} Hz"
         if why is None:
@@ -148,7 +148,7 @@ def _strange_time(dataset: Dataset, records: Sequence[Record]) -> Iterator[str]:
         likely = [
             unit
             for unit in TIMES
-            if _absurd(record, seconds("", unit) / factor) is None
+            if _absurd(record, seconds("", unit) / factor, slow) is None
             and (_fastest_hz(fastest) / (seconds("", unit) / factor) >= SLOWEST_HZ)
         ]
         likely.sort(key=lambda unit: abs(np.log(seconds("", unit) / factor)))
@@ -163,10 +163,10 @@ def _strange_time(dataset: Dataset, records: Sequence[Record]) -> Iterator[str]:
         return
 
 
-def _absurd(record: Record, factor: float) -> str | None:
+def _absurd(record: Record, factor: float, slow: bool) -> str | None:
     """Tell what is strange of a record whose times are multiplied by a factor."""
     step, length = record.dt * factor, record.dt * factor * len(record)
-    if length > LONGEST_S:
+    if length > LONGEST_S and not slow:
         return f"a record of {length / 3600:.3g} hours"
     if step < SHORTEST_STEP_S:
         return f"a record sampled at {1e-6 / step:.3g} MHz"

@@ -129,8 +129,6 @@ def closed_gap(
     run_base(base, evidence.hold_out, evidence.input_hold)
     reserve_calls(evidence)
     decision, decided = decide(evidence, base, asked)
-    steps = too_long_steps(base, evidence.fit, evidence.input_hold)
-    evidence = replace(evidence, warnings=(*evidence.warnings, *steps))
     evidence, result = show(evidence, decided, asked.say)
     decision = replace(decision, model=result.model, content=result.content)
     return Closed(decision, result, evidence)
@@ -149,10 +147,13 @@ def decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Dec
     first = base
     base, built_in = build_in(base, evidence, vocabulary.fixed, asked.say)
     quantities = quantities_if_linear(base, evidence)
+    share = asked.unnamed_share
+    steps = too_long_steps(first, fit, evidence.input_hold, share)
     # A trial may run away: it is judged by what it leaves.
     with np.errstate(over="ignore", invalid="ignore"):
         decision = search(evidence, base, asked, quantities)
-    content = with_device(decision.content, evidence.device_kind, evidence.quantities)
+    content = {**decision.content, "warnings": steps}
+    content = with_device(content, evidence.device_kind, evidence.quantities)
     return decision, Decided(first, decision, content, vocabulary, built_in)
 
 

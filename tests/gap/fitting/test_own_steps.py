@@ -41,7 +41,7 @@ def record(gap, cycles=30.0):
 
 def said(function, *records, hold="linear"):
     base = Model("rig", CURRENT, STROKE, (External(function=f"{__name__}:{function}"),))
-    return too_long_steps(base, records, hold)
+    return too_long_steps(base, records, hold, 0.01)
 
 
 def test_a_change_that_matters_beside_the_gap_is_told_in_the_outputs_unit():
@@ -74,4 +74,20 @@ def test_a_function_that_takes_no_other_record_is_told_so():
 
 def test_other_bases_are_not_asked():
     blocks = Model("gain", CURRENT, STROKE, (Gain(value=1.0),))
-    assert too_long_steps(blocks, (record(gap=0.1),), "linear") == []
+    assert too_long_steps(blocks, (record(gap=0.1),), "linear", 0.01) == []
+
+
+def fixed(u, dt):
+    """The same lag by numbers that belong to one interval."""
+    return exact(u, DT)
+
+
+def test_a_function_for_one_interval_is_not_blamed():
+    """It changes by more than the gap: that cannot be an error that it makes."""
+    assert said("fixed", record(gap=0.01)) == []
+
+
+def test_a_record_that_rests_tells_nothing_of_steps():
+    rests = record(gap=0.1, cycles=0.0)
+    assert said("euler", rests) == []
+    assert len(said("euler", rests, record(gap=0.1))) == 1

@@ -116,7 +116,7 @@ def test_no_joint_has_the_credit_of_a_damping_that_is_wrong():
 
 def test_a_mode_taken_out_does_what_it_did():
     found, _ = found_with((slips(SECOND),))
-    before = found.state
+    before = found.state.settled()
     split = list(with_another_mode(before))
     frequencies = [
         frequency_of(next(x for x in one.chain if isinstance(x, OtherMechanism)))

@@ -78,7 +78,7 @@ def test_timing_is_free_by_a_sample_about_where_it_is():
     late = with_free_timing(with_free_timing(state))
     assert [x.parameter for x in late.free].count("delay_s") == 1
     own = late.free[0]
-    at = late.chain[0].delay_s
+    at = late.chain[0].lead_s
     assert (own.low, own.high) == pytest.approx((at - DT, at + DT))
     np.testing.assert_allclose(late.residual, state.residual, atol=1e-9)
 
@@ -113,7 +113,9 @@ def test_a_mass_is_tried_with_its_timing_in_place_of_a_zero():
     assert any(x.parameter == "blend" for x in plain.fitted.state.free)
     assert all(x.parameter != "blend" for x in timing.fitted.state.free)
     assert timing.fitted.score < plain.fitted.score
-    assert in_time_words(timing.fitted.state).endswith("0.5 of a sample late")
+    assert in_time_words(timing.fitted.state).endswith(
+        "0.005 s late, 0.5 of a sampling interval"
+    )
     assert in_time_words(plain.fitted.state) == ""
 
 
@@ -140,4 +142,4 @@ def test_a_tank_whose_input_was_stamped_late_still_shows_its_outlet():
     assert found["effects"][0]["parameters"]["exponent"]["value"] == pytest.approx(
         0.5, abs=0.02
     )
-    assert "takes its input 0.5 of a sample late" in found["reason"]
+    assert "takes its input 1 s late, 0.5 of a sampling interval" in found["reason"]

@@ -26,8 +26,9 @@ from hystbench.record import FloatArray, Record
 SETTLES = 5.0
 """Time constants in which a state is forgotten: less than a hundredth is left of it."""
 
-ALIKE = 0.1
-"""Share of the rms of an output about its mean that is no other place to begin at."""
+ONE_PLACE = 0.1
+"""Share of the rms of an output about its mean that is no other place to begin at: a
+level that is off by so much takes a hundredth of the power, and dies out."""
 
 
 def without_leads(
@@ -87,8 +88,8 @@ def without_leads(
 
 def begin_alike(records: Sequence[Record]) -> bool:
     """Tell whether records begin at one output, to a tenth of how far it moves."""
-    moves = min(float(np.std(record.y)) for record in records)
-    return float(np.ptp([record.y[0] for record in records])) < ALIKE * moves
+    moves = max(float(np.std(record.y)) for record in records)
+    return float(np.ptp([record.y[0] for record in records])) <= ONE_PLACE * moves
 
 
 def _without(record: Record, base: Model, asked: Model) -> Record:

@@ -40,8 +40,8 @@ def gain_held_back(before: ModelState, after: ModelState, score: Score) -> float
     """Lower the score of held-back records by how much, with an effect fitted without.
 
     The fit records are dealt out in folds; where there are fewer than three, blocks of
-    them are, with a guard gap. So they are where the effect shows only in the record
-    that goes farthest, as a stop does: the others cannot foretell it. On each fold the
+    them are, with a guard gap. So they are where the effect shows in one record alone,
+    as a stop does that no other comes to: these cannot foretell it. On each fold the
     model with the effect is refitted to the rest; what reshaping could do is fitted to
     all of it, with the effect and without alike. A signal beside the chain has
     amplitudes of its own in every record, which no other record knows: they are solved
@@ -69,7 +69,7 @@ def gain_held_back(before: ModelState, after: ModelState, score: Score) -> float
 
 
 def _gain(before: ModelState, after: ModelState, score: Score) -> float:
-    whole = False if _shows_in_the_farthest_alone(before, after, score) else None
+    whole = False if _shows_in_one_record(before, after, score) else None
     folds, inside = _folds(before, score, whole)
     gain = 0.0
     for fold in folds:
@@ -81,22 +81,12 @@ def _gain(before: ModelState, after: ModelState, score: Score) -> float:
     return max(RUNS_AWAY, gain)
 
 
-def _shows_in_the_farthest_alone(
-    before: ModelState, after: ModelState, score: Score
-) -> bool:
-    """Tell whether an effect gains in one record and changes no other.
-
-    The device has to go far in it: its input or its output is the largest.
-    """
-    records = before.records
+def _shows_in_one_record(before: ModelState, after: ModelState, score: Score) -> bool:
+    """Tell whether an effect gains in one record and changes no other."""
     every = tuple(np.ones(len(x), dtype=bool) for x in before.sample.positions)
     was, now = (_terms(_split(x, score)[0], score, every) for x in (before, after))
     (shows,) = np.nonzero(np.abs(was - now) > SCALE)
-    far = [
-        np.argmax([np.ptp(x.u) for x in records]),
-        np.argmax([np.ptp(x.y) for x in records]),
-    ]
-    return len(shows) == 1 and shows[0] in far and was[shows[0]] > now[shows[0]]
+    return len(shows) == 1 and bool(was[shows[0]] > now[shows[0]])
 
 
 @lru_cache(maxsize=2)

@@ -55,6 +55,7 @@ def show_on_hold_out(
         **shown.content,
         "warnings": [
             *evidence.warnings,
+            *decided.get("warnings", ()),
             *worse_than_a_constant(
                 shown.content["gap"]["before"], evidence, fitted.floor.rms
             ),

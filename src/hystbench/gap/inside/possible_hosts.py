@@ -46,6 +46,7 @@ def hosts(
     identified: bool,
     score: Score,
     exact: bool = False,
+    timed: bool = False,
 ) -> Iterator[Host]:
     """Give the linear models that forces are tried in.
 
@@ -60,10 +61,12 @@ def hosts(
     score : Score
     exact : bool
         Whether a given base calls its numbers exact.
+    timed : bool
+        Whether the input was moved in time already.
     """
     delay = start.chain[0]
     if identified and isinstance(delay, InputDelay):
-        for host in hosts(_behind(start), quantities, identified, score):
+        for host in hosts(_behind(start), quantities, identified, score, timed=True):
             state = _in_front(delay, start, host.fitted.state)
             alone = _in_front(delay, start, host.alone)
             other = host.other and _in_front(delay, start, host.other)
@@ -84,7 +87,8 @@ def hosts(
         if best is not None and is_seen_moving(best.state):
             words = "a model of one coordinate stands in place of the linear base"
             yield Host(best.state, best, words)
-            yield from _in_time(best, score)
+            if not timed:
+                yield from _in_time(best, score)
             yield from _loose(best.state, score, words)
             yield from _of_two(best, further_modes_of(start), score)
     if not identified and all(isinstance(block, Store) for block in start.chain):
@@ -184,7 +188,10 @@ def _in_time(one: Fitted, score: Score) -> Iterator[Host]:
     late = fitted(with_free_timing(state), score)
     more = len(late.state.free) - len(one.state.free)
     if late.score < one.score - PARAMETER * more:
-        words = "a model of one coordinate and its timing stand for the linear base"
+        words = (
+            "a model of one coordinate with a timing of its own stands in place of the "
+            "linear base"
+        )
         yield Host(late.state, late, words)
 
 

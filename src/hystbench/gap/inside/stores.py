@@ -58,10 +58,15 @@ def stores(
             hold=hold,
         )
         through = sample.take([unit.simulate(r.u, r.u, r.dt) for r in records])
-        columns = np.column_stack([through, np.ones(len(through))])
-        (gain, offset), *_ = np.linalg.lstsq(columns, wanted, rcond=None)
+        # What another level at the start leaves of it dies out with the stores' rates.
+        begins = [
+            sample.take([np.exp(-rate * r.time) for r in records]) for rate in rates
+        ]
+        columns = np.column_stack([through, np.ones(len(through)), *begins])
+        amplitudes = np.linalg.lstsq(columns, wanted, rcond=None)[0]
+        gain, offset = amplitudes[:2].tolist()
         if gain > 0:
-            rest = float(np.mean((wanted - columns @ [gain, offset]) ** 2))
+            rest = float(np.mean((wanted - columns @ amplitudes) ** 2))
             inflow = float(records[0].u[0] + offset / gain)
             chain = _chain(rates, float(gain), float(offset / gain), inflow, hold)
             last = replace(chain[-1], start_level=max(float(records[0].y[0]), 0.0))

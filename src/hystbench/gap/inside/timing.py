@@ -17,9 +17,12 @@ from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.thresholds import PAYS
 from hystbench.model import Model
 
-MOST = 1.0
+REACH = 1.0
 """Samples by which a record of the input may be early or late. What comes later than
 that is no matter of sampling: it is an effect."""
+
+TOLD = 0.05
+"""Samples of timing that are worth a word: a twentieth of an interval."""
 
 
 def better_timed(base: Model, found: ModelState, floor_rms: float) -> Model | None:
@@ -37,6 +40,8 @@ def better_timed(base: Model, found: ModelState, floor_rms: float) -> Model | No
     Model or None
         None where the score falls by less than an effect has to gain.
     """
+    if any((x.block, x.parameter) == (0, "delay_s") for x in found.free):
+        return None  # it was free beside the effects already
     score = Score.plain(found.sample, floor_rms**2)
     now = score_of(found, score)
     if now - score.least(found.freedom) < PAYS:
@@ -52,20 +57,25 @@ def timed_as_named(base: Model, found: ModelState) -> Model | None:
 
     None without one, or where the input then comes later than by a sample.
     """
-    step = MOST * min(record.dt for record in found.records)
-    late, given = (sum(map(_shift, chain)) for chain in (found.chain, base.chain))
-    if late == given or abs(late) > step or len(found.added) < 2:
+    named = sum(_shift(found.chain[place]) for place in found.places_added)
+    late = sum(map(_shift, found.chain))
+    if named == 0.0 or abs(late) > REACH * _step(found) or len(found.added) < 2:
         return None
-    return timed(base, late - given)
+    return timed(base, late - _given(base))
 
 
 def in_time_words(found: ModelState) -> str:
-    """Say by how much a base takes its input late; nothing where it does not."""
-    samples = _shift(found.chain[0]) / min(record.dt for record in found.records)
-    if 0 in found.places_added or not samples:
+    """Say by how much a base takes its input late; nothing where that hardly shows."""
+    own = set(range(len(found.chain))) - found.places_added
+    late = sum(_shift(found.chain[place]) for place in own)
+    samples = abs(late) / _step(found)
+    if samples < TOLD:
         return ""
-    when = "late" if samples > 0 else "early"
-    return f"the linear base takes its input {abs(samples):.2g} of a sample {when}"
+    when = "late" if late > 0 else "early"
+    return (
+        f"the linear base takes its input {abs(late):.2g} s {when}, {samples:.2g} of a "
+        "sampling interval"
+    )
 
 
 def timed(base: Model, later_s: float) -> Model:
@@ -74,6 +84,10 @@ def timed(base: Model, later_s: float) -> Model:
     hold = next((x.hold for x in behind if hasattr(x, "hold")), "default")
     delay = InputDelay.by(_given(base) + later_s, hold)
     return replace(base, chain=(delay, *behind))
+
+
+def _step(found: ModelState) -> float:
+    return min(record.dt for record in found.records)
 
 
 def _is_late(base: Model) -> bool:
@@ -94,7 +108,7 @@ def with_free_timing(found: ModelState) -> ModelState:
 
     The delay cannot be negative: a lead allows for both.
     """
-    step = MOST * min(record.dt for record in found.records)
+    step = REACH * _step(found)
     first = found.chain[0]
     if isinstance(first, InputDelay):
         late = replace(first, delay_s=first.delay_s + step, lead_s=first.lead_s + step)
@@ -104,5 +118,5 @@ def with_free_timing(found: ModelState) -> ModelState:
         moved = {k: k + 1 for k in range(len(found.chain))}
         state = found.rearranged((late, *found.chain), moved)
     free = tuple(x for x in state.free if (x.block, x.parameter) != (0, "delay_s"))
-    own = Free(0, "delay_s", low=late.delay_s - step, high=late.delay_s + step)
+    own = Free(0, "delay_s", low=late.lead_s - step, high=late.lead_s + step)
     return replace(state, free=(own, *free)).settled()

@@ -150,7 +150,7 @@ class Moving:
 
     @property
     def stiffens(self) -> bool:
-        """Whether the stiffness changes by a larger factor than the damping.
+        """Whether the stiffness grows by a larger factor than the damping falls.
 
         Sliding more freely makes no spring stiffer; but of a motion that meets a stop
         the damping is not well known.
