@@ -8,6 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import optimize
 
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.stop import Stop
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
@@ -29,6 +31,8 @@ from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.fitting.variant_search import Attempt, fine
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.thresholds import PARAMETER, SCALE
+from hystbench.model import Model
+from hystbench.record import Channel, Record
 from tests.gap.made import record
 from tests.gap.small import (
     ENVELOPE,
@@ -43,6 +47,7 @@ from tests.gap.small import (
 )
 
 NOISE = 0.02
+CHANNELS = Channel("force", "N"), Channel("position", "mm")
 
 
 def lagged(tau):
@@ -411,3 +416,26 @@ def test_numbers_that_stand_in_for_each_other_are_fitted_to_the_end():
     end = finished_to_the_end(state, score)
     assert score.of(end.residual) < least - 5 * SCALE
     assert finished(end, score)[1] > score.of(end.residual) - SCALE
+
+
+def test_a_number_that_the_records_do_not_tell_stays():
+    """Of three records one alone comes to the stop; a fold leaves that one out."""
+    dt, given = 1e-3, []
+    spring = Mechanism(mass=1e-3, damping=0.01, stiffness=4.0)
+    stop = Stop(contact_stiffness=9.0, gap=0.5)
+    chain = (spring, stop)
+    noise = np.random.default_rng(3)
+    for k, size in enumerate((0.1, 1.0, 0.12)):
+        t = dt * np.arange(3000)
+        u = size * (np.sin(2 * np.pi * 4.3 * t + k) + np.sin(2 * np.pi * 9.1 * t))
+        y = Model("rig", *CHANNELS, chain).simulate(u, dt)
+        y = y + 1e-3 * noise.standard_normal(len(u))
+        given.append(Record(f"r{k}", dt, u, y, *CHANNELS, "measured", "fit"))
+    free = (Free(1, "contact_stiffness"), Free(1, "gap"))
+    state = replace(state_of(chain, tuple(given)), free=free)
+    used = tuple(np.full(len(x), k != 1) for k, x in enumerate(state.sample.positions))
+    score = replace(plain_score(state, 0.25e-6), used=used)
+    found, value = refit(state, score)
+    assert value <= score_of(state, score)
+    assert found.chain[1].gap == pytest.approx(0.5, rel=0.1)
+    assert found.chain[1].contact_stiffness == pytest.approx(9.0, rel=0.1)
