@@ -23,7 +23,8 @@ PARAMETER = 4.0
 # What is named: by how much an effect must lower the score.
 
 PAYS = 40.0
-"""The first effect."""
+"""The first effect, and whatever is to replace an answer that stands: a re-tuned base,
+another timing, another host, values of single records."""
 FURTHER = 100.0
 """A further effect, which must also take more of the gap than may stay unnamed."""
 CERTAIN = 2 * FURTHER

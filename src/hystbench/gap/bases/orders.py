@@ -36,7 +36,7 @@ MANY = 5
 BEGUN_DAMPING = 0.01
 #: Peaks of what is left at which a further mode is begun.
 PEAKS = 3
-#: Orders above are not tried once so many in a row have not mattered.
+#: So many orders in a row may not matter; one more ends the search.
 IN_VAIN = 2
 #: Share of each record at its beginning that does not count: what it remembers of the
 #: time before would pull the poles.

@@ -29,8 +29,8 @@ from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
 from hystbench.record import FloatArray
 
 SINGLES, PAIRS = 4, 2
-"""Of them, so many are carried into pairs and into threes: forces that gain little
-alone may gain much together."""
+"""Hypotheses of one force that go on to pairs, and of two that go on to threes: forces
+that gain little alone may gain much together."""
 FEW = 4
 """Evaluations of the residual after which the worse half of the starts is left."""
 
