@@ -11,13 +11,8 @@ import pytest
 
 from hystbench.gap.effects import effects
 from hystbench.gap.locate import curves, locate
-from hystbench.gap.locate.level import (
-    MOVES,
-    WORDS,
-    beside_level,
-    picture_of,
-    take_levels,
-)
+from hystbench.gap.locate.level import beside_level, picture_of, take_levels
+from hystbench.gap.locate.level_classes import MOVES, WORDS
 from hystbench.gap.locate.samples import take_samples
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.records.floor import noise_floor

@@ -21,6 +21,7 @@ import numpy as np
 from scipy import special
 
 from hystbench.gap.locate.forms import saved
+from hystbench.gap.locate.level_classes import IN_A_CHAIN, MOVES, WORDS
 from hystbench.gap.locate.mode import (
     LEAST_LINES,
     LevelLines,
@@ -36,39 +37,6 @@ from hystbench.gap.records.scored_samples import Compared
 from hystbench.quantities import quantity_of
 from hystbench.record import FloatArray
 from hystbench.sentences import percent, shortly
-
-WORDS = {
-    "hardening": "hardening, as of a spring that stiffens or a stop",
-    "softening": "softening, as of a spring that yields",
-    "clearance": "a clearance, as the frequency rises from the lowest levels",
-    "micro-slip or hysteresis": "micro-slip or hysteresis, as of a joint that slips",
-    "Coulomb friction": "Coulomb friction, which matters less in a larger motion",
-    "damping that grows with speed": "damping that grows with speed, as drag does",
-    "a static curve before or behind": "a static curve before or behind the dynamics",
-    "none": "a linear mode, as far as these levels show",
-}
-"""Each class of what is missing, in words."""
-
-MOVES = {
-    "hardening": ("stiffness-hardening", "stop"),
-    "softening": ("stiffness-hardening", "hysteretic-force", "gravity"),
-    "clearance": ("stop", "slider-with-gap", "backlash", "dead-zone"),
-    "micro-slip or hysteresis": (
-        *("hysteretic-force", "friction", "slider-with-gap", "hysteresis"),
-    ),
-    "Coulomb friction": ("friction", "hysteretic-force", "slider-with-gap"),
-    "damping that grows with speed": ("drag",),
-    "a static curve before or behind": (
-        *("saturation", "asymmetry", "sensor-nonlinearity"),
-        *("drive-saturation", "dead-zone"),
-    ),
-}
-"""Effects that move a mode as a class says."""
-IN_A_CHAIN = (
-    *("stiffness-hardening", "backlash"),
-    *MOVES["a static curve before or behind"],
-)
-"""Those of them that do so in a chain as well."""
 
 SURE_ERRORS = 3.0
 """Standard errors by which a number has to move."""
