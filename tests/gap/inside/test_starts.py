@@ -16,7 +16,9 @@ from hystbench.gap.inside.insert_law import with_law
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import CERTAIN
 from hystbench.model import Model
+from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
+from tests.gap.searched import search as decided
 
 DT, COUNT, NOISE = 0.005, 2048, 0.02
 CHANNELS = Channel("force", "N"), Channel("position", "mm")
@@ -70,3 +72,33 @@ def test_a_saturation_is_tried_behind_dynamics_by_both_laws():
         assert isinstance(law.block, Saturation)
         assert law.block.level > 3.0  # no measured output is beyond it
         assert ("sharpness" in law.free) == (law.form == "algebraic")
+
+
+def test_a_soft_limit_before_a_mass_is_the_drives():
+    """Before a mass that is given stands no material: it was named `saturation`."""
+    mass = Mechanism(mass=0.4e-3, damping=8.8e-3, stiffness=19.3)
+    random, records = np.random.default_rng(1), []
+    t = 1e-3 * np.arange(2500)
+    for k in range(3):
+        lines = zip(random.uniform(1, 25, 12), random.uniform(0, 6, 12), strict=True)
+        u = sum(np.sin(2 * np.pi * f * t + p) for f, p in lines) * np.clip(
+            t / 0.1, 0, 1
+        )
+        limited = 4.0 * np.tanh(u / 4.0)
+        y = mass.simulate(limited, limited, 1e-3)
+        y = y + 0.01 * y.std() * random.standard_normal(len(y))
+        records.append(Record(f"r{k}", 1e-3, u, y, *CHANNELS, "measured", "fit"))
+    base = Model("rig", *CHANNELS, (mass,))
+    moves = Quantities("force", "position")
+    found = decided("rig", tuple(records), base, quantities=moves).content
+    (effect,) = found["effects"]
+    assert (effect["name"], effect["place"]) == ("drive-saturation", "drive")
+    assert effect["parameters"]["level"]["value"] == pytest.approx(4.0, rel=0.01)
+
+
+def test_a_limit_before_a_mass_is_tried_hard_and_soft():
+    laws = list(effects()["drive-saturation"].around(Passed(2.0, 1.0, 0.01, 0.0)))
+    assert {law.form for law in laws} == {"", "soft", "algebraic"}
+    assert {law.place for law in laws} == {"before"}
+    sizes = [getattr(law.block, law.free[0]) for law in laws]
+    assert max(sizes) < 2.0

@@ -6,28 +6,53 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hystbench.blocks.saturation import Saturation
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.law import Law, Passed
-from hystbench.gap.effects.places import places_in_drive
-from hystbench.gap.effects.variant import Variant
+from hystbench.gap.effects.places import drives_a_machine, places_in_drive
+from hystbench.gap.effects.variant import Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
+
+SOFT = {"sharpness": (1.0, 20.0)}
+"""Of a soft limit: a sharper one is the hard one."""
 
 
 class DriveSaturation(Effect):
-    """A limit below the largest input of the records."""
+    """A limit of the input, hard, or soft before a mass or a store."""
 
     name = "drive-saturation"
     shows = "amplitude"
     place = "drive"
+    laws = ("saturation",)
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
-        """Offer limits from 30 to 99.5 % of the largest signal there."""
+        """Offer limits from 30 to 99.5 % of the largest signal there.
+
+        Before what moves a mass or fills a store, where no material stands, soft ones
+        as well.
+        """
         share = 1.0 - np.geomspace(0.7, 0.005, 12)
+        soft = drives_a_machine(simulation)
         for place in places_in_drive(simulation):
-            limits = simulation.largest(place) * share
-            yield self.inserted(simulation, place, grids={"limit": limits})
+            largest = simulation.largest(place)
+            yield self.inserted(simulation, place, grids={"limit": largest * share})
+            if soft:
+                levels = logarithmic(0.3 * largest, 30 * largest, 5)
+                yield self.inserted(
+                    simulation,
+                    place,
+                    law="saturation",
+                    form="soft",
+                    grids={"level": levels},
+                )
 
     def around(self, passed: Passed) -> Iterator[Law]:
-        """Offer limits before the host, met seldom and often."""
+        """Offer limits before the host, met seldom and often, hard and soft."""
         for share in (0.9, 0.6):
-            yield self.curve("before", limit=share * passed.given)
+            level = share * passed.given
+            yield self.curve("before", limit=level)
+            yield Law("soft", Saturation(level=level), ("level",), "before")
+            corner = Saturation(level=level, sharpness=3.0)
+            yield Law(
+                "algebraic", corner, ("level", "sharpness"), "before", ranges=SOFT
+            )

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import LinearBlock
+from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.state_space import StateSpace
+from hystbench.blocks.store import Store
 from hystbench.gap.simulation.simulation import Simulation
 
 TRANSFER_FUNCTION = "transfer-function"
@@ -26,6 +29,15 @@ def places_between_halves(simulation: Simulation) -> list[int]:
         k for k, item in enumerate(simulation.chain) if item.name == TRANSFER_FUNCTION
     ]
     return linear[1:]
+
+
+def drives_a_machine(simulation: Simulation) -> bool:
+    """Tell whether the input drives a mass or fills a store, with no material before.
+
+    What limits the input there is the drive's.
+    """
+    first = next((x for x in simulation.chain if not isinstance(x, Gain)), None)
+    return isinstance(first, Mechanism | Store)
 
 
 def has_dynamics(simulation: Simulation) -> bool:

@@ -12,7 +12,7 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.saturation import Saturation as Limit
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.law import Law, Passed
-from hystbench.gap.effects.places import places_between_halves
+from hystbench.gap.effects.places import drives_a_machine, places_between_halves
 from hystbench.gap.effects.variant import Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
@@ -42,6 +42,8 @@ class Saturation(Effect):
         if simulation.loop is None and not _is_static(simulation):
             places |= {simulation.behind_mechanics, _before_the_offset(simulation)}
             yield self._about_a_point(simulation, _before_the_offset(simulation))
+        if drives_a_machine(simulation):
+            places.discard(0)  # what limits a force that is given is the drive
         for place in sorted(places):
             yield from self._at(simulation, place)
         if simulation.hysteresis is not None:
