@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.input_delay import InputDelay
+from hystbench.blocks.other_modes import OtherModes
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.score import Score
@@ -42,6 +43,8 @@ def better_timed(base: Model, found: ModelState, floor_rms: float) -> Model | No
     """
     if any((x.block, x.parameter) == (0, "delay_s") for x in found.free):
         return None  # it was free beside the effects already
+    if any(isinstance(block, OtherModes) for block in found.chain):
+        return None  # the zeros of a structure of many modes hold it
     score = Score.plain(found.sample, floor_rms**2)
     now = score_of(found, score)
     if now - score.least(found.freedom) < PAYS:
