@@ -47,9 +47,14 @@ class InputDelay(HeldBlock, name="input-delay", place="drive"):
         """Give the delay, or the lead where it is below zero."""
         return cls(delay_s=max(delay_s, 0.0), lead_s=max(-delay_s, 0.0), hold=hold)
 
+    @property
+    def shift_s(self) -> float:
+        """How much later the input is taken, in seconds; below zero earlier."""
+        return self.delay_s - self.lead_s
+
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the delayed input."""
-        shift, place = (self.delay_s - self.lead_s) / dt, np.arange(len(z))
+        shift, place = self.shift_s / dt, np.arange(len(z))
         if self.holding != "band-limited" or len(z) < 3:
             v: FloatArray = np.interp(place - shift, place, z)
         else:
@@ -66,7 +71,7 @@ class InputDelay(HeldBlock, name="input-delay", place="drive"):
         known yet, the straight line through the newest two is the guess.
         """
         smooth = self.holding == "band-limited"
-        shift = (self.delay_s - self.lead_s) / sampling.dt
+        shift = self.shift_s / sampling.dt
         needed = max((AHEAD if smooth else 0) - floor(shift), 0)
         shift += sampling.ahead
         known = min(max(floor(shift), 0), AHEAD)

@@ -155,7 +155,7 @@ def _undone(step: Simulated, ends: Ends) -> Iterator[Making]:
     elif isinstance(step, Driven) and isinstance(step.host, Mechanism):
         yield from _motion(step.host, step.forces)
     elif isinstance(step, InputDelay):
-        late = f"{step.delay_s - step.lead_s:.6g} s"
+        late = f"{step.shift_s:.6g} s"
         yield partial(
             undone.left, f"is left: what follows the reference is {late} late"
         )

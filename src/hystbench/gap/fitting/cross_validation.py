@@ -83,10 +83,16 @@ def _gain(before: ModelState, after: ModelState, score: Score) -> float:
 
 def _shows_in_one_record(before: ModelState, after: ModelState, score: Score) -> bool:
     """Tell whether an effect gains in one record and changes no other."""
-    every = tuple(np.ones(len(x), dtype=bool) for x in before.sample.positions)
-    was, now = (_terms(_split(x, score)[0], score, every) for x in (before, after))
+    was, now = (_terms_of_all(model, score) for model in (before, after))
     (shows,) = np.nonzero(np.abs(was - now) > SCALE)
     return len(shows) == 1 and bool(was[shows[0]] > now[shows[0]])
+
+
+@lru_cache(maxsize=2)
+def _terms_of_all(model: ModelState, score: Score) -> FloatArray:
+    """Give the terms of whole records; a round asks for one model again and again."""
+    every = tuple(np.ones(len(x), dtype=bool) for x in model.sample.positions)
+    return _terms(_split(model, score)[0], score, every)
 
 
 @lru_cache(maxsize=2)

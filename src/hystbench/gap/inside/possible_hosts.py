@@ -31,7 +31,7 @@ from hystbench.gap.inside.modes import frequency_of, modes
 from hystbench.gap.inside.one_coordinate import MOTIONS, free_masses, one_coordinate
 from hystbench.gap.inside.same_as import same_as
 from hystbench.gap.inside.store_hosts import store_hosts
-from hystbench.gap.inside.timing import with_free_timing
+from hystbench.gap.inside.timing import in_front, with_free_timing
 from hystbench.gap.inside.two_masses import further_modes_of, two_masses
 from hystbench.gap.thresholds import FURTHER, PARAMETER, PAYS
 from hystbench.quantities import Quantities
@@ -226,9 +226,7 @@ def _without_timing(start: ModelState) -> ModelState:
 
 def _in_front(delay: Block, start: ModelState, state: ModelState) -> ModelState:
     """Give a model of such records on those of a base, with the timing of its input."""
-    moved = {k: k + 1 for k in range(len(state.chain))}
-    behind = state.rearranged((delay, *state.chain), moved)
-    return replace(behind, records=start.records).settled()
+    return replace(in_front(delay, state), records=start.records).settled()
 
 
 def own_mechanism(start: ModelState) -> ModelState | None:

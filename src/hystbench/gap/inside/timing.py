@@ -62,7 +62,11 @@ def timed_as_named(base: Model, found: ModelState) -> Model | None:
     """
     named = sum(_shift(found.chain[place]) for place in found.places_added)
     late = sum(map(_shift, found.chain))
-    if named == 0.0 or abs(late) > REACH * _step(found) or len(found.added) < 2:
+    if (
+        named == 0.0
+        or abs(late) > REACH * found.simulation.step
+        or len(found.added) < 2
+    ):
         return None
     return timed(base, late - _given(base))
 
@@ -71,7 +75,7 @@ def in_time_words(found: ModelState) -> str:
     """Say by how much a base takes its input late; nothing where that hardly shows."""
     own = set(range(len(found.chain))) - found.places_added
     late = sum(_shift(found.chain[place]) for place in own)
-    samples = abs(late) / _step(found)
+    samples = abs(late) / found.simulation.step
     if samples < TOLD:
         return ""
     when = "late" if late > 0 else "early"
@@ -83,18 +87,10 @@ def in_time_words(found: ModelState) -> str:
 
 def timed(base: Model, later_s: float) -> Model:
     """Give a base that takes its input so many seconds later, or earlier."""
-    behind = base.chain[1:] if _is_late(base) else base.chain
+    behind = base.chain[1:] if isinstance(base.chain[0], InputDelay) else base.chain
     hold = next((x.hold for x in behind if hasattr(x, "hold")), "default")
     delay = InputDelay.by(_given(base) + later_s, hold)
     return replace(base, chain=(delay, *behind))
-
-
-def _step(found: ModelState) -> float:
-    return min(record.dt for record in found.records)
-
-
-def _is_late(base: Model) -> bool:
-    return isinstance(base.chain[0], InputDelay)
 
 
 def _given(base: Model) -> float:
@@ -103,7 +99,13 @@ def _given(base: Model) -> float:
 
 
 def _shift(block: Block) -> float:
-    return block.delay_s - block.lead_s if isinstance(block, InputDelay) else 0.0
+    return block.shift_s if isinstance(block, InputDelay) else 0.0
+
+
+def in_front(block: Block, state: ModelState) -> ModelState:
+    """Put a block before all others of a model."""
+    moved = {k: k + 1 for k in range(len(state.chain))}
+    return state.rearranged((block, *state.chain), moved)
 
 
 def with_free_timing(found: ModelState) -> ModelState:
@@ -111,15 +113,14 @@ def with_free_timing(found: ModelState) -> ModelState:
 
     The delay cannot be negative: a lead allows for both.
     """
-    step = REACH * _step(found)
+    step = REACH * found.simulation.step
     first = found.chain[0]
     if isinstance(first, InputDelay):
         late = replace(first, delay_s=first.delay_s + step, lead_s=first.lead_s + step)
         state = found.with_chain((late, *found.chain[1:]))
     else:
         late = InputDelay(delay_s=step, lead_s=step, hold=found.hold)
-        moved = {k: k + 1 for k in range(len(found.chain))}
-        state = found.rearranged((late, *found.chain), moved)
+        state = in_front(late, found)
     free = tuple(x for x in state.free if (x.block, x.parameter) != (0, "delay_s"))
     own = Free(0, "delay_s", low=late.lead_s - step, high=late.lead_s + step)
     return replace(state, free=(own, *free)).settled()
