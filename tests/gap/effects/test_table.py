@@ -1,6 +1,7 @@
-"""The table of effects in the docs is the registry's."""
+"""The tables of effects in the docs are the registry's."""
 
 from hystbench.blocks import registry
+from hystbench.device_kinds import DEVICE_KINDS
 from hystbench.files import markdown_table
 from hystbench.gap.effects import own
 from hystbench.gap.effects.effect import Effect
@@ -28,6 +29,24 @@ def table_of_effects():
         said = effect.__doc__.splitlines()[0].rstrip(".")
         rows.append([f"`{name}`", places(effect), said, blocks])
     return markdown_table(["effect", "places", "what is tried", "blocks"], rows)
+
+
+def table_of_kinds():
+    """Give each kind of device with the effects that it cannot have."""
+    rows = []
+    for kind in DEVICE_KINDS:
+        names = [
+            name for name, effect in own().items() if not effect().possible_in(kind)
+        ]
+        rows.append([f"`{kind}`", ", ".join(f"`{name}`" for name in names) or "none"])
+    return markdown_table(["kind", "effects that are left out"], rows)
+
+
+def test_the_page_on_own_data_holds_the_table_of_kinds():
+    # Written as the table of effects is, by table_of_kinds().
+    page = (ROOT / "docs" / "own-data.md").read_text(encoding="utf-8")
+    table = table_of_kinds().rstrip()
+    assert f"<!-- kinds -->\n\n{table}\n\n<!-- end of kinds -->" in page
 
 
 def test_the_page_on_the_gap_holds_the_table():
