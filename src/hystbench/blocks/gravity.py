@@ -18,4 +18,6 @@ class Gravity(Force, name="gravity", law="gravity"):
 
     amplitude: float = number("U", "weight times its arm")
     angle: float = number("rad", "of the arm to the vertical at q = 0", -3.2, 3.2, 0.0)
-    carried: float = number("-", "share that the spring carries there", 0.0, 1.0, 1.0)
+    carried: float = number(
+        "-", "share of its moment at q = 0 that the spring balances", 0.0, 1.0, 1.0
+    )
