@@ -13,6 +13,9 @@ ALIKE = 0.1
 """Of the standard deviation: periods that differ by more, rms, are not the same."""
 RISEN = 0.5
 """Half of the variance: within a period an input differs from itself by more."""
+BY_NOISE = 0.5
+"""Of what differs from one period to the next, the share that has to be new in each.
+The rest is the input itself, grown, or moved by a part of a sample."""
 
 
 def find_period(u: FloatArray) -> int | None:
@@ -21,8 +24,9 @@ def find_period(u: FloatArray) -> int | None:
     With ``d(k)`` half the mean square of ``u[t + k] - u[t]`` over the variance of
     ``u``, a period is a minimum of ``d`` behind a maximum of at least ``RISEN``: of a
     signal that repeats itself the mean of ``d`` over a period is one. It must lie
-    twice in the record, and two periods may differ by ``ALIKE``. Where no whole number
-    of samples is a period, a multiple of it that is nearer to one is found.
+    twice in the record, and two periods may differ by ``ALIKE``: by noise, not as an
+    input that grows or whose period is no whole number of samples. Of such a period a
+    multiple is found that is a whole number, if it is short enough.
 
     Parameters
     ----------
@@ -42,12 +46,62 @@ def find_period(u: FloatArray) -> int | None:
     least = float(apart[first:].min())
     limit = min(max(AS_GOOD * least, EXACT), ALIKE**2 / 2)
     good = first + np.flatnonzero(apart[first:] <= limit)
-    if not len(good):
-        return None
-    # The run of lags about the first minimum.
-    end = int(np.argmax(np.append(np.diff(good) > 1, True)))
-    run = good[: end + 1]
-    return int(run[np.argmin(apart[run])])
+    for run in np.split(good, np.flatnonzero(np.diff(good) > 1) + 1):
+        if len(run):
+            period = _nearest(u, int(run[np.argmin(apart[run])]))
+            if _repeats(u, period):
+                return period
+    return None
+
+
+def _nearest(u: FloatArray, period: int) -> int:
+    """Go from a period to one nearby by which the steadier periods differ less.
+
+    Where an input is faded in, the mean over all of the record leads beside it.
+    """
+    least = _steady(u, period)[2]
+    for step in (1, -1):
+        while 2 * (period + step) <= len(u) and period + step > 1:
+            there = _steady(u, period + step)[2]
+            if there >= least:
+                break
+            period, least = period + step, there
+    return period
+
+
+def _steady(u: FloatArray, period: int) -> tuple[FloatArray, FloatArray, float]:
+    """Give a period and what changes to the next, where it changes little.
+
+    Of all periods a quarter changes less: a fade may take most of a short record.
+
+    Returns
+    -------
+    before, change : ndarray, shape (m,)
+    square : float
+        The mean square of the change.
+    """
+    change = u[period:] - u[:-period]
+    cuts = range(period, len(change) - period + 1, period)
+    changes = np.split(change, cuts)
+    squares = [float(np.mean(own**2)) for own in changes]
+    place = int(np.argsort(squares)[(len(squares) - 1) // 4])
+    before = u[place * period :][: len(changes[place])]
+    return before, changes[place], squares[place]
+
+
+def _repeats(u: FloatArray, period: int) -> bool:
+    """Tell whether an input repeats itself, but for noise.
+
+    One that grows changes by a share of itself; one whose period is no whole number of
+    samples changes by a share of its slope. Least squares on both, and on a constant,
+    leave what is new in each period.
+    """
+    before, change, square = _steady(u, period)
+    if square <= EXACT * np.var(u):
+        return True
+    columns = np.column_stack([before, np.gradient(before), np.ones(len(before))])
+    rest = change - columns @ np.linalg.lstsq(columns, change, rcond=None)[0]
+    return float(np.mean(rest**2)) > BY_NOISE * square
 
 
 def differences(u: FloatArray) -> FloatArray:
