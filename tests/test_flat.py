@@ -52,3 +52,14 @@ def test_noise_that_is_cut_off_is_clipped():
     y = sine(5) + 0.01 * np.random.default_rng(0).standard_normal(1200)
     assert [x.kind for x in flats(np.minimum(y, 0.8))] == ["clipped"]
     assert flats(y) == []
+
+
+def test_readings_of_few_digits_are_alike_by_chance_and_not_stuck():
+    noise = 0.04 * np.random.default_rng(0).standard_normal((20, 1200))
+    coarse = np.round((sine(5) + noise) / 0.03) * 0.03
+    assert all(flats(y) == [] for y in coarse)
+    moves = np.diff(coarse[0])
+    held = next(k for k in range(410, 450) if (moves[k - 4 : k] != 0).all())
+    coarse[0, held : held + 20] = coarse[0, held]
+    (found,) = flats(coarse[0])
+    assert (found.kind, found.first) == ("stuck", held)

@@ -18,6 +18,9 @@ rate farther out. It is half where the channel comes to rest smoothly, and five 
 or more where a parabola is cut off."""
 BEYOND = 0.01
 """Of the range, that the flanks of a flat stretch would have reached beyond it."""
+CHANCE = 0.01
+"""Stretches that a whole record would have by chance, below which one is none: readings
+of few digits are alike now and then."""
 COARSE = 3.0
 """Steps of a digitized channel: what is nearer is its own rounding."""
 
@@ -82,8 +85,9 @@ def stretches(values: FloatArray) -> list[FlatPart]:
     a hundredth of the range: half the flat's length times a half of the slower
     flank's rate. A smooth turn that is digitized stays within a step.
 
-    *Stuck*: it stands elsewhere, and jumps at the end at least half as far as the
-    motion before would have gone meanwhile.
+    *Stuck*: it stands elsewhere, for longer than two alike readings here and there
+    foretell, and jumps at the end at least half as far as the motion before would have
+    gone meanwhile.
 
     Parameters
     ----------
@@ -101,6 +105,8 @@ def stretches(values: FloatArray) -> list[FlatPart]:
     quantum = smallest_step(values)
     matters = max(BEYOND * span, COARSE * quantum)
     ends = (float(values.min()), float(values.max()))
+    lengths = [behind - first for first, behind in repeats(values, 2)]
+    pairs = lengths.count(2)
     found: list[FlatPart] = []
     for first, behind in repeats(values, APPROACH):
         length = behind - first
@@ -115,6 +121,8 @@ def stretches(values: FloatArray) -> list[FlatPart]:
             steep = slower * length / 4 > matters and slower > ALIKE * faster
             if steep and stopped and left:
                 found.append(FlatPart("clipped", first, behind))
+            continue
+        if pairs * (pairs / len(values)) ** (length - 2) > CHANCE:
             continue
         moved = bool((moves[first - APPROACH : first] != 0).all())
         jump = (values[behind] - value) * -np.sign(before)

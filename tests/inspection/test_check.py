@@ -83,6 +83,27 @@ def test_a_late_trigger_is_told_and_no_other(tmp_path):
     assert told[0].startswith("late:")
 
 
+@pytest.mark.parametrize(("shift", "word"), [(6, "later"), (-6, "sooner")])
+def test_it_is_told_whether_an_output_comes_late_or_early(tmp_path, shift, word):
+    u, y = records()["sine-20"]
+    made = records(frequencies=(4, 5, 8, 10, 16, 25, 32, 40))
+    made["moved"] = u, np.roll(y, shift)
+    found = check(load_dataset(write(tmp_path, made, roles=HELD)), False).findings
+    (told,) = (f.text for f in found if "trigger" in f.text)
+    assert told.startswith("moved:")
+    samples = float(told.partition("(")[2].partition(" samples")[0])
+    assert samples == pytest.approx(abs(shift), rel=0.15)  # to first order of the shift
+    assert word in told
+
+
+def test_a_wider_loop_of_a_triangle_is_no_late_trigger(tmp_path):
+    u = np.abs((np.arange(COUNT) + 60) % 240 - 120.0) / 120 - 0.5
+    wide = noisy(loop(u) - 0.1 * np.sign(np.gradient(u)))
+    made = records(frequencies=(4, 5, 8, 10, 16, 25, 32, 40)) | {"wide": (u, wide)}
+    found = check(load_dataset(write(tmp_path, made, roles=HELD)), False).findings
+    assert not [f.text for f in found if "trigger" in f.text]
+
+
 def test_a_clipped_output_is_wrong(tmp_path):
     made = records()
     u, y = made["sine-20"]

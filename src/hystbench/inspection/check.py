@@ -177,8 +177,13 @@ def _findings(
         found.append(_finding("periods", told=told, paste=lines))
     found += [each for item in facts for each in _holes(item)]
     found += [
-        _finding("late", name=x.name, ms=1e3 * x.delay_s, samples=x.delay_s / x.dt)
-        for x in late(facts)
+        _finding(
+            "late" if by > 0 else "early",
+            name=item.name,
+            ms=1e3 * abs(by),
+            samples=abs(by) / item.dt,
+        )
+        for item, by in late(facts)
     ]
     fit = [item.input for item in facts if item.use == "fit"]
     rates, spans = ([x.rate for x in fit], [round(x.span, 12) for x in fit])

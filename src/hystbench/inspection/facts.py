@@ -21,6 +21,9 @@ LATE_SAMPLES = 1.0
 """Samples by which a record is late against the others, worth telling."""
 DELAY_SHARE = 0.5
 """Of what the loop leaves of a record: the delay is then what is wrong with it."""
+ONE_RATE = 0.9
+"""Of a slope's power, the share that goes with its direction: all of a triangle's, .81
+of a sine's. There a loop of another width moves the output as a delay does."""
 SURE = 3.0
 """Standard errors of that difference."""
 NORMAL_MEDIAN = 0.6745
@@ -115,7 +118,8 @@ def delay_of(item: Compared) -> tuple[float, float, float]:
     error : float
         Standard error, from how it differs between stretches of the record.
     share : float
-        Of the residual's power, that goes with it.
+        Of the residual's power, that goes with it; none where a loop of another width
+        would do the same.
     """
     slope = np.gradient(item.simulated, item.record.dt)
     residual = item.residual - item.residual.mean()
@@ -126,6 +130,8 @@ def delay_of(item: Compared) -> tuple[float, float, float]:
         return 0.0, float("inf"), 0.0
     delay = -float(top.sum()) / total
     spread = (top + delay * bottom) / total
+    if np.mean(np.abs(slope)) ** 2 > ONE_RATE * np.mean(slope**2):
+        return delay, float(np.sqrt(np.sum(spread**2))), 0.0
     share = float(top.sum()) ** 2 / total / max(float(residual @ residual), 1e-300)
     return delay, float(np.sqrt(np.sum(spread**2))), share
 
@@ -134,8 +140,8 @@ def _parts(values: FloatArray) -> list[FloatArray]:
     return np.array_split(values, STRETCHES)
 
 
-def late(facts: Sequence[Facts]) -> list[Facts]:
-    """Give the records that are late or early against what the others foretell.
+def late(facts: Sequence[Facts]) -> list[tuple[Facts, float]]:
+    """Give the records that are late against what the others foretell, and by how much.
 
     A loop of the wrong width is a phase that is the same at all rates, and a lag is one
     that grows with the rate: each record's phase, its delay times its rate, is held
@@ -149,11 +155,12 @@ def late(facts: Sequence[Facts]) -> list[Facts]:
         if np.count_nonzero(others) < LEAST_OTHERS:
             continue
         line = _middle_line(rates[others], phases[others])
-        away = abs(phases[k] - np.polyval(line, rates[k])) / rates[k]
+        by = float(phases[k] - np.polyval(line, rates[k])) / rates[k]
         usual = np.median(np.abs(phases[others] - np.polyval(line, rates[others])))
         doubt = SURE * np.hypot(item.delay_error_s, usual / NORMAL_MEDIAN / rates[k])
-        if away > max(LATE_SAMPLES * item.dt, doubt) and item.delay_share > DELAY_SHARE:
-            found.append(item)
+        sure = abs(by) > max(LATE_SAMPLES * item.dt, doubt)
+        if sure and item.delay_share > DELAY_SHARE:
+            found.append((item, by))
     return found
 
 
