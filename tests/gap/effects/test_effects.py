@@ -90,7 +90,7 @@ def every_variant(holds=lambda variant: True):
                 try:
                     check(chain, variant)
                 except BaseException as error:
-                    error.add_note(f"{variant.label} on {chain}")
+                    error.add_note(f"{variant.form} on {chain}")
                     raise
 
         return test
@@ -209,7 +209,7 @@ NOTHING = {
     "input-delay": {"delay_s": 0.0},
     "drive-lag": {"time_constant_s": 1e-7, "damping_ratio": 0.7},
     "eddy-diffusion": {"time_constant_s": 1e-12},
-    "drive-saturation": {"limit": 1e6},
+    "drive-saturation": {"limit": 1e6, "level": 1e6, "sharpness": 4.0},
     "slew-limit": {"rate": 1e8},
     "dead-zone": {"half_width": 0.0, "rounding": 1.0},
     "saturation": {"level": 1e8, "sharpness": 2.0},

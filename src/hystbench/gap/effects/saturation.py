@@ -12,12 +12,20 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.saturation import Saturation as Limit
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.law import Law, Passed
-from hystbench.gap.effects.places import drives_a_machine, places_between_halves
+from hystbench.gap.effects.places import (
+    drives_a_machine,
+    places_between_halves,
+    places_in_drive,
+)
 from hystbench.gap.effects.variant import Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
 SOFTEST, SHARPEST = 1.0, 20.0
 """Froelich's law of magnetisation; a curve within 3.4 % of a corner."""
+STRAIGHT, BENT = 4.0, 5.0
+"""Sharpness of the softest limit of a drive and of the sharpest law of a field. An
+amplifier is straight within 1 or 2 % up to half of its limit; a material bends from its
+smallest signals on. In between it may be either."""
 STRONG, STRONGEST = 0.5, 0.1
 """Share of the largest signal that the level may be; behind a linear base, which may
 follow the curve nearly everywhere, where it is met nearly always."""
@@ -61,6 +69,9 @@ class Saturation(Effect):
         self, simulation: Simulation, place: int, of: str = ""
     ) -> Iterator[Variant]:
         largest = simulation.largest(place)
+        of_drive = bool(of) or place in places_in_drive(simulation)
+        sharpest = BENT if of_drive else SHARPEST
+        sharpness = np.array([SOFTEST, 2.0, 3.0, 4.5, 8.0])
         least = (STRONGEST if simulation.loop is None else STRONG) * largest
         levels = logarithmic(least, 30 * largest, 5)
         yield self.inserted(simulation, place, form=of, grids={"level": levels})
@@ -70,14 +81,14 @@ class Saturation(Effect):
             form=f"{of}, algebraic" if of else "algebraic",
             grids={
                 "level": levels,
-                "sharpness": np.array([SOFTEST, 2.0, 3.0, 4.5, 8.0]),
+                "sharpness": sharpness[sharpness < sharpest],
             },
             limits={
                 "level": (least, WEAKEST * largest),
-                "sharpness": (SOFTEST, SHARPEST),
+                "sharpness": (SOFTEST, sharpest),
             },
-            # The field is the drive's: a corner there is the drive's limit.
-            refused={"sharpness": "upper"} if of else {},
+            # A corner of what drives the material is the drive's limit.
+            refused={"sharpness": "upper"} if of_drive else {},
         )
 
     def _about_a_point(self, simulation: Simulation, place: int) -> Variant:
