@@ -1,4 +1,4 @@
-"""What tells a drive's limit from a material's curve: the drive is straight below it."""
+"""What tells a limit of a drive from a material: a drive is straight below it."""
 
 import numpy as np
 import pytest
