@@ -63,3 +63,13 @@ def test_readings_of_few_digits_are_alike_by_chance_and_not_stuck():
     coarse[0, held : held + 20] = coarse[0, held]
     (found,) = flats(coarse[0])
     assert (found.kind, found.first) == ("stuck", held)
+
+
+@pytest.mark.parametrize("levels", [32, 64])
+def test_a_digitized_backlash_is_not_clipped(levels):
+    y, state = [], 0.0
+    for value in sine(5):
+        state = min(max(state, value - 0.2), value + 0.2)
+        y.append(state)
+    step = np.ptp(y) / levels
+    assert flats(np.round(np.array(y) / step) * step) == []

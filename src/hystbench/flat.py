@@ -153,14 +153,15 @@ def is_cut_off(values: FloatArray, first: int, behind: int) -> bool:
 def _flank(flank: FloatArray, length: int, quantum: float) -> tuple[float, bool]:
     """Tell at what rate a channel leaves a flat, and whether at once: not from rest.
 
-    Over a quarter of the flat, in which steps of a digitized channel average out.
+    Over a quarter of the flat, in which steps of a digitized channel average out. Where
+    they are so coarse that one more would make the difference, it does not.
     """
     near = min(max(APPROACH, length // 4), len(flank) - 1)
     over = float(flank[near] - flank[0]) / near
     moving = flank[1 : 1 + max(APPROACH, length // 2)]  # it stopped between samples
     half = len(moving) // 2
     whole, within = (abs(moving[k] - moving[0]) / k for k in (len(moving) - 1, half))
-    return over, bool(within + quantum / half > AT_ONCE * whole)
+    return over, bool(within - quantum / half > AT_ONCE * whole)
 
 
 def smallest_step(values: FloatArray) -> float:
