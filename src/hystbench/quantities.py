@@ -73,6 +73,13 @@ NONE_KNOWN = Quantities()
 """Of a device of which nothing is told."""
 
 
+def angle_in(unit: str) -> str:
+    """Give the unit of the angle whose motion a unit measures: rad, deg or neither."""
+    names = {"rad": "rad", "deg": "deg", "°": "deg"}
+    of = plain(unit)
+    return next((names[name] for name in names if of.startswith(name)), "")
+
+
 def quantity_of(place: str, unit: str, told: str | None = None) -> Quantity:
     """Tell what a channel measures, from its unit and what is said of it.
 

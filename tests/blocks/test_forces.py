@@ -68,6 +68,10 @@ LAWS = {
         {"amplitude": 2.0, "angle": 0.4},
         lambda q, v: 2 * (np.sin(q + 0.4) - np.sin(0.4)),
     ),
+    "gravity over degrees": (
+        {"amplitude": 2.0, "angle": 0.4, "unit": "deg"},
+        lambda q, v: 2 * (np.sin(np.radians(q) + 0.4) - np.sin(0.4)),
+    ),
     "gravity from a slack spring": (
         {"amplitude": 2.0, "angle": 0.4, "carried": 0.0},
         lambda q, v: 2 * np.sin(q + 0.4),

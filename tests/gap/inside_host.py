@@ -6,7 +6,7 @@ from hystbench.gap.inside.combine_forces import singles, together
 from hystbench.gap.inside.insert_law import laws_for
 
 
-def search(host, score, offered=None, turns=False, other=None):
+def search(host, score, offered=None, turns="", other=None):
     """Give the host alone first; then every other with the score that was reached."""
     offer = partial(laws_for, offered=offered, turns=turns)
     return together(singles(host, offer, score, other=other), offer, score)

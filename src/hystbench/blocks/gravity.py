@@ -1,13 +1,19 @@
 """Block ``gravity``: the moment of a weight inside a mechanism that turns."""
 
+import math
+
 from hystbench.blocks.force import Force
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import choice, number
+
+RADIANS = {"rad": 1.0, "deg": math.pi / 180}
+"""Of a unit of q."""
 
 
 class Gravity(Force, name="gravity", law="gravity"):
-    """A pendulum's moment on an angle q in rad.
+    """A pendulum's moment on an angle q.
 
-    ``F = amplitude (sin(q + angle) - carried sin(angle))``. The spring carries a share
+    ``F = amplitude (sin(q + angle) - carried sin(angle))``, q in rad; where the
+    coordinate is in degrees, ``unit: deg`` says so. The spring carries a share
     of the moment that the weight has at ``q = 0``: all of it, if q is counted from
     where the weight rests; none, if q is counted from where the spring is slack.
 
@@ -21,3 +27,8 @@ class Gravity(Force, name="gravity", law="gravity"):
     carried: float = number(
         "-", "share of its moment at q = 0 that the spring balances", 0.0, 1.0, 1.0
     )
+    unit: str = choice("of the coordinate", tuple(RADIANS), "rad")
+
+    def numbers(self) -> tuple[float, ...]:
+        """Give the numbers of the law; the last is a unit of q in rad."""
+        return (self.amplitude, self.angle, self.carried, RADIANS[self.unit])

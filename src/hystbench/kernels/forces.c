@@ -174,7 +174,7 @@ static double hb_force(const double *f, double q, double v, const double *memori
     case 5: /* hysteretic */
         return f[1] * memory;
     case 6: /* gravity */
-        return f[1] * (sin(q + f[2]) - f[3] * sin(f[2]));
+        return f[1] * (sin(f[4] * q + f[2]) - f[3] * sin(f[2]));
     case 7: /* slider */
         return f[1] * hb_dead_zone(f[3], memory);
     case 9: /* relaxation */
@@ -229,9 +229,11 @@ static double hb_mean_force(const double *f, double q, double way, double h,
         hb_bouc_wen(memory, way, f[2], f[3], &integral);
         return f[1] * integral / way;
     }
-    case 6: /* gravity */
-        return f[1] * (sin(middle + f[2]) * (half == 0 ? 1 : sin(half) / half) -
+    case 6: { /* gravity */
+        const double by = f[4] * half;
+        return f[1] * (sin(f[4] * middle + f[2]) * (by == 0 ? 1 : sin(by) / by) -
                        f[3] * sin(f[2]));
+    }
     case 7: /* slider */
         return f[1] * hb_mean_held(memory, way, f[2], f[3]);
     case 9: /* relaxation */ {

@@ -90,7 +90,7 @@ def found_with(second):
     return fitted(state, score), score
 
 
-OFFER = partial(laws_for, turns=False, offered=("hysteretic-force",))
+OFFER = partial(laws_for, turns="", offered=("hysteretic-force",))
 
 
 def test_a_joint_is_found_in_a_second_mode_as_the_same_effect():

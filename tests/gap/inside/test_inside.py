@@ -398,7 +398,10 @@ def test_what_is_offered_does_not_need_a_spring_that_pulls_back():
     assert all(len(list(effects()[name].in_mechanism(moved))) for name in offered)
 
 
-def test_a_weight_that_swings_far_is_told_as_gravity_and_not_as_a_softer_spring():
+@pytest.mark.parametrize(("unit", "size_of_one"), [("rad", 1.0), ("deg", 180 / np.pi)])
+def test_a_weight_that_swings_far_is_told_as_gravity_and_not_as_a_softer_spring(
+    unit, size_of_one
+):
     def swing(u, fine=20):
         angle, rate, found = 0.0, 0.0, []
         for moment in np.repeat(u, fine):
@@ -408,15 +411,15 @@ def test_a_weight_that_swings_far_is_told_as_gravity_and_not_as_a_softer_spring(
         return np.array(found[::fine])
 
     random = np.random.default_rng(3)
-    units = ("N*m", "rad")
+    units = ("N*m", unit)
     records = []
     for size in (8.0, 25.0):
         u = size * np.repeat(random.uniform(-1, 1, 80), 20)
-        y = swing(u) + 1e-3 * random.standard_normal(1600)
+        y = size_of_one * (swing(u) + 1e-3 * random.standard_normal(1600))
         records.append(record(f"swing-{size:g}", u, y, units))
-    assert max(float(np.abs(one.y).max()) for one in records) > 1.2
-    host, score = hosted(records, 1e-3)
-    tried = search(host, score, turns=True)
+    assert max(float(np.abs(one.y).max()) for one in records) > 1.2 * size_of_one
+    host, score = hosted(records, 1e-3 * size_of_one)
+    tried = search(host, score, turns=unit)
     best = min(tried[1:], key=lambda item: item.score)
     assert best.effects == ("gravity",)
     assert best.state.chain[1].amplitude == pytest.approx(40.0, rel=0.05)
@@ -443,7 +446,7 @@ def test_the_weight_of_a_level_arm_is_found_where_its_spring_was_slack():
     start = ModelState((arm,), given, ScoredSamples.of(given)).settled()
     score = Score(start.sample, np.zeros((len(start.sample), 0)), 1e-6)
     host = Fitted(start, score.of(start.residual))
-    best = min(search(host, score, turns=True)[1:], key=lambda item: item.score)
+    best = min(search(host, score, turns="rad")[1:], key=lambda item: item.score)
     assert best.effects == ("gravity",)
     weight = best.state.chain[1]
     # 9 cos q = 9 sin(q + pi / 2)

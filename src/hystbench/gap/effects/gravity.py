@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from hystbench.blocks.gravity import RADIANS
 from hystbench.blocks.gravity import Gravity as GravityBlock
 from hystbench.gap.effects.effect import ForceEffect
 from hystbench.gap.effects.law import Law, Moved
@@ -26,7 +27,9 @@ class Gravity(ForceEffect):
         """
         both = ("amplitude", "angle")
         for share in (0.5, -0.5) if moved.turns and not moved.anywhere else ():
-            block = GravityBlock(amplitude=share * moved.stiffness)
+            # Of so small an angle that its sine is the angle, a spring.
+            weight = share * moved.stiffness / RADIANS[moved.turns]
+            block = GravityBlock(amplitude=weight, unit=moved.turns)
             yield Law("", block, both[:1], stands_for=share)
             yield Law("tilted", block, both, stands_for=share)
             slack = replace(block, carried=0.0)

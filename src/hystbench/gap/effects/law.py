@@ -20,8 +20,8 @@ class Moved:
     """Of its velocity."""
     force: float
     """Of the force that drives it, or that its motion takes."""
-    turns: bool = False
-    """Whether it turns: its position is an angle in rad."""
+    turns: str = ""
+    """The unit of its position where that is an angle: rad or deg."""
     anywhere: bool = False
     """Whether where it is does not matter, as of a mass without a spring: a force that
     depends on the place has no meaning then."""

@@ -48,7 +48,7 @@ class Times(NamedTuple):
 
 def laws_for(
     host: Fitted,
-    turns: bool = False,
+    turns: str = "",
     offered: Iterable[str] | None = None,
     times: Times | None = None,
 ) -> Laws:
@@ -58,8 +58,8 @@ def laws_for(
     ----------
     host : Fitted
         With or without effects inside already.
-    turns : bool
-        Whether its coordinate is an angle.
+    turns : str
+        Unit of its coordinate where that is an angle: rad or deg.
     offered : iterable of str, optional
         Effects that may be named; all by default.
     times : Times, optional
@@ -100,7 +100,7 @@ def of_stores(item: Fitted) -> bool:
     return any(isinstance(block, Store) for block in item.state.chain)
 
 
-def how_it_moves(state: ModelState, turns: bool) -> Moved:
+def how_it_moves(state: ModelState, turns: str) -> Moved:
     """Look how far, how fast and by what force a host moves on its records."""
     place = host_of(state)
     host: Any = state.chain[place]

@@ -39,7 +39,7 @@ from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.memory import may_have_hysteresis
 from hystbench.gap.thresholds import ABOUT, FURTHER, PARAMETER, PAYS
 from hystbench.model import Model
-from hystbench.quantities import Quantities
+from hystbench.quantities import Quantities, angle_in
 from hystbench.sentences import finely, percent
 from hystbench.units import sized
 
@@ -92,7 +92,7 @@ def named_inside(
     say, share = asked.say, asked.unnamed_share
     fewer = on_fewer(start, quantities)
     score, score_of_all = (Score.plain(x.sample, floor_rms**2) for x in (fewer, start))
-    turns = start.records[0].output.unit.startswith("rad")
+    turns = angle_in(start.records[0].output.unit)
     times = Times.of(start.records, identified)
     offer = partial(laws_for, turns=turns, offered=start.offered, times=times)
     tried: list[tuple[Host, list[Fitted]]] = []
