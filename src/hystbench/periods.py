@@ -49,7 +49,7 @@ def find_period(u: FloatArray) -> int | None:
     for run in np.split(good, np.flatnonzero(np.diff(good) > 1) + 1):
         if len(run):
             period = _nearest(u, int(run[np.argmin(apart[run])]))
-            if _repeats(u, period):
+            if repeats(u, period):
                 return period
     return None
 
@@ -89,12 +89,12 @@ def _steady(u: FloatArray, period: int) -> tuple[FloatArray, FloatArray, float]:
     return before, changes[place], squares[place]
 
 
-def _repeats(u: FloatArray, period: int) -> bool:
-    """Tell whether an input repeats itself, but for noise.
+def repeats(u: FloatArray, period: int) -> bool:
+    """Tell whether an input repeats itself after a period, but for noise.
 
-    One that grows changes by a share of itself; one whose period is no whole number of
-    samples changes by a share of its slope. Least squares on both, and on a constant,
-    leave what is new in each period.
+    It must fit twice into the record. One that grows changes by a share of itself; one
+    whose period is no whole number of samples changes by a share of its slope. Least
+    squares on both, and on a constant, leave what is new in each period.
     """
     before, change, square = _steady(u, period)
     if square <= EXACT * np.var(u):

@@ -52,6 +52,16 @@ def test_the_period_is_found_and_its_line_can_be_pasted(plain, tmp_path):
     assert [item.period for item in again.facts] == [200, 100, 50, 25]
 
 
+def test_a_period_with_which_an_input_grows_is_doubted(tmp_path):
+    growth = np.arange(COUNT) / COUNT
+    made = records() | {"grow": (growth * sine(10), noisy(loop(growth * sine(10))))}
+    entries = {"grow": ", period_samples: 100", "sine-5": ", period_samples: 200"}
+    place = write(tmp_path, made, entries=entries, roles=HELD)
+    found = check(load_dataset(place), False).findings
+    (told,) = (item.text for item in found if "does not repeat" in item.text)
+    assert told.startswith("grow: ")
+
+
 def test_the_noise_is_measured_by_the_repeats_that_were_found(plain):
     assert plain.floor.method == "repeats"
     assert plain.floor.rms == pytest.approx(NOISE, rel=0.15)

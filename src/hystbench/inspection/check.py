@@ -175,6 +175,7 @@ def _findings(
         told = ", ".join(f"{item.name} every {item.period} samples" for item in new)
         lines = [_entry(dataset, item.name, period_samples=item.period) for item in new]
         found.append(_finding("periods", told=told, paste=lines))
+    found += [_finding("no period", **vars(x)) for x in facts if not x.repeats]
     found += [each for item in facts for each in _holes(item)]
     found += [
         _finding(

@@ -13,7 +13,7 @@ from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.records.usable import IF_REAL, check_usable
 from hystbench.inspection.input_summary import InputSummary, summary_of
 from hystbench.inspection.missing import cannot_be_bridged
-from hystbench.periods import find_period
+from hystbench.periods import find_period, repeats
 from hystbench.record import FloatArray, Record, Use
 from hystbench.units import seconds
 
@@ -50,6 +50,8 @@ class Facts:
     """Samples, as the dataset says or as it was found."""
     declared: bool
     """Whether the dataset says it."""
+    repeats: bool
+    """Whether the input repeats itself so."""
     input: InputSummary
     low: float
     high: float
@@ -84,7 +86,7 @@ def facts_of(dataset: Dataset, item: Compared) -> Facts:
     """
     record = item.record
     file = dataset.record_files[record.name]
-    found = find_period(record.u) if record.period_samples is None else None
+    given, found = record.period_samples, find_period(record.u)
     delay, error, share = delay_of(item)
     jitter, missing, too_far = _clock_and_missing(dataset, record)
     return Facts(
@@ -93,8 +95,9 @@ def facts_of(dataset: Dataset, item: Compared) -> Facts:
         len(record),
         record.dt,
         jitter,
-        record.period_samples or found,
-        record.period_samples is not None,
+        given or found,
+        given is not None,
+        given is None or repeats(record.u, given),
         summary_of(record.u, record.dt),
         float(record.y.min()),
         float(record.y.max()),
