@@ -54,6 +54,15 @@ LAWS = {
         {"contact_stiffness": 7.0, "gap": 0.0, "centre": 0.2, "sides": "lower"},
         lambda q, v: np.where(q < 0.2, 7 * (q - 0.2), 0.0),
     ),
+    "stop with loss": (
+        {"contact_stiffness": 7.0, "gap": 0.4, "loss": 0.2},
+        lambda q, v: (
+            7
+            * np.sign(q)
+            * np.maximum(np.abs(q) - 0.4, 0)
+            * np.maximum(1 + 0.2 * np.sign(q) * v, 0)
+        ),
+    ),
     "drag": ({"coefficient": 0.3}, lambda q, v: 0.3 * v * np.abs(v)),
     "smooth-friction": (
         {

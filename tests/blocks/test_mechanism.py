@@ -83,6 +83,10 @@ def contact(q, v):
     return 500 * np.sign(q) * np.maximum(np.abs(q) - 0.1, 0)
 
 
+def lossy_contact(q, v):
+    return contact(q, v) * np.maximum(1 + 0.2 * np.sign(q) * v, 0)
+
+
 def gives_way(t):
     """Friction of 20 over a way of .05, as a third state that slides at its ends."""
 
@@ -101,6 +105,8 @@ def gives_way(t):
 CORNERED = {
     "stop": (force("stop", contact_stiffness=500.0, gap=0.1),
              lambda t: solved(contact, t)[0]),
+    "lossy stop": (force("stop", contact_stiffness=500.0, gap=0.1, loss=0.2),
+                   lambda t: solved(lossy_contact, t)[0]),
     "friction": (force("friction-force", coulomb=20.0, presliding_distance=0.05),
                  gives_way),
 }  # fmt: skip
@@ -193,6 +199,18 @@ def test_an_elastic_force_neither_gives_nor_takes_energy(name, damping):
         assert energy[-1] < 1e-9 * energy[0]
     else:
         np.testing.assert_allclose(energy, energy[0], rtol=1e-8)
+
+
+@pytest.mark.parametrize("stiffness", [2e3, 2e8])
+@pytest.mark.parametrize("loss", [0.1, 3.0])
+def test_a_lossy_contact_only_loses_energy(stiffness, loss):
+    machine = replace(MACHINE, damping=0.0, start_position=0.29, start_velocity=3.0)
+    stop = force("stop", contact_stiffness=stiffness, gap=0.3, loss=loss)
+    moved = machine.motion(np.zeros(4001), 0.06, (stop,))
+    q, v = moved.position, moved.velocity
+    energy = v**2 + 100 * q**2 + stiffness / 2 * np.maximum(np.abs(q) - 0.3, 0) ** 2
+    assert (np.diff(energy) <= 1e-9 * energy[0]).all()
+    assert energy[-1] < 1.02 * 100 * 0.3**2  # it swings inside the clearance
 
 
 #: What each force can store at most.

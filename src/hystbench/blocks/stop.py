@@ -10,17 +10,23 @@ class Stop(Force, name="stop", law="stop"):
     """A spring that is met where q leaves a gap: ``F = contact_stiffness (x - gap)``.
 
     That is for ``x = q - centre`` above the gap, and likewise below ``-gap`` where the
-    stop has both sides.
+    stop has both sides. One that loses energy, as of an elastomer, takes that times
+    ``1 + loss x'`` on the way in, ``1 - loss |x'|`` on the way out, never below zero.
 
     References
     ----------
     .. [1] S. W. Shaw, P. J. Holmes, "A periodically forced piecewise linear
        oscillator", Journal of Sound and Vibration 90 (1983) 129-155.
+    .. [2] K. H. Hunt, F. R. E. Crossley, "Coefficient of restitution interpreted as
+       damping in vibroimpact", Journal of Applied Mechanics 42 (1975) 440-445.
     """
 
     contact_stiffness: float = number("U/Q", "stiffness of the contact", 0.0)
     gap: float = number("Q", "half of the clearance", 0.0)
     centre: float = number("Q", "middle of the clearance", default=0.0)
+    loss: float = number(
+        "s/Q", "by which a contact gives more going in", 0.0, default=0.0
+    )
     sides: str = choice("where there is contact", tuple(SIDES), "both")
 
     @property
@@ -29,5 +35,6 @@ class Stop(Force, name="stop", law="stop"):
         return self.contact_stiffness
 
     def numbers(self) -> tuple[float, ...]:
-        """Give stiffness, gap, centre and side."""
-        return self.contact_stiffness, self.gap, self.centre, SIDES[self.sides]
+        """Give stiffness, gap, centre, side and loss."""
+        side = SIDES[self.sides]
+        return self.contact_stiffness, self.gap, self.centre, side, self.loss

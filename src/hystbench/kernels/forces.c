@@ -18,6 +18,12 @@ static double hb_dead_zone(double half_width, double z)
     return z - hb_clip(half_width, z);
 }
 
+/* A contact's force where it loses energy: larger on the way in, and never a pull. */
+static double hb_lossy(double loss, double pressed, double v)
+{
+    return pressed * hb_most(0, 1 + (pressed > 0 ? loss : -loss) * v);
+}
+
 /* Mean of a dead zone between two places. */
 static double hb_mean_dead_zone(double from, double to, double gap)
 {
@@ -162,7 +168,7 @@ static double hb_force(const double *f, double q, double v, const double *memori
         return f[1] * (f[2] * sinh(q / f[2]) - q);
     case 2: /* stop */ {
         const double way = q - f[3];
-        return f[4] * way < 0 ? 0 : f[1] * hb_dead_zone(f[2], way);
+        return f[4] * way < 0 ? 0 : f[1] * hb_lossy(f[5], hb_dead_zone(f[2], way), v);
     }
     case 3: /* friction */
     case 11: /* lugre */
@@ -207,7 +213,7 @@ static double hb_mean_force(const double *f, double q, double way, double h,
             end = f[4] * fmax(0, f[4] * end);
         }
         const double mean = hb_mean_dead_zone(from, end, f[2]);
-        return f[1] * (way == 0 ? mean : mean * ((end - from) / way));
+        return f[1] * hb_lossy(f[5], way == 0 ? mean : mean * ((end - from) / way), v);
     }
     case 3: /* friction */
         return hb_sliding(f, 0) / f[4] *

@@ -739,6 +739,36 @@ def test_a_stop_on_both_sides_without_a_clearance_is_a_spring_and_no_stop():
     assert {item.effects for item in every} == {()}
 
 
+def test_a_rubber_stop_that_loses_energy_is_no_slider_with_gap():
+    """Its force is steeper than a spring's, more on the way in, and never a pull."""
+
+    def moves(t, state, u):
+        q, v = state
+        pressed = max(abs(q) - 0.3, 0.0) ** 1.3
+        contact = 300.0 * pressed * max(1 + 0.3 * v * np.sign(q), 0.0) * np.sign(q)
+        return [v, np.interp(t, TIME, u) - 2.0 * v - 60.0 * q - contact]
+
+    rng = np.random.default_rng(2)
+    waves = [np.sin(2 * np.pi * f * TIME) for f in rng.uniform(0.3, 2.5, 8)]
+    given = []
+    for size in (5.0, 15.0):
+        u = size * sum(waves)
+        exact = {"args": (u,), "rtol": 1e-7, "max_step": DT, "t_eval": TIME}
+        y = solve_ivp(moves, (0.0, TIME[-1]), (0.0, 0.0), **exact).y[0]
+        y = y + 2e-3 * rng.standard_normal(len(y))
+        given.append(record(f"run-{size:g}", u, y, ("N", "m")))
+    base = Mechanism(mass=1.0, damping=2.0, stiffness=60.0, hold="linear")
+    start = ModelState((base,), tuple(given), ScoredSamples.of(tuple(given))).settled()
+    score = Score(start.sample, np.zeros((len(start.sample), 0)), 4e-6)
+    rivals = ["stop", "slider-with-gap", "hysteretic-force", "stiffness-hardening"]
+    host = Fitted(start, score.of(start.residual))
+    found = search(host, score, offered=rivals)
+    alone = [item for item in found if len(item.effects) == 1]
+    best = min(alone, key=lambda item: item.score)
+    assert best.effects == ("stop",)
+    assert best.state.chain[1].loss == pytest.approx(0.3, rel=0.2)
+
+
 @pytest.mark.parametrize("exact", [False, True])
 def test_a_base_that_calls_itself_exact_is_not_fitted_as_a_host(exact):
     u = np.sin(2.1 * TIME)
