@@ -87,8 +87,10 @@ class Block(ABC):
         """Check every value against its declaration, then all of them together."""
         declared = self.parameters()
         for key, about in declared.items():
-            checked = about.check(key, getattr(self, key))
-            object.__setattr__(self, key, checked)
+            given = getattr(self, key)
+            checked = about.check(key, given)
+            if checked is not given:
+                object.__setattr__(self, key, checked)
         for key, about in declared.items():
             if not (other := about.as_many_as):
                 continue

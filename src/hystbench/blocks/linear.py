@@ -87,25 +87,39 @@ class LinearBlock(HeldBlock):
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the response to ``z``."""
-        if self.start == "rest":
-            return _moved(_loop_of(self, dt, _is_smooth(self.holding, z)), z)
         path, before = path_from(z, self.start)
-        moves = respond(self.continuous(), path - before, dt, self.holding)
-        return (moves + self.static_gain * before)[len(path) - len(z) :]
+        if before:
+            path = path - before
+        moves = _moved(_loop_of(self, dt, _is_smooth(self.holding, path)), path)
+        return self._of_record(moves, before, len(z))
+
+    def _of_record(self, moves: FloatArray, before: float, count: int) -> FloatArray:
+        """Give the response of a record from that to what was before it, and to it."""
+        if self.start == "rest":
+            return moves
+        return moves[len(moves) - count :] + _static_gain_of(self) * before
 
     def simulate_records(
         self, signals: Sequence[FloatArray], dts: Sequence[float]
     ) -> list[FloatArray]:
         """Compute the responses to signals of many records, as :meth:`simulate` does.
 
-        Where the signals move straight or as a staircase, from rest, all take one call
-        of a kernel: of short ones calls are most of the time.
+        Where the signals move straight or as a staircase all take one call of a kernel:
+        of short ones calls are most of the time.
         """
-        if self.start != "rest" or self.holding == "band-limited":
+        if self.holding == "band-limited":
             pairs = zip(signals, dts, strict=True)
             return [self.simulate(z, z, dt) for z, dt in pairs]
         loops = {dt: cast(Loop, _loop_of(self, dt, False)) for dt in set(dts)}
-        return _moved_records([loops[dt] for dt in dts], signals)
+        paths = [path_from(z, self.start) for z in signals]
+        moves = _moved_records(
+            [loops[dt] for dt in dts],
+            [path - before if before else path for path, before in paths],
+        )
+        return [
+            self._of_record(moved, before, len(z))
+            for moved, (_, before), z in zip(moves, paths, signals, strict=True)
+        ]
 
     def step(self, sampling: Sampling) -> Step:
         """Move the state over the interval that has passed."""
@@ -162,6 +176,11 @@ def respond(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> FloatAr
 def _is_smooth(hold: Hold, v: FloatArray) -> bool:
     """Tell whether a signal is long enough to move along a curve, if it is to."""
     return hold == "band-limited" and len(v) > 2
+
+
+@lru_cache(maxsize=256)
+def _static_gain_of(block: LinearBlock) -> float:
+    return block.static_gain
 
 
 @lru_cache(maxsize=256)

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, TypeGuard
 
 from hystbench.errors import InputError, refuse_unknown, short
 
@@ -53,6 +53,8 @@ class Parameter:
         InputError
             If the value has the wrong type or length, or lies out of bounds.
         """
+        if self._is_checked(value):
+            return value
         if self.kind == "choice":
             refuse_unknown(value, self.options, f"{name}: {short(value)} is unknown")
             return str(value)
@@ -73,6 +75,17 @@ class Parameter:
         if not value and not self.may_be_empty:
             raise InputError(f"{name}: expected at least one number, got none")
         return tuple(self._number(f"{name}[{i}]", item) for i, item in enumerate(value))
+
+    def _is_checked(self, value: object) -> TypeGuard[float | tuple[float, ...]]:
+        """Tell at once of numbers within bounds: a fit makes many blocks of them."""
+        if self.whole:
+            return False
+        if self.kind == "number":
+            return type(value) is float and self.low <= value <= self.high
+        if type(value) is not tuple or not value or self.names:
+            return False
+        low, high = self.low, self.high
+        return not any(type(x) is not float or not low <= x <= high for x in value)
 
     def plain(self, value: Value) -> object:
         """Return a value as a model file holds it."""
