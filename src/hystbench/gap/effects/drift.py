@@ -24,6 +24,7 @@ class Drift(Effect):
     shows = "unexplained"
     place = "sensor"
     free_forms = (PATH, WINDING)
+    like_noise = True
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer one slope for all records, a ramp in each, and a path in each."""

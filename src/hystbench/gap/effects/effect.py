@@ -44,6 +44,9 @@ class Effect(ABC):
     """Of its blocks, the parameters that are numbers of the effect; by default all."""
     free_forms: ClassVar[tuple[str, ...]] = ()
     """Forms that bend to much of what is there, as a path does: no law."""
+    like_noise: ClassVar[bool] = False
+    """Whether it is anything slow: where it has less power than the noise, it is noise
+    that is slow, as of most instruments, and no effect."""
     laws: ClassVar[tuple[str, ...]] = ()
     """Blocks of other laws of the effect, beside the one that has its name."""
     taken_from: ClassVar[str] = ""

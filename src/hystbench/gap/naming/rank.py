@@ -44,6 +44,7 @@ EXACT = 3
 FITTED_WITH_IT = "the shape of a hysteresis whose weights are free is fitted with it"
 AT_AN_END = "fits best at the end of what it can be"
 ALIKE_WITHOUT = "the same curves fit alike without"
+SLOW_NOISE = "has less power than the noise, a part of which is slow"
 
 
 def rank(
@@ -300,6 +301,9 @@ def _judged(
         return replace(declined(f"fits best where {error}"), refused=True)
     if end := at_end(after):
         return declined(f"{AT_AN_END}: {end}")
+    of_noise = variant.beside is not None and effects()[variant.effect].like_noise
+    if of_noise and state.power(0.0) - after.power(0.0) < score.floor:
+        return declined(SLOW_NOISE)
     if does_without_itself(after, after.added[-1], value, score):
         return declined(f"{ALIKE_WITHOUT} {behaviour_of(variant.effect)}")
     hidden = score.directions.shape[1] > 0  # what a wrong shape may do hardly counts
