@@ -26,6 +26,7 @@ from hystbench.blocks.logarithmic_creep import LogarithmicCreep
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.resonance import Resonance
 from hystbench.blocks.sensor_lag import SensorLag
+from hystbench.blocks.starts import STARTS
 from hystbench.blocks.state_space import StateSpace, discretise
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
@@ -392,10 +393,11 @@ def test_states_that_do_not_last_an_interval_are_weighed_with_the_window():
 
 @pytest.mark.parametrize("hold", ["zero-order", "linear", "band-limited"])
 @pytest.mark.parametrize("name", ["resonance", "eddy-diffusion"])
-def test_many_records_at_once_are_as_one_by_one(name, hold):
+@pytest.mark.parametrize("start", STARTS)
+def test_many_records_at_once_are_as_one_by_one(start, name, hold):
     mode = Resonance(frequency_hz=65.0, damping_ratio=0.03, participation=0.4)
     block = {"resonance": mode, "eddy-diffusion": EddyDiffusion(time_constant_s=0.01)}
-    block = replace(block[name], hold=hold)
+    block = replace(block[name], hold=hold, start=start)
     rng = np.random.default_rng(0)
     signals = [rng.standard_normal(n) for n in (300, 1, 50, 120)]
     rates = [DT, 2 * DT, DT, 3 * DT]
