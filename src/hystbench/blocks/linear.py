@@ -88,8 +88,7 @@ class LinearBlock(HeldBlock):
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the response to ``z``."""
         path, before = path_from(z, self.start)
-        if before:
-            path = path - before
+        path = path - before if before else path
         moves = _moved(_loop_of(self, dt, _is_smooth(self.holding, path)), path)
         return self._of_record(moves, before, len(z))
 
@@ -111,14 +110,12 @@ class LinearBlock(HeldBlock):
             pairs = zip(signals, dts, strict=True)
             return [self.simulate(z, z, dt) for z, dt in pairs]
         loops = {dt: cast(Loop, _loop_of(self, dt, False)) for dt in set(dts)}
-        paths = [path_from(z, self.start) for z in signals]
-        moves = _moved_records(
-            [loops[dt] for dt in dts],
-            [path - before if before else path for path, before in paths],
-        )
+        begun = [path_from(z, self.start) for z in signals]
+        paths = [path - before if before else path for path, before in begun]
+        moves = _moved_records([loops[dt] for dt in dts], paths)
         return [
             self._of_record(moved, before, len(z))
-            for moved, (_, before), z in zip(moves, paths, signals, strict=True)
+            for moved, (_, before), z in zip(moves, begun, signals, strict=True)
         ]
 
     def step(self, sampling: Sampling) -> Step:
