@@ -42,6 +42,7 @@ def named(made, middle=0.0):
     records = []
     for k in range(2):
         steps = np.repeat(random.uniform(-1.5, 1.5, COUNT // 20), 20)
+        steps[:20] = 0.0  # at rest, where a play begins
         u = middle + np.convolve(steps, np.ones(10) / 10, "same")
         y = made(u) + NOISE * random.standard_normal(COUNT)
         records.append(Record(f"run-{k}", DT, u, y, POWER, WAY, "measured", "fit"))

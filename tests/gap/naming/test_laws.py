@@ -35,7 +35,12 @@ HIDDEN = {
     "field, algebraic": (
         "saturation",
         (LOOP,),
-        (block("saturation", level=1.0, sharpness=6.0), LOOP),
+        (block("saturation", level=1.0, sharpness=4.0), LOOP),
+    ),
+    "rounded": (
+        "drive-saturation",
+        (LOOP,),
+        (block("saturation", level=0.8, sharpness=8.0), LOOP),
     ),
     "algebraic": (  # Froelich's law
         "saturation",
