@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.flat import flats
+from tests.gap.made import play
 from tests.inspection.made import sine
 
 
@@ -29,11 +30,7 @@ def test_a_digitized_turn_is_not_clipped(hz, step):
 
 
 def test_a_backlash_that_stands_at_its_turn_is_not_clipped():
-    u, y, state = sine(5), [], 0.0
-    for value in u:
-        state = min(max(state, value - 0.2), value + 0.2)
-        y.append(state)
-    assert flats(np.array(y)) == []
+    assert flats(play(sine(5), 0.2)) == []
 
 
 def test_a_held_value_that_jumps_back_is_stuck():
@@ -67,9 +64,6 @@ def test_readings_of_few_digits_are_alike_by_chance_and_not_stuck():
 
 @pytest.mark.parametrize("levels", [32, 64])
 def test_a_digitized_backlash_is_not_clipped(levels):
-    y, state = [], 0.0
-    for value in sine(5):
-        state = min(max(state, value - 0.2), value + 0.2)
-        y.append(state)
+    y = play(sine(5), 0.2)
     step = np.ptp(y) / levels
-    assert flats(np.round(np.array(y) / step) * step) == []
+    assert flats(np.round(y / step) * step) == []

@@ -100,3 +100,17 @@ def play(u, half_width):
     for k, value in enumerate(u):
         now = out[k] = min(max(now, value - half_width), value + half_width)
     return out
+
+
+def bent_first(block, bend, sizes, width, noise, channels, dt=1e-3, count=1500):
+    """Noise slowed by a window of some samples, bent and sent through a block."""
+    random = np.random.default_rng(3)
+    found = []
+    for k, size in enumerate(sizes):
+        wide = random.standard_normal(count + width - 1)
+        slow = np.convolve(wide, np.hanning(width), "valid")
+        u = size * slow / np.std(slow)
+        given = bend(u)
+        y = block.simulate(given, given, dt) + noise * random.standard_normal(count)
+        found.append(Record(f"run-{k}", dt, u, y, *channels, "measured", "fit"))
+    return tuple(found)

@@ -86,7 +86,7 @@ def facts_of(dataset: Dataset, item: Compared) -> Facts:
     """
     record = item.record
     file = dataset.record_files[record.name]
-    given, found = record.period_samples, find_period(record.u)
+    given = record.period_samples
     delay, error, share = delay_of(item)
     jitter, missing, too_far = _clock_and_missing(dataset, record)
     return Facts(
@@ -95,7 +95,7 @@ def facts_of(dataset: Dataset, item: Compared) -> Facts:
         len(record),
         record.dt,
         jitter,
-        given or found,
+        given or find_period(record.u),
         given is not None,
         given is None or repeats(record.u, given),
         summary_of(record.u, record.dt),
@@ -133,9 +133,9 @@ def delay_of(item: Compared) -> tuple[float, float, float]:
         return 0.0, float("inf"), 0.0
     delay = -float(top.sum()) / total
     spread = (top + delay * bottom) / total
-    if np.mean(np.abs(slope)) ** 2 > ONE_RATE * np.mean(slope**2):
-        return delay, float(np.sqrt(np.sum(spread**2))), 0.0
     share = float(top.sum()) ** 2 / total / max(float(residual @ residual), 1e-300)
+    if np.mean(np.abs(slope)) ** 2 > ONE_RATE * np.mean(slope**2):
+        share = 0.0
     return delay, float(np.sqrt(np.sum(spread**2))), share
 
 

@@ -5,24 +5,16 @@ import pytest
 
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.model import Model
-from hystbench.record import Channel, Record
+from hystbench.record import Channel
+from tests.gap.made import bent_first
 from tests.gap.searched import search
 
-DT, COUNT, NOISE = 1e-3, 1500, 0.004
 DRIVE, OUTPUT = Channel("drive", "V"), Channel("output", "V")
 POLE = TransferFunction(numerator=(1.0,), denominator=(4e-3, 1.0), hold="linear")
 
 
 def records(bend):
-    random = np.random.default_rng(3)
-    found = []
-    for k, size in enumerate((0.4, 1.5)):
-        slow = np.convolve(random.standard_normal(COUNT + 40), np.hanning(41), "valid")
-        u = size * slow / np.std(slow)
-        given = bend(u)
-        y = POLE.simulate(given, given, DT) + NOISE * random.standard_normal(COUNT)
-        found.append(Record(f"run-{k}", DT, u, y, DRIVE, OUTPUT, "measured", "fit"))
-    return tuple(found)
+    return bent_first(POLE, bend, (0.4, 1.5), 41, 0.004, (DRIVE, OUTPUT))
 
 
 # Where both are alike nothing passes at rest: at the end of what the block accepts.

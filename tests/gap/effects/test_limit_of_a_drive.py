@@ -5,25 +5,18 @@ import pytest
 
 from hystbench.blocks.prandtl_ishlinskii import PrandtlIshlinskii
 from hystbench.model import Model
-from hystbench.record import Channel, Record
+from hystbench.record import Channel
+from tests.gap.made import bent_first
 from tests.gap.searched import search
 
-DT, COUNT, NOISE = 1e-3, 1500, 0.004
 DRIVE, OUTPUT = Channel("drive", "V"), Channel("output", "um")
 STACK = PrandtlIshlinskii(thresholds=(0.1, 0.2, 0.4), weights=(0.3, 0.2, 0.1))
 
 
 def named(bend):
-    random = np.random.default_rng(3)
-    records = []
-    for k, size in enumerate((0.3, 0.6)):
-        slow = np.convolve(random.standard_normal(COUNT + 60), np.hanning(61), "valid")
-        u = size * slow / np.std(slow)
-        given = bend(u)
-        y = STACK.simulate(given, given, DT) + NOISE * random.standard_normal(COUNT)
-        records.append(Record(f"run-{k}", DT, u, y, DRIVE, OUTPUT, "measured", "fit"))
+    records = bent_first(STACK, bend, (0.3, 0.6), 61, 0.004, (DRIVE, OUTPUT))
     base = Model("stack", DRIVE, OUTPUT, (STACK,))
-    answer = search("stack", tuple(records), base, "linear")
+    answer = search("stack", records, base, "linear")
     return [effect["name"] for effect in answer.content["effects"]]
 
 

@@ -425,6 +425,24 @@ def test_a_weight_that_swings_far_is_told_as_gravity_and_not_as_a_softer_spring(
     assert best.state.chain[1].amplitude == pytest.approx(40.0, rel=0.05)
 
 
+def found_beside_an_arm(slope, sizes, damping):
+    """Search beside an arm whose spring is known; give the best of what was found."""
+    random = np.random.default_rng(3)
+    records = []
+    for size in sizes:
+        u = size * np.repeat(random.uniform(-1, 1, 80), 20)
+        given = {"args": (u,), "rtol": 1e-7, "max_step": DT, "t_eval": TIME}
+        y = solve_ivp(slope, (0.0, TIME[-1]), [0.0, 0.0], **given).y[0]
+        y = y + 1e-3 * random.standard_normal(1600)
+        records.append(record(f"arm-{size:g}", u, y, ("N*m", "rad")))
+    arm = Mechanism(mass=1.0, damping=damping, stiffness=30.0, hold="linear")
+    given = tuple(records)
+    start = ModelState((arm,), given, ScoredSamples.of(given)).settled()
+    score = Score(start.sample, np.zeros((len(start.sample), 0)), 1e-6)
+    host = Fitted(start, score.of(start.residual))
+    return min(search(host, score, turns="rad")[1:], key=lambda item: item.score)
+
+
 def test_a_weight_that_is_more_than_a_known_spring_is_found():
     """An arm that was measured lying, and then put up: its mode is twice as fast."""
 
@@ -433,20 +451,7 @@ def test_a_weight_that_is_more_than_a_known_spring_is_found():
         moment = np.interp(t, TIME, u) - 90.0 * np.sin(angle)
         return [rate, moment - 0.3 * rate - 30.0 * angle]
 
-    random = np.random.default_rng(3)
-    records = []
-    for size in (8.0, 25.0):
-        u = size * np.repeat(random.uniform(-1, 1, 80), 20)
-        given = {"args": (u,), "rtol": 1e-7, "max_step": DT, "t_eval": TIME}
-        y = solve_ivp(slope, (0.0, TIME[-1]), [0.0, 0.0], **given).y[0]
-        y = y + 1e-3 * random.standard_normal(1600)
-        records.append(record(f"arm-{size:g}", u, y, ("N*m", "rad")))
-    arm = Mechanism(mass=1.0, damping=0.3, stiffness=30.0, hold="linear")
-    given = tuple(records)
-    start = ModelState((arm,), given, ScoredSamples.of(given)).settled()
-    score = Score(start.sample, np.zeros((len(start.sample), 0)), 1e-6)
-    host = Fitted(start, score.of(start.residual))
-    best = min(search(host, score, turns="rad")[1:], key=lambda item: item.score)
+    best = found_beside_an_arm(slope, (8.0, 25.0), damping=0.3)
     assert best.effects == ("gravity",)
     assert best.state.chain[1].amplitude == pytest.approx(90.0, rel=0.02)
 
@@ -459,20 +464,7 @@ def test_the_weight_of_a_level_arm_is_found_where_its_spring_was_slack():
         moment = np.interp(t, TIME, u) - 9.0 * np.cos(angle)
         return [rate, moment - 0.8 * rate - 30.0 * angle]
 
-    random = np.random.default_rng(3)
-    records = []
-    for size in (4.0, 12.0):
-        u = size * np.repeat(random.uniform(-1, 1, 80), 20)
-        given = {"args": (u,), "rtol": 1e-7, "max_step": DT, "t_eval": TIME}
-        y = solve_ivp(slope, (0.0, TIME[-1]), [0.0, 0.0], **given).y[0]
-        y = y + 1e-3 * random.standard_normal(1600)
-        records.append(record(f"arm-{size:g}", u, y, ("N*m", "rad")))
-    arm = Mechanism(mass=1.0, damping=0.8, stiffness=30.0, hold="linear")
-    given = tuple(records)
-    start = ModelState((arm,), given, ScoredSamples.of(given)).settled()
-    score = Score(start.sample, np.zeros((len(start.sample), 0)), 1e-6)
-    host = Fitted(start, score.of(start.residual))
-    best = min(search(host, score, turns="rad")[1:], key=lambda item: item.score)
+    best = found_beside_an_arm(slope, (4.0, 12.0), damping=0.8)
     assert best.effects == ("gravity",)
     weight = best.state.chain[1]
     # 9 cos q = 9 sin(q + pi / 2)
