@@ -4,6 +4,7 @@ import pytest
 from hystbench.gap.holdout.show import black_box_mapping
 from hystbench.gap.holdout.shrink import shrink
 from hystbench.gap.records.black_box import BlackBox
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.folds import make_folds
 from hystbench.metrics import rms
 from tests.gap.made import compared, sine
@@ -22,8 +23,9 @@ def test_black_box_beside_the_named_effects():
     ]
     records = [item.record for item in held]
     before = [item.simulated for item in held]
-    named = shrink(records, before, [item.y for item in records], 0.001, "declared")
-    found = black_box_mapping(box, records, before, named)
+    floor = Floor(0.001, "declared")
+    named = shrink(records, before, [item.y for item in records], floor).records
+    found = black_box_mapping(box, records, before, named, floor)
     inside, beyond = found["records"]
     assert (inside["name"], inside["outside"]) == ("inside", [])
     assert beyond["outside"] == ["amplitude", "rate"]
@@ -38,11 +40,11 @@ def test_black_box_beside_the_named_effects():
     assert found["after"] == pytest.approx(rms(np.concatenate(left)))
 
 
-def test_mappings_are_plain():
+def test_of_one_record_all_is_what_the_record_is():
     item = compared(sine(2), sine(3))
     after = item.simulated + 0.5 * item.residual
-    whole = shrink([item.record], [item.simulated], [after], 0.1, "upper-bound")
-    assert whole.mapping()["explained"] == whole.explained
-    (row,) = [item.mapping() for item in whole.records]
+    floor = Floor(0.1, "upper-bound")
+    whole, (row,), _ = shrink([item.record], [item.simulated], [after], floor)
+    assert whole["explained"] == row["explained"] == pytest.approx([0.75, 0.75 / 0.98])
     assert row["before"] == pytest.approx(np.sqrt(0.5))
     assert row["after"] == pytest.approx(np.sqrt(0.5) / 2)

@@ -236,4 +236,6 @@ def test_the_bound_is_some_times_as_far_as_the_base_goes():
     assert bounded("m", [one], [inside], usual) == ([inside], [])
     kept, found = bounded("m", [one], [inside * (1 + 1e-9)], usual)
     assert kept == [None]
-    assert found == [("m", "rests", pytest.approx(one.dt), None)]
+    (away,) = found
+    assert (away["record"], away["from_s"]) == ("rests", pytest.approx(one.dt))
+    assert away["refused"] is None

@@ -10,6 +10,7 @@ from hystbench.gap.holdout.shrink import (
     share_interval,
     shrink,
 )
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.nuisance import (
     degree_that_carries_on,
     left_over,
@@ -62,22 +63,21 @@ def test_no_spectrum_is_computed_before_one_is_drawn(monkeypatch):
 
     monkeypatch.setattr("scipy.signal.welch", welch)
     made = record(sine(2), noise(1, 2000))
-    shrink([made], [np.zeros(2000)], [0.5 * made.y], 0.1, "declared")
+    shrink([made], [np.zeros(2000)], [0.5 * made.y], Floor(0.1, "declared"))
 
 
 def test_before_and_after_over_records_of_other_lengths():
     records = [record(sine(2, count=n), noise(n, n), name=f"{n}") for n in (500, 1500)]
     simulated = [0.25 * item.y for item in records]
-    whole = shrink(records, [np.zeros(500), np.zeros(1500)], simulated, 0.0, "declared")
+    zeros, floor = [np.zeros(500), np.zeros(1500)], Floor(0.0, "declared")
+    whole, rows, _ = shrink(records, zeros, simulated, floor)
     joined = np.concatenate([item.y for item in records])
-    assert whole.before == pytest.approx(np.sqrt(np.mean(joined**2)))
-    assert whole.after == pytest.approx(0.75 * whole.before)
-    assert whole.explained == pytest.approx(1 - 0.75**2)
-    assert [item.explained for item in whole.records] == pytest.approx(
-        [1 - 0.75**2] * 2
-    )
+    assert whole["before"] == pytest.approx(np.sqrt(np.mean(joined**2)))
+    assert whole["after"] == pytest.approx(0.75 * whole["before"])
+    assert whole["explained"] == pytest.approx(1 - 0.75**2)
+    assert [row["explained"] for row in rows] == pytest.approx([1 - 0.75**2] * 2)
     # the same share in every block: an interval without width
-    assert whole.interval == pytest.approx((1 - 0.75**2, 1 - 0.75**2))
+    assert whole["interval"] == pytest.approx((1 - 0.75**2, 1 - 0.75**2))
 
 
 def test_interval_covers_the_truth_as_often_as_it_says():
@@ -131,11 +131,12 @@ def test_rms_and_share_come_with_the_intervals_of_one_drawing():
         record(sine(2, count=n), noise(n, n), name=f"{n}") for n in (500, 1500, 900)
     ]
     zeros = [np.zeros(len(item)) for item in records]
-    found = shrink(records, zeros, [0.75 * x.y for x in records], 0.0, "declared")
-    assert found.before_interval[0] < found.before < found.before_interval[1]
-    quarter = [0.25 * end for end in found.before_interval]
-    assert found.after_interval == pytest.approx(quarter)
-    assert found.interval == pytest.approx((1 - 0.25**2, 1 - 0.25**2))
+    after = [0.75 * item.y for item in records]
+    found = shrink(records, zeros, after, Floor(0.0, "declared")).gap
+    assert found["before_interval"][0] < found["before"] < found["before_interval"][1]
+    quarter = [0.25 * end for end in found["before_interval"]]
+    assert found["after_interval"] == pytest.approx(quarter)
+    assert found["interval"] == pytest.approx((1 - 0.25**2, 1 - 0.25**2))
 
 
 def test_interval_is_wider_where_neighbours_go_together():
@@ -184,10 +185,11 @@ def test_nuisance_treats_base_and_augmented_alike():
     time = np.arange(4000) * 0.001
     item = record(sine(2, count=4000), 5 + 0 * time + sine(7, count=4000))
     zero = np.zeros(4000)
-    same = shrink([item], [zero], [zero], 0.1, "repeats", path_and_mains(0))
-    assert same.explained == 0
-    assert same.before == same.after < 1
-    assert same.interval == [0, 0]
+    floor = Floor(0.1, "repeats")
+    same = shrink([item], [zero], [zero], floor, path_and_mains(0)).gap
+    assert same["explained"] == 0
+    assert same["before"] == same["after"] < 1
+    assert same["interval"] == [0, 0]
 
 
 def test_rms_goes_down_with_what_is_added():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.holdout.shrink import Shrink, shrink
+from hystbench.gap.holdout.shrink import shrink
 from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.records.black_box import BlackBox
 from hystbench.gap.records.floor import Floor
@@ -62,32 +62,27 @@ def score_hold_out(fitted: FitResult, records: tuple[Record, ...]) -> Outcome:
     usual = reach(plain, floor.rms)
     before = [y for y in as_recorded(own, records, plain, floor) if y is not None]
 
-    def run(state: ModelState) -> tuple[list[FloatArray | None], list[RunsAway]]:
+    def run(state: ModelState) -> tuple[list[FloatArray | None], list[dict[str, Any]]]:
         outputs, lost = _run(base, state, records, usual)
         return as_recorded(own, records, outputs, floor), lost
 
     after, lost = run(state)
-    found = shrink(records, before, after, floor.rms, floor.method, nuisance)
+    found = shrink(records, before, after, floor, nuisance)
     content = {
-        "gap": found.mapping(),
-        "records": [item.mapping() for item in found.records],
+        "gap": found.gap,
+        "records": found.records,
         "ladder": [
             {"name": rung.name, "rms": left_rms(records, run(rung.state)[0], nuisance)}
             for rung in fitted.rungs
         ],
-        "runs_away": [item.mapping() for item in lost],
+        "runs_away": lost,
         "black_box": black_box_mapping(
-            fitted.black_box, records, before, found, nuisance
+            fitted.black_box, records, before, found.records, floor, nuisance
         ),
     }
     shown = [
-        (
-            record.y - item.residual_before,
-            np.full(len(record), np.nan)
-            if item.residual_after is None
-            else record.y - item.residual_after,
-        )
-        for record, item in zip(records, found.records, strict=True)
+        (record.y - old, record.y - (np.nan if new is None else new))
+        for record, (old, new) in zip(records, found.residuals, strict=True)
     ]
     model = augmented(base, state).with_hold(state.hold)
     return Outcome(model, content, shown)
@@ -128,7 +123,7 @@ def as_recorded(
 
 def _run(
     base: Model, state: ModelState, records: tuple[Record, ...], usual: float
-) -> tuple[list[FloatArray | None], list[RunsAway]]:
+) -> tuple[list[FloatArray | None], list[dict[str, Any]]]:
     outputs: list[FloatArray] = []
     refused: dict[str, str] = {}
     for record in records:
@@ -147,32 +142,6 @@ RUNS_AWAY_RATIO = 1e6
 """Times as far as the base ever goes: an output beyond it runs away, finite or not."""
 
 
-class RunsAway(NamedTuple):
-    """A record on which a model has no bounded output, and from when on."""
-
-    model: str
-    record: str
-    from_s: float
-    refused: str | None = None
-    """What the simulator said that refused the record, if one did."""
-
-    def mapping(self) -> dict[str, Any]:
-        """Give what gap.json holds under ``runs_away``."""
-        what = (
-            f"diverges on {self.record} from {self.from_s:g} s on: there its output "
-            "is not bounded"
-        )
-        if self.refused is not None:
-            what = f"cannot be run on {self.record}: {self.refused}"
-        told = f"{self.model} {what}, and nothing of the gap counts as closed."
-        return {
-            "record": self.record,
-            "from_s": self.from_s,
-            "refused": self.refused,
-            "sentence": told,
-        }
-
-
 def reach(outputs: Sequence[FloatArray], floor_rms: float) -> float:
     """Give how far a base's outputs go on all records, and the noise."""
     return max(float(np.abs(output).max()) for output in outputs) + floor_rms
@@ -184,7 +153,7 @@ def bounded(
     outputs: Sequence[FloatArray],
     usual: float,
     refused: Mapping[str, str] | None = None,
-) -> tuple[list[FloatArray | None], list[RunsAway]]:
+) -> tuple[list[FloatArray | None], list[dict[str, Any]]]:
     """Tell on which records a model runs away.
 
     Parameters
@@ -202,7 +171,8 @@ def bounded(
     -------
     outputs : list of ndarray or None
         None where the model runs away.
-    found : list of RunsAway
+    found : list of dict
+        What gap.json holds under ``runs_away``.
     """
     kept: list[FloatArray | None] = []
     found = []
@@ -213,7 +183,15 @@ def bounded(
         if len(beyond):
             why = (refused or {}).get(record.name)
             start = float(beyond[0] * record.dt)
-            found.append(RunsAway(model, record.name, start, why))
+            what = f"cannot be run on {record.name}: {why}"
+            if why is None:
+                what = (
+                    f"diverges on {record.name} from {start:g} s on: there its output "
+                    "is not bounded"
+                )
+            told = f"{model} {what}, and nothing of the gap counts as closed."
+            about = {"record": record.name, "from_s": start, "refused": why}
+            found.append(about | {"sentence": told})
     return kept, found
 
 
@@ -221,7 +199,8 @@ def black_box_mapping(
     box: BlackBox,
     records: Sequence[Record],
     simulated: Sequence[FloatArray],
-    named: Shrink,
+    named: Sequence[Mapping[str, Any]],
+    floor: Floor,
     nuisance: Nuisance | None = None,
 ) -> dict[str, Any]:
     """Give what gap.json holds under ``black_box``.
@@ -233,8 +212,9 @@ def black_box_mapping(
         The hold-out records.
     simulated : sequence of ndarray, shape (n,) each
         Output of the base, which the black box corrects.
-    named : Shrink
-        What the named effects reach on the same records.
+    named : sequence of mapping
+        What the named effects reach on the same records: ``records`` of gap.json.
+    floor : Floor
     nuisance : callable, optional
         The same as for ``named``.
 
@@ -252,16 +232,11 @@ def black_box_mapping(
             output + box.predict(record, output)
             for record, output in zip(records, simulated, strict=True)
         ]
-    usual = reach(simulated, named.noise_floor)
-    kept, _ = bounded("the black box", records, corrected, usual)
-    reached = shrink(
-        records, simulated, kept, named.noise_floor, named.floor_method, nuisance
-    )
-    rows = [item.mapping() for item in reached.records]
-    for row, record, other in zip(rows, records, named.records, strict=True):
-        row["named"] = other.after
+    kept, _ = bounded("the black box", records, corrected, reach(simulated, floor.rms))
+    about, rows, _ = shrink(records, simulated, kept, floor, nuisance)
+    for row, record, other in zip(rows, records, named, strict=True):
+        row["named"] = other["after"]
         row["outside"] = list(box.outside(record))
-    about = reached.mapping()
     keys = ("after", "explained", "after_interval", "interval")
     return {
         "explained_on_folds": box.explained_on_folds,

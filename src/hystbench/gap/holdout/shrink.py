@@ -8,14 +8,14 @@ there is no residual after, and nothing of the gap counts as gone.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.nuisance import Nuisance, left_over
 from hystbench.metrics import rms
-from hystbench.record import FloatArray, Mask, Record
+from hystbench.record import FloatArray, Record
 
 #: Draws of the bootstrap, and the part of them that its interval holds.
 BOOTSTRAP_DRAWS = 400
@@ -29,62 +29,23 @@ BOOTSTRAP_BLOCKS = 12
 Explained = float | list[float] | None
 
 
-@dataclass(frozen=True, repr=False)
-class RecordShrink:
-    """A hold-out record before and after, over the samples that are scored."""
+class Shrink(NamedTuple):
+    """The gap on hold-out records, before and after."""
 
-    name: str
-    before: float
-    after: float | None
-    """RMS residual in output units; no ``after`` where the model runs away."""
-    explained: Explained
-    """Zero where the model runs away: nothing of the gap counts as gone."""
-    scored: Mask
-    """Shape (n,)."""
-    residual_before: FloatArray
-    residual_after: FloatArray | None
-    """Shape (n,). What is new in the record is taken off."""
-
-    def mapping(self) -> dict[str, Any]:
-        """Give what gap.json holds in a row of ``records``."""
-        keys = ("name", "before", "after", "explained")
-        return {key: getattr(self, key) for key in keys}
-
-
-@dataclass(frozen=True, repr=False)
-class Shrink:
-    """The gap over all hold-out records together."""
-
-    before: float
-    after: float | None
-    noise_floor: float
-    """RMS in output units; no ``after`` where the model runs away on a record."""
-    floor_method: str
-    explained: Explained
-    """Share of the power above the floor that is gone; zero where the model runs away
-    on a record."""
-    before_interval: list[float]
-    after_interval: list[float] | None
-    """95 % of the bootstrap's draws."""
-    interval: list[float] | None
-    """Of ``explained``, of the same draws; where the floor is an upper bound, of the
-    whole range."""
-    records: tuple[RecordShrink, ...]
-
-    def mapping(self) -> dict[str, Any]:
-        """Give what gap.json holds under ``gap``; an interval that is none is not."""
-        keys = ("before", "after", "noise_floor", "floor_method", "explained")
-        ends = ("before_interval", "after_interval", "interval")
-        found = {key: getattr(self, key) for key in (*keys, *ends)}
-        return {k: v for k, v in found.items() if k in keys or v is not None}
+    gap: dict[str, Any]
+    """What gap.json holds under ``gap``, of all records together."""
+    records: list[dict[str, Any]]
+    """What it holds under ``records``: zero is explained where the model runs away."""
+    residuals: list[tuple[FloatArray, FloatArray | None]]
+    """Shape (n,) each, what is new in the record taken off; no second one where the
+    model runs away."""
 
 
 def shrink(
     records: Sequence[Record],
     before: Sequence[FloatArray],
     after: Sequence[FloatArray | None],
-    noise_floor: float,
-    floor_method: str,
+    floor: Floor,
     nuisance: Nuisance | None = None,
 ) -> Shrink:
     """Compare a base and an augmented model on hold-out records.
@@ -96,49 +57,46 @@ def shrink(
         Simulated outputs, in free run over the whole record.
     after : sequence of ndarray or None
         The same; None where the augmented model runs away.
-    noise_floor : float
-        RMS in output units.
-    floor_method : {"repeats", "declared", "upper-bound"}
+    floor : Floor
     nuisance : callable, optional
         Gives regressors of what is new in a record. With them the first 30 % of each
         record estimate and the rest is scored, for both models alike; without them
         every sample is scored.
     """
-    upper = floor_method == "upper-bound"
-    shrunk = []
+    known = floor.rms, floor.method == "upper-bound"
+    rows: list[dict[str, Any]] = []
+    residuals: list[tuple[FloatArray, FloatArray | None]] = []
+    olds, news = [], []
     for record, old_output, new_output in zip(records, before, after, strict=True):
         old, scored = left_over(record, old_output, nuisance)
-        size, new, left = rms(old[scored]), None, None
-        share: Explained = 0.0
+        olds.append(old[scored])
+        row = {"name": record.name, "before": rms(olds[-1])}
+        row |= {"after": None, "explained": 0.0}
+        new = None
         if new_output is not None:
             new, _ = left_over(record, new_output, nuisance)
-            left = rms(new[scored])
-            share = share_explained(size, left, noise_floor, upper)
-        shrunk.append(RecordShrink(record.name, size, left, share, scored, old, new))
-    olds = [item.residual_before[item.scored] for item in shrunk]
-    news = [
-        item.residual_after[item.scored]
-        for item in shrunk
-        if item.residual_after is not None
-    ]
-    size = rms(*olds)
-    if len(news) < len(olds):
-        (drawn,) = resampled_rms([(old,) for old in olds])
-        whole = (size, None, noise_floor, floor_method, 0.0)
-        return Shrink(*whole, rms_interval(drawn), None, None, tuple(shrunk))
-    drawn, left_drawn = resampled_rms(list(zip(olds, news, strict=True)))
-    left = rms(*news)
-    return Shrink(
-        size,
-        left,
-        noise_floor,
-        floor_method,
-        share_explained(size, left, noise_floor, upper),
-        rms_interval(drawn),
-        rms_interval(left_drawn),
-        share_interval(drawn, left_drawn, noise_floor, upper),
-        tuple(shrunk),
-    )
+            news.append(new[scored])
+            row["after"] = rms(news[-1])
+            row["explained"] = share_explained(row["before"], row["after"], *known)
+        rows.append(row)
+        residuals.append((old, new))
+    bounded = len(news) == len(olds)
+    drawn = resampled_rms(list(zip(olds, news, strict=True) if bounded else zip(olds)))
+    size, left = rms(*olds), rms(*news) if bounded else None
+    gap = {
+        "before": size,
+        "after": left,
+        "noise_floor": floor.rms,
+        "floor_method": floor.method,
+        "explained": 0.0 if left is None else share_explained(size, left, *known),
+        "before_interval": rms_interval(drawn[0]),
+    }
+    if bounded:
+        gap["after_interval"] = rms_interval(drawn[1])
+        # Of the same draws; where the floor is an upper bound, of the whole range.
+        interval = share_interval(*drawn, *known)
+        gap |= {} if interval is None else {"interval": interval}
+    return Shrink(gap, rows, residuals)
 
 
 def share_explained(
