@@ -306,7 +306,7 @@ def test_a_base_that_is_not_finite_on_a_record(rig, name):
     )
 
 
-PAGE = "hystbench.gap.report.write_report"
+PAGE = "hystbench.gap.report.page.write_report"
 
 
 @pytest.mark.parametrize("earlier", [False, True])

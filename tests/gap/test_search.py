@@ -138,7 +138,7 @@ def too_narrow(alike, names, monkeypatch):
     """No excitation keeps within the limits."""
 
     def refuse(*given):
-        return next_experiment(*given, excitations=())
+        return next_experiment(*given[:-1], ())
 
     with monkeypatch.context() as patched:
         patched.setattr(tell_apart, "next_experiment", refuse)

@@ -41,8 +41,8 @@ from hystbench.gap.judging.verdict import (
     what_mends,
 )
 from hystbench.gap.locate import curves, locate
-from hystbench.gap.locate.level import beside_level
-from hystbench.gap.locate.view import LEAST_SHARE
+from hystbench.gap.locate.forms import LEAST_SHARE
+from hystbench.gap.locate.level_classes import beside_level
 from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.ladder import contributions, rungs
 from hystbench.gap.records.black_box import BlackBox, black_box
@@ -57,7 +57,6 @@ class Decision(FitResult):
 
     model: Model
     """The base with the effects that were added."""
-    left: Left
     content: Mapping[str, Any]
     """What gap.json holds, but for what the hold-out records show."""
     curves: Mapping[str, Any]
@@ -156,7 +155,6 @@ def judge_and_tell(
         ladder,
         own,
         model=model,
-        left=left,
         content=content,
         curves=curves(where),
         experiment=experiment,

@@ -93,7 +93,7 @@ class Closed:
             write_json(fresh / "curves.json", self.decision.curves)
             write_shown(fresh, self.evidence.hold_out, self.outcome)
             if report:
-                from hystbench.gap.report import write_report  # late: it draws
+                from hystbench.gap.report.page import write_report  # late: it draws
 
                 write_report(fresh)
 

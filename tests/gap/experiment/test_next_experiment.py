@@ -21,6 +21,7 @@ from hystbench.schema import check_against_schema
 from tests.gap.made import CURRENT, DISPLACEMENT, record, sine
 
 LIMITS = Limits(-1.0, 1.0, 800.0, 100.0, 0.001, 4.0)
+ITEMS = candidates(LIMITS, "A")
 
 
 def model(name, *blocks):
@@ -55,7 +56,7 @@ def test_picks_the_sine_where_two_transfer_functions_differ_most():
         if item.kind == "sine" and item.parameters["amplitude"][0] > 0.99
     ]
     floor = 0.01
-    found = next_experiment(one_set(*rivals), [record(sine(1))], floor, LIMITS, sines)
+    found = next_experiment(one_set(*rivals), [record(sine(1))], floor, sines)
     # In steady state a gain takes away what is in phase with the mean of the two.
     frequency = np.array([item.parameters["frequency_hz"][0] for item in sines])
     wn, s = 2 * np.pi * 35.0, 2j * np.pi * frequency
@@ -77,7 +78,7 @@ def test_equivalent_models_are_said_to_be_so():
         model("lag-first", ("drive-lag", {"time_constant_s": 0.002}), GAIN),
         model("lag-last", GAIN, ("drive-lag", {"time_constant_s": 0.002})),
     ]
-    found = next_experiment(one_set(*rivals), [record(sine(1))], 0.001, LIMITS)
+    found = next_experiment(one_set(*rivals), [record(sine(1))], 0.001, ITEMS)
     assert size_of(found) < 1e-6
     assert "No feasible excitation tells lag-first from lag-last." in found.sentence
 
@@ -88,7 +89,7 @@ def test_rate_and_amplitude_effects_need_other_excitations():
         one_set(model("plain", GAIN), model("creep", GAIN, creep)),
         [record(sine(50, count=4000))],
         0.01,
-        LIMITS,
+        ITEMS,
     )
     fast = next_experiment(
         one_set(
@@ -97,7 +98,7 @@ def test_rate_and_amplitude_effects_need_other_excitations():
         ),
         [record(sine(1, count=4000))],
         0.01,
-        LIMITS,
+        ITEMS,
     )
 
     def middle_hz(item):
@@ -112,7 +113,7 @@ def test_rate_and_amplitude_effects_need_other_excitations():
 def test_mapping_holds_what_the_sentence_says():
     rivals = [model("plain", GAIN), model("mode", GAIN, MODE)]
     sets = one_set(*rivals)
-    found = next_experiment(sets, [record(sine(1, count=4000))], 0.01, LIMITS)
+    found = next_experiment(sets, [record(sine(1, count=4000))], 0.01, ITEMS)
     content = found.mapping()
     check_against_schema(content, EXPERIMENT, "next_experiment")
     assert f"{content['separation']:.2g}" in content["sentence"]
@@ -153,7 +154,7 @@ def test_what_is_slow_lasts_as_long_as_it_may():
 
 
 def test_every_kind_is_offered():
-    kinds = {item.kind for item in candidates(LIMITS, "A")}
+    kinds = {item.kind for item in ITEMS}
     assert kinds == {
         "sine",
         "biased-minor-loops",
@@ -176,7 +177,7 @@ def test_limits_come_from_the_records():
 
 
 def test_the_signal_file_is_the_excitation(tmp_path):
-    item = candidates(LIMITS, "A")[3]
+    item = ITEMS[3]
     item.write(CURRENT, tmp_path / "next.csv")
     header = (tmp_path / "next.csv").read_text().splitlines()[0]
     table = np.loadtxt(tmp_path / "next.csv", delimiter=",", skiprows=1)
@@ -211,13 +212,13 @@ def test_one_sine_tells_no_lag_from_a_delay_that_may_be_refitted():
     }
     records = [record(sine(1, count=4000))]
     of = {kind: [] for kind in ("sine", "chirp")}
-    for item in candidates(LIMITS, "A"):
+    for item in ITEMS:
         if item.kind in of:
             of[item.kind].append(item)
     size = {}
     for kind, items in of.items():
         for fixed, sets in ((True, one_set(*rivals)), (False, refitted)):
-            found = next_experiment(sets, records, 1e-3, LIMITS, items)
+            found = next_experiment(sets, records, 1e-3, items)
             size[kind, fixed] = size_of(found)
     # a sine has one phase, and a time constant takes it; a band has many
     assert size["sine", False] < 0.1 * size["sine", True]
@@ -237,8 +238,8 @@ BOTH = {
 @pytest.fixture(scope="module")
 def both():
     records = [record(sine(1, count=4000))]
-    items = [x for x in candidates(LIMITS, "A") if x.parameters.get("amplitude")]
-    return records, items[::3], next_experiment(BOTH, records, 0.01, LIMITS, items[::3])
+    items = [x for x in ITEMS if x.parameters.get("amplitude")]
+    return records, items[::3], next_experiment(BOTH, records, 0.01, items[::3])
 
 
 def test_one_excitation_is_best_over_the_pairs_of_all_sets(both):
@@ -273,7 +274,7 @@ def test_one_excitation_is_best_over_the_pairs_of_all_sets(both):
 def test_a_set_does_not_change_what_is_said_of_another(both):
     records, _, found = both
     for of, members in BOTH.items():
-        own = next_experiment({of: members}, records, 0.01, LIMITS, [found.excitation])
+        own = next_experiment({of: members}, records, 0.01, [found.excitation])
         for pair in own.pairs:
             assert found.pairs[pair] == own.pairs[pair]
             assert found.existing[pair] == own.existing[pair]
@@ -303,11 +304,10 @@ def test_a_pair_that_is_told_counts_more_than_many_that_are_not():
         for name, by in apart.items()
     }
     items = [
-        dataclasses.replace(candidates(LIMITS, "A")[0], u=np.full(1000, level))
-        for level in (1.0, 2.0)
+        dataclasses.replace(ITEMS[0], u=np.full(1000, level)) for level in (1.0, 2.0)
     ]
     made = record(np.zeros(1000))
-    found = next_experiment(sets, [made], 1.0, LIMITS, items)
+    found = next_experiment(sets, [made], 1.0, items)
     assert found.excitation is items[1]
     assert max(found.pairs.values()) == pytest.approx(9.0, rel=0.02)
 
@@ -321,14 +321,14 @@ def test_a_rival_that_runs_away_rules_an_excitation_out_and_no_other(refuses):
             return [u**2 if np.abs(u).max() < 0.5 else np.full_like(u, np.nan)]
 
     sets = one_set(("plain", GAIN_MODEL), ("bounded", Bounded()))
-    items = candidates(LIMITS, "A")
-    found = next_experiment(sets, [record(sine(1))], 0.01, LIMITS, items)
+    items = ITEMS
+    found = next_experiment(sets, [record(sine(1))], 0.01, items)
     assert np.abs(found.excitation.u).max() < 0.5
     # The record goes beyond: it tells nothing of the pair.
     assert size_of(found, existing=True) == 0.0
     large = [item for item in items if np.abs(item.u).max() >= 0.5]
     with pytest.raises(InputError, match=r"^next experiment: none of \d+ excitations"):
-        next_experiment(sets, [record(sine(1))], 0.01, LIMITS, large)
+        next_experiment(sets, [record(sine(1))], 0.01, large)
 
 
 _, GAIN_MODEL = model("plain", GAIN)
@@ -349,7 +349,7 @@ def test_the_sentence_says_what_the_numbers_say(rows, left_out):
     most = {pair: max(row[1], row[3]) for pair, row in zip(pairs, rows, strict=True)}
     if len(pairs) == 1:
         most = here  # what is best for all pairs is best for the one
-    item = candidates(LIMITS, "A")[0]
+    item = ITEMS[0]
     away = (("X", "drift"),) if left_out else ()
     said = Experiment(item, here, now, most, away).sentence
     assert item.words in said
@@ -382,7 +382,7 @@ def test_the_sentence_says_what_the_numbers_say(rows, left_out):
 def test_a_large_set_is_told_in_a_sentence_that_ends():
     pairs = [RivalPair("a", names) for names in combinations("abcdefg", 2)]
     none = dict.fromkeys(pairs, 0.5)
-    item = candidates(LIMITS, "A")[0]
+    item = ITEMS[0]
     said = Experiment(item, none, none, none).sentence
     assert said.endswith(
         "No feasible excitation tells a from b, a from c, a from d and 18 more."

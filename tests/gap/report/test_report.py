@@ -12,9 +12,8 @@ from matplotlib.transforms import Bbox
 from hystbench.errors import InputError
 from hystbench.figures.style import PAGE, in_style
 from hystbench.gap.locate.picture import Axis, Bars, Cells, Panel, ViewPicture, series
-from hystbench.gap.report import pictures, write_report
-from hystbench.gap.report.page import headline
-from hystbench.gap.report.read import Content
+from hystbench.gap.report import pictures
+from hystbench.gap.report.page import headline, write_report
 from hystbench.gap.report.words import explained, number, sentence, with_error
 from hystbench.gap.schema import LEFT_OUT, SCHEMA
 from hystbench.report.markup import one_micro
@@ -278,12 +277,11 @@ chain:
 """
 
 
-def write_folder(folder, gap=GAP, with_curves=True, with_tables=True, model=MODEL):
+def write_folder(folder, gap=GAP, with_curves=True, with_tables=True):
     (folder / "gap.json").write_text(json.dumps(gap))
-    if model:
-        (folder / "model.yaml").write_text(MODEL)
-    if with_curves:
-        (folder / "curves.json").write_text(json.dumps(curves()))
+    (folder / "model.yaml").write_text(MODEL)
+    drawn = curves() if with_curves else {"pictures": [], "not_drawn": []}
+    (folder / "curves.json").write_text(json.dumps(drawn))
     if with_tables:
         (folder / "holdout").mkdir()
         random = np.random.default_rng(0)
@@ -390,9 +388,6 @@ def test_the_model_is_drawn_as_blocks_where_its_effects_are_told(tmp_path):
         r'alt="Block diagram: (.*?)"', text[text.index("<h2>Effects") :]
     )
     assert told == "current, then gain, then resonance, then creep, then displacement"
-    (tmp_path / "bare").mkdir()
-    alone = read(write_report(write_folder(tmp_path / "bare", model="")))
-    assert "Not drawn: the folder holds no model.yaml." in alone.said
 
 
 def image(text):
@@ -432,8 +427,8 @@ def test_the_headline_has_before_and_after_as_a_picture(tmp_path):
 )
 def test_what_is_not_changed_is_drawn_once(gap, expected):
     same = {**GAP["gap"], "before": 0.5, "after": 0.5}
-    content = Content({**LEFT_OUT, **GAP, "effects": [], **gap, "gap": same}, (), None)
-    (sizes,) = headline(content.gap, content)
+    told = {**LEFT_OUT, **GAP, "effects": [], **gap, "gap": same}
+    (sizes,) = headline(told, ())
     assert sizes.words.endswith(expected)
 
 
@@ -561,7 +556,6 @@ def test_what_is_not_there_is_said(tmp_path):
     said = read(write_report(folder)).said
     assert f"There is no gap: {GAP['reason']}" in said
     assert "None is needed to tell likely effects apart" in said
-    assert "Not drawn: curves.json" in said
     assert "the folder holds no hold-out tables" in said
     assert "gap.json holds no ladder" in said
     assert "gap.json holds no black box" in said
@@ -570,10 +564,10 @@ def test_what_is_not_there_is_said(tmp_path):
 @pytest.mark.usefixtures("unrendered")
 @pytest.mark.parametrize("name", [one.name for one in PICTURES])
 def test_each_kind_of_picture_is_drawn(tmp_path, name):
-    folder = write_folder(tmp_path, small(), with_tables=False, model="")
+    folder = write_folder(tmp_path, small(), with_tables=False)
     (folder / "curves.json").write_text(json.dumps(curves(name)))
     page = read(write_report(folder))
-    assert len(page.sources) == 2  # with the sizes of the gap in the headline
+    assert len(page.sources) == 3  # with the sizes of the gap and the block diagram
 
 
 @pytest.mark.usefixtures("unrendered")
@@ -685,6 +679,12 @@ def test_missing_or_broken_files_are_one_line(tmp_path):
     with pytest.raises(InputError, match=r"^[^(]*gap\.json: no such file"):
         write_report(tmp_path)
     write_folder(tmp_path)
+    for name in ("model.yaml", "curves.json"):
+        there = (tmp_path / name).read_text()
+        (tmp_path / name).unlink()
+        with pytest.raises(InputError, match=rf"{name}: no such file"):
+            write_report(tmp_path)
+        (tmp_path / name).write_text(there)
     (tmp_path / "holdout" / "held-1.csv").write_text("time_s,measured\n0,1\n")
     with pytest.raises(InputError, match=r"held-1\.csv: no column 'before'"):
         write_report(tmp_path)

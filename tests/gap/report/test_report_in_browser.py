@@ -2,7 +2,7 @@
 
 import pytest
 
-from hystbench.gap.report import write_report
+from hystbench.gap.report.page import write_report
 from tests.browser.seen import SIZES, all_faults, look
 from tests.gap.report.test_report import GAP, Reader, write_folder
 

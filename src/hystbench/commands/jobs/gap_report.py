@@ -1,6 +1,6 @@
 """``hystbench job gap-report``: the page of one dataset, and its part of others."""
 
-from hystbench.gap.report import write_report
+from hystbench.gap.report.page import write_report
 from hystbench.gap.report.tables import write_gallery
 from hystbench.signature import Folder, command
 

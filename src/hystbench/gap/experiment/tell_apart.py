@@ -149,8 +149,7 @@ def next_experiment(
     sets: Sets,
     records: Sequence[Record],
     noise_floor: float,
-    limits: Limits | None = None,
-    excitations: Sequence[Excitation] | None = None,
+    excitations: Sequence[Excitation],
 ) -> Experiment:
     """Choose the excitation that tells rival models apart best.
 
@@ -160,13 +159,11 @@ def next_experiment(
         By the effect that they are rivals of, and by name; each fitted to the records.
         One of the sets has two or more.
     records : sequence of Record
-        The fit records: what they separate is the measure, and their inputs are the
-        limits where none are given.
+        The fit records: what they separate is the measure.
     noise_floor : float
         RMS in output units, above zero.
-    limits : Limits, optional
-    excitations : sequence of Excitation, optional
-        Instead of :func:`~hystbench.gap.experiment.candidates.candidates`.
+    excitations : sequence of Excitation
+        As :func:`~hystbench.gap.experiment.candidates.candidates` gives them.
 
     Returns
     -------
@@ -177,14 +174,11 @@ def next_experiment(
     Raises
     ------
     InputError
-        If no excitation keeps within the limits and lets every rival run.
+        If there is no excitation that lets every rival run.
     """
     every = [
         RivalPair(of, x) for of, each in sets.items() for x in combinations(each, 2)
     ]
-    if excitations is None:
-        limits = Limits.of(records) if limits is None else limits
-        excitations = candidates(limits, records[0].input.unit)
     tried = [
         (item, separations(sets, item.u, item.dt, noise_floor)) for item in excitations
     ]
@@ -260,7 +254,9 @@ def tell_apart(
     if all(len(members) < 2 for members in sets.values()):
         return None, unseen
     try:
-        found = next_experiment(sets, records, floor_rms, limits)
+        limits = Limits.of(records) if limits is None else limits
+        excitations = candidates(limits, records[0].input.unit)
+        found = next_experiment(sets, records, floor_rms, excitations)
     except InputError as error:
         return None, "; ".join(filter(None, [str(error), unseen]))
     return replace(found, left_out=tuple(left_out)), ""

@@ -70,7 +70,7 @@ def shrink(
     for record, old_output, new_output in zip(records, before, after, strict=True):
         old, scored = left_over(record, old_output, nuisance)
         olds.append(old[scored])
-        row = {"name": record.name, "before": rms(olds[-1])}
+        row: dict[str, Any] = {"name": record.name, "before": rms(olds[-1])}
         row |= {"after": None, "explained": 0.0}
         new = None
         if new_output is not None:
@@ -94,7 +94,7 @@ def shrink(
     if bounded:
         gap["after_interval"] = rms_interval(drawn[1])
         # Of the same draws; where the floor is an upper bound, of the whole range.
-        interval = share_interval(*drawn, *known)
+        interval = share_interval(drawn[0], drawn[1], *known)
         gap |= {} if interval is None else {"interval": interval}
     return Shrink(gap, rows, residuals)
 

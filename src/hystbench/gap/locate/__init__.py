@@ -14,19 +14,17 @@ from hystbench.gap.locate.along_axes import (
     record,
     slow_time,
 )
+from hystbench.gap.locate.forms import View
 from hystbench.gap.locate.frequency import frequency
 from hystbench.gap.locate.level import level
 from hystbench.gap.locate.samples import Contribution, take_samples
 from hystbench.gap.locate.unexplained import unexplained
-from hystbench.gap.locate.view import View
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.thresholds import BY_CHANCE
 
-__all__ = ["LEVEL", "Contribution", "View", "curves", "locate", "ranked"]
+__all__ = ["Contribution", "View", "curves", "locate", "ranked"]
 
-CHANCE_LEVEL = BY_CHANCE
-"""Of a view's p-value times the number of views, for more than chance."""
 NOT_DRAWN = {
     "distortion": "distortion, as no record repeats with a gap above the noise",
     "over-plane": "the residual by rate, as the input rests",
@@ -101,7 +99,7 @@ def ranked(views: Sequence[View]) -> tuple[View, ...]:
     """Put named views first, then those that save most, then what chance may give."""
 
     def order(view: View) -> tuple[bool, bool, float]:
-        by_chance = view.p_value * len(views) >= CHANCE_LEVEL
+        by_chance = view.p_value * len(views) >= BY_CHANCE
         return not view.named, by_chance, -view.saved
 
     return tuple(sorted(views, key=order))

@@ -14,11 +14,13 @@ from hystbench.blocks.input_delay import later
 from hystbench.blocks.linear import low_pass
 from hystbench.gap.locate.forms import (
     FACTS,
+    View,
     fit_form,
     hats,
     named_or,
     narrowest,
     narrowest_bins,
+    view_of,
 )
 from hystbench.gap.locate.picture import (
     block_means,
@@ -28,7 +30,6 @@ from hystbench.gap.locate.picture import (
     over_time,
 )
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import View, view_of
 from hystbench.operators import play
 from hystbench.record import FloatArray, Mask
 from hystbench.sentences import percent, shortly
@@ -159,7 +160,7 @@ def _passed(
     stride = samples.stride
     means = [block_means(signal, stride) for signal in signals]
     steps = [item.record.dt * stride for item in samples.compared]
-    rows = list(zip(means, steps, samples.places, strict=True))
+    rows = list(zip(means, steps, samples.kept.positions, strict=True))
     return [
         np.concatenate([low_pass(x, dt, tau)[at // stride] for x, dt, at in rows])
         for tau in times
@@ -202,7 +203,7 @@ def fit_delay(samples: ViewSamples) -> tuple[float, FloatArray]:
     longest = 4 * max(dt for _, dt in runs)
     most = max(LONGEST_PERIODS / float(np.max(samples.main_frequencies)), longest)
     inner = []
-    for (signal, dt), at in zip(runs, samples.places, strict=True):
+    for (signal, dt), at in zip(runs, samples.kept.positions, strict=True):
         ends = min(int(most / dt) + AHEAD, len(signal) // 4)
         inner.append((at >= ends) & (at < len(signal) - ends))
     counted = np.concatenate(inner)
@@ -210,7 +211,7 @@ def fit_delay(samples: ViewSamples) -> tuple[float, FloatArray]:
     def roughly(shift: float) -> float:
         missed = 0.0
         for (signal, dt), at, part, own in zip(
-            runs, samples.places, samples.slices, inner, strict=True
+            runs, samples.kept.positions, samples.kept.slices, inner, strict=True
         ):
             few = at[own][::ROUGH_STRIDE]
             late = np.interp(few - shift / dt, np.arange(len(signal)), signal)
@@ -260,7 +261,7 @@ def record(samples: ViewSamples) -> View:
     offset of each record's own.
     """
     squares = samples.residual**2
-    above = [float(np.sum(squares[x] - samples.noise)) for x in samples.slices]
+    above = [float(np.sum(squares[x] - samples.noise)) for x in samples.kept.slices]
     shares = np.maximum(above, 0.0)
     total = float(np.sum(shares))
     shares = shares / total if total > 0 else np.full(len(shares), 1 / len(shares))
@@ -270,11 +271,11 @@ def record(samples: ViewSamples) -> View:
     columns = np.stack([samples.simulated, np.ones_like(samples.simulated)])
     own = fit_form(samples, "gains and offsets", list(columns), by_record=True)
     there = np.zeros(columns.shape[1])
-    there[samples.slices[int(np.argmax(shares))]] = 1.0
+    there[samples.kept.slices[int(np.argmax(shares))]] = 1.0
     single = fit_form(samples, "gain and offset", list(columns * there), searched=1)
     form = named_or(samples, "record", [single], [own])
     where = names[first] if first == last else f"{names[first]} to {names[last]}"
-    parts = zip(names, samples.slices, strict=True)
+    parts = zip(names, samples.kept.slices, strict=True)
     quiet = [x for x, at in parts if np.mean(squares[at]) <= QUIET * samples.noise]
     alone = " and ".join(quiet)
     if len(quiet) > RECORDS_TOLD:

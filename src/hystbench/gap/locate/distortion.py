@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft, special
 
+from hystbench.gap.locate.forms import LEAST_SHARE, SIGNIFICANT
 from hystbench.gap.locate.picture import FREQUENCY, Axis, Panel, ViewPicture, series
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import LEAST_SHARE, SIGNIFICANT, chance
 from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import FloatArray
 from hystbench.sentences import percent
@@ -88,7 +88,7 @@ class Distortion:
         parts = [f"{percent(self.shares[OWN])} lies on the input's own lines"]
         parts += [
             f"{percent(self.shares[kind])} on {name} lines beside them "
-            f"({chance(self.p_values[kind])}), that is, distortion that {means}"
+            f"({_chance(self.p_values[kind])}), that is, distortion that {means}"
             for kind, (name, means) in MEANS.items()
             if self.p_values[kind] < SIGNIFICANT and self.shares[kind] >= LEAST_SHARE
         ]
@@ -128,6 +128,11 @@ class Distortion:
             "beside the input's lines"
         )
         return ViewPicture("distortion", words, (panel,))
+
+
+def _chance(p_value: float) -> str:
+    """Write a p-value as it stands in a sentence."""
+    return "p < 0.001" if p_value < 0.001 else f"p = {p_value:.2g}"
 
 
 def take_distortion(samples: ViewSamples) -> Distortion | None:

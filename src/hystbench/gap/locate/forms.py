@@ -1,17 +1,23 @@
-"""What a form explains of the residual, what it costs, and what chance would give."""
+"""A form: what it explains of the residual, and the view that it gives.
+
+A view is one way in which an engineer reads where the gap is.
+"""
 
 from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy import fft, special
 
+from hystbench.gap.locate.picture import ViewPicture
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.view_kinds import ViewKind
 from hystbench.record import FloatArray
+from hystbench.sentences import percent
 
 FACTS = 300
 """The residual counts as so many independent facts, however finely sampled: an error of
@@ -24,6 +30,10 @@ SMOOTHED_BINS = 17
 """Bins over which the spectrum of what is left is smoothed."""
 LEAST_SINGULAR = 1e-5
 """Of the largest singular value of columns of one length: below it there is none."""
+SIGNIFICANT = 0.01
+"""Of a p-value, for a part of a view to be told as there."""
+LEAST_SHARE = 0.01
+"""Of the gap's power, for a part of a view to be told at all."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +63,88 @@ class FittedForm:
     def named(self) -> bool:
         """Whether it is what a named effect adds."""
         return bool(self.added)
+
+
+@dataclass(frozen=True)
+class View:
+    """Where the gap lies, in one kind of view."""
+
+    view: ViewKind
+    axis: str
+    """What ``start`` and ``end`` are values of."""
+    start: float | str
+    end: float | str
+    """The narrowest range that holds four fifths of what this view explains, in
+    ``unit``; of branches and records, the names of the first and the last."""
+    unit: str
+    share_of_gap_power: float
+    """Power that this view explains over the power of the gap above the noise, from 0
+    to 1. The shares of several views may add to more than 1."""
+    p_value: float
+    """How often a residual without this structure, but of the same colour, would look
+    as much like it."""
+    sentence: str
+    """The same in words."""
+    saved: float
+    """Description length that it saves: see :func:`hystbench.gap.locate.locate`."""
+    named: bool = False
+    """Whether it shows what a named effect adds."""
+    pictures: tuple[ViewPicture, ...] = ()
+    kinds: tuple[str, ...] = ()
+    """Of the view by level: how modes move with it."""
+
+    def to_mapping(self) -> dict[str, Any]:
+        """Give what gap.json holds under ``where``."""
+        return {
+            "view": self.view,
+            "axis": self.axis,
+            "from": self.start,
+            "to": self.end,
+            "unit": self.unit,
+            "share_of_gap_power": self.share_of_gap_power,
+            "p_value": self.p_value,
+            "sentence": self.sentence,
+        }
+
+
+def view_of(
+    view: ViewKind,
+    form: FittedForm,
+    axis: str,
+    ends: tuple[float | str, float | str],
+    unit: str,
+    told: str,
+    pictures: Sequence[ViewPicture] = (),
+    share: float | None = None,
+) -> View:
+    """Give the view that a form tells.
+
+    Parameters
+    ----------
+    view, axis, unit, pictures
+        As for :class:`View`.
+    form : FittedForm
+    ends : tuple of (float or str, float or str)
+        Of the range.
+    told : str
+        What the sentence says behind "so much of the gap".
+    share : float, optional
+        That of the form by default.
+    """
+    share = form.share if share is None else share
+    return View(
+        view=view,
+        axis=axis,
+        start=ends[0],
+        end=ends[1],
+        unit=unit,
+        share_of_gap_power=share,
+        p_value=form.p_value,
+        sentence=f"{percent(share)} of the gap {told}",
+        saved=form.saved,
+        named=form.named,
+        pictures=tuple(pictures),
+    )
 
 
 def saved(samples: ViewSamples, explained: float, freedom: float) -> float:
@@ -93,7 +185,7 @@ def fit_form(
     design = np.array(columns)
     fitted = np.empty_like(samples.residual)
     freedom = searched
-    for part in samples.slices if by_record else (slice(None),):
+    for part in samples.kept.slices if by_record else (slice(None),):
         weights, rank = _least_squares(design[:, part], samples.residual[part])
         fitted[part] = weights @ design[:, part]
         freedom += rank
@@ -152,7 +244,7 @@ def named_or(
 def _p_value(samples: ViewSamples, form: FittedForm) -> float:
     """Give the F test's p-value, for as many samples as are independent."""
     rest = samples.residual - form.fitted
-    count = effective_count(samples.slices, rest, form.fitted)
+    count = effective_count(samples.kept.slices, rest, form.fitted)
     share = form.explained / max(samples.power, 1e-300)
     return f_test(share, form.freedom, count)
 

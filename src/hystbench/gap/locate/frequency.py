@@ -12,7 +12,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from scipy import fft
 
 from hystbench.gap.locate.distortion import take_distortion
-from hystbench.gap.locate.forms import fit_form, named_or, narrowest_bins
+from hystbench.gap.locate.forms import View, fit_form, named_or, narrowest_bins, view_of
 from hystbench.gap.locate.picture import (
     FREQUENCY,
     Axis,
@@ -22,7 +22,6 @@ from hystbench.gap.locate.picture import (
     thinned,
 )
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import View, view_of
 from hystbench.gap.records.floor import periodogram
 from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import ComplexArray, FloatArray, Mask

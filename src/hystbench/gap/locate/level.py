@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import special
 
-from hystbench.gap.locate.forms import saved
-from hystbench.gap.locate.level_classes import IN_A_CHAIN, MOVES, WORDS
+from hystbench.gap.locate.forms import View, saved
+from hystbench.gap.locate.level_classes import CLASSES
 from hystbench.gap.locate.mode import (
     LEAST_LINES,
     LevelLines,
@@ -32,7 +32,6 @@ from hystbench.gap.locate.mode import (
 )
 from hystbench.gap.locate.picture import Axis, Panel, ViewPicture, series
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import SIGNIFICANT, View
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.quantities import quantity_of
 from hystbench.record import FloatArray
@@ -174,7 +173,7 @@ class Moving:
         at = "" if seen == self.levels else f" ({seen} of {self.levels} levels)"
         return (
             f"the mode at {shortly(first[0])} Hz {moved}, its damping ratio {damped}, "
-            f"{held}{at}: {WORDS[self.kind]}"
+            f"{held}{at}: {CLASSES[self.kind][0]}"
         )
 
 
@@ -276,37 +275,6 @@ def level(samples: ViewSamples) -> View | None:
         pictures=(picture_of(moving, unit),),
         kinds=tuple(dict.fromkeys(each.kind for each in moving)),
     )
-
-
-def beside_level(views: Sequence[View], named: Sequence[tuple[str, str]]) -> str:
-    """Hold the named effects against how modes move with the level.
-
-    That is seen without any of their laws.
-
-    Parameters
-    ----------
-    views : sequence of View
-    named : sequence of (str, str)
-        The named effects and their places. A force moves a mode inside the dynamics
-        alone.
-
-    Returns
-    -------
-    str
-        Empty where no mode moves, or nothing was named.
-    """
-    found = [view for view in views if view.kinds and view.p_value < SIGNIFICANT]
-    kinds = [kind for view in found for kind in view.kinds if kind in MOVES]
-    told = []
-    for kind in kinds if named else []:
-        fit = [
-            name
-            for name, place in named
-            if name in MOVES[kind] and (place == "inside" or name in IN_A_CHAIN)
-        ]
-        who = " and ".join(fit) or "no named effect"
-        told.append(f"a mode moves with the level as of {WORDS[kind]}: {who} can do so")
-    return "; ".join(told)
 
 
 def picture_of(moving: Sequence[Moving], unit: str) -> ViewPicture:

@@ -8,10 +8,9 @@ from functools import cached_property
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.records.scored_samples import Compared
+from hystbench.gap.records.scored_samples import Compared, ScoredSamples
 from hystbench.gap.view_kinds import ViewKind
 from hystbench.operators import play
 from hystbench.record import FloatArray
@@ -53,23 +52,14 @@ class ViewSamples:
 
     def thinned(self, signals: Sequence[FloatArray]) -> FloatArray:
         """Keep every stride-th sample of a signal of each record."""
-        pairs = zip(signals, self.places, strict=True)
-        return np.concatenate([signal[places] for signal, places in pairs])
+        return self.kept.take(signals)
 
     @cached_property
-    def places(self) -> list[NDArray[np.intp]]:
+    def kept(self) -> ScoredSamples:
         """Samples of each record that are kept."""
-        return [
-            at[item.record.counted[at]]
-            for item in self.compared
-            for at in [np.arange(0, len(item.record), self.stride)]
-        ]
-
-    @cached_property
-    def slices(self) -> tuple[slice, ...]:
-        """Where each record's samples lie."""
-        ends = np.cumsum([len(places) for places in self.places]).tolist()
-        return tuple(map(slice, [0, *ends[:-1]], ends))
+        places = (np.arange(0, len(x.record), self.stride) for x in self.compared)
+        pairs = zip(places, self.compared, strict=True)
+        return ScoredSamples(tuple(at[x.record.counted[at]] for at, x in pairs))
 
     @cached_property
     def residual(self) -> FloatArray:

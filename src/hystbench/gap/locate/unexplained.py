@@ -6,9 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.gap.locate.forms import fit_form, named_or, narrowest
+from hystbench.gap.locate.forms import View, fit_form, named_or, narrowest, view_of
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import View, view_of
 from hystbench.gap.records.floor import periodogram
 from hystbench.gap.records.nuisance import shows_a_path
 from hystbench.record import FloatArray, Mask
@@ -76,7 +75,7 @@ def _drift_columns(samples: ViewSamples) -> list[FloatArray]:
     Each begins at zero: an offset from the first sample on is no drift. A record of one
     loop has none: whatever is slower than the loop could be the loop's own error.
     """
-    ends = zip(samples.compared, samples.durations, samples.slices, strict=True)
+    ends = zip(samples.compared, samples.durations, samples.kept.slices, strict=True)
     duration, halves = np.empty_like(samples.time), np.empty_like(samples.time)
     for item, seconds, part in ends:
         power, frequency = periodogram(item.record.u, item.record.dt)

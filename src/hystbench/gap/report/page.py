@@ -1,18 +1,20 @@
-"""Putting the page together: which pictures there are, and what is missing."""
+"""Putting the page together: which pictures there are, and what they show."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
+from pathlib import Path
 from typing import Any
 
 from hystbench.figures.style import BLUE, COLUMN, GREY, in_style, unit_text
-from hystbench.gap.locate import CHANCE_LEVEL
+from hystbench.files import write_text
 from hystbench.gap.report import diagram, pictures, words
 from hystbench.gap.report.pictures import EmbeddedPicture, draw, embedded
-from hystbench.gap.report.read import Content
+from hystbench.gap.report.read import Content, HoldOut, read_content
 from hystbench.gap.report.where_pictures import pictures_of
 from hystbench.gap.schema import LEFT_OUT
+from hystbench.gap.thresholds import BY_CHANCE
 from hystbench.gap.vocabulary import for_readers
 from hystbench.record import column_name
 from hystbench.report.markup import one_micro
@@ -26,6 +28,32 @@ FILTERS = (
 )
 #: Of the parts of gap.json with figures, where a bootstrap tells nothing.
 INTERVALS = dict.fromkeys(("before_interval", "after_interval", "interval"))
+
+
+def write_report(folder: str | Path) -> Path:
+    """Write report.html from what the gap workflow left in a folder.
+
+    The page stands alone: pictures are inside, there is no script, and nothing is
+    fetched. It reads gap.json, model.yaml, the tables in holdout/ and curves.json.
+
+    Parameters
+    ----------
+    folder : str or Path
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    InputError
+        If one of these files is missing or cannot be read, or gap.json is not as its
+        schema says.
+    """
+    path = Path(folder) / "report.html"
+    write_text(path, page(read_content(Path(folder))))
+    return path
 
 
 def page(content: Content) -> str:
@@ -44,7 +72,7 @@ def page(content: Content) -> str:
         floor_words=words.FLOORS[gap["gap"]["floor_method"]],
         y=unit_text(gap["unit"]),
         named=[effect["name"] for effect in gap["effects"]],
-        glance=headline(gap, content),
+        glance=headline(gap, content.hold_out),
         diagram=_diagram(content),
         advice=words.advice(gap),
         reruns=words.rerun_commands(named),
@@ -52,13 +80,13 @@ def page(content: Content) -> str:
         input_column=_input_column(gap),
         where_pictures=drawn,
         missing=missing,
-        level=CHANCE_LEVEL,
+        level=BY_CHANCE,
         ladder=_ladder(gap),
         ranking=_ranking(gap),
         ranked=_ranked(item for item in gap["ranking"] if not item["look"]),
         looks=_looks(gap),
         declined=_declined(gap),
-        series=_series(content),
+        series=_series(content.hold_out),
         drawn=min(len(content.hold_out), pictures.MOST_RECORDS),
         held=len(content.hold_out),
     )
@@ -74,12 +102,12 @@ def with_optional(content: Mapping[str, Any]) -> dict[str, Any]:
     return gap
 
 
-def headline(gap: dict[str, Any], content: Content) -> list[EmbeddedPicture]:
+def headline(gap: dict[str, Any], hold_out: Sequence[HoldOut]) -> list[EmbeddedPicture]:
     """Draw the headline: a stretch of a hold-out record, and the sizes of the gap."""
     after = "with effects" if gap["effects"] else "re-tuned"
     found = []
     same = gap["gap"]["after"] == gap["gap"]["before"]
-    for table in pictures.worst(content.hold_out, 1):
+    for table in pictures.worst(hold_out, 1):
         with_it = "" if same else f", and {after}"
         found.append(
             draw(
@@ -119,9 +147,7 @@ def headline(gap: dict[str, Any], content: Content) -> list[EmbeddedPicture]:
     return found
 
 
-def _diagram(content: Content) -> EmbeddedPicture | None:
-    if content.model is None:
-        return None
+def _diagram(content: Content) -> EmbeddedPicture:
     said = diagram.words_of(content.model, content.gap)
     with in_style():
         return embedded(diagram.figure_of(content.model, content.gap), said)
@@ -216,8 +242,8 @@ def _ladder(gap: dict[str, Any]) -> EmbeddedPicture | None:
     )
 
 
-def _series(content: Content) -> EmbeddedPicture | None:
-    tables = pictures.worst(content.hold_out, pictures.MOST_RECORDS)
+def _series(hold_out: Sequence[HoldOut]) -> EmbeddedPicture | None:
+    tables = pictures.worst(hold_out, pictures.MOST_RECORDS)
     if not tables:
         return None
 

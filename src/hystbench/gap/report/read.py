@@ -45,10 +45,10 @@ class Content:
     gap: dict[str, Any]
     """Of gap.json, checked."""
     hold_out: tuple[HoldOut, ...]
-    curves: dict[str, Any] | None
-    """Of curves.json; None where there is none."""
-    model: Model | None = None
-    """Of model.yaml; None where there is none."""
+    curves: Mapping[str, Any]
+    """Of curves.json."""
+    model: Model
+    """Of model.yaml."""
 
 
 def read_content(folder: Path) -> Content:
@@ -57,8 +57,8 @@ def read_content(folder: Path) -> Content:
     Raises
     ------
     InputError
-        If gap.json is missing or not as its schema says, or a table, the curves or
-        the model cannot be read.
+        If gap.json, the curves or the model are missing or cannot be read, or gap.json
+        is not as its schema says.
     """
     place = folder / "gap.json"
     gap = _json(place)
@@ -72,16 +72,11 @@ def read_content(folder: Path) -> Content:
             path.stem,
         ),
     )
-    curves = folder / "curves.json"
-    found = _json(curves) if curves.is_file() else None
-    if found is not None and not isinstance(found, dict):
-        raise InputError(f"{curves}: expected a mapping of curves")
-    model = folder / "model.yaml"
     return Content(
         gap,
         tuple(_hold_out(table, gap) for table in tables),
-        found,
-        load_model(model) if model.is_file() else None,
+        _json(folder / "curves.json"),
+        load_model(folder / "model.yaml"),
     )
 
 

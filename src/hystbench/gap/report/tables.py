@@ -178,8 +178,6 @@ def write_gallery(folder: str | Path) -> None:
     """
     place = Path(folder)
     content = read_content(place)
-    if content.model is None:
-        raise InputError(f"{place / 'model.yaml'}: no such file; expected a model file")
     with style.in_style():
         drawn = {
             "model": diagram.figure_of(content.model, content.gap),

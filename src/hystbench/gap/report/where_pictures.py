@@ -53,7 +53,7 @@ HOLLOW = ("first by width", "second by width")
 ROW_INCHES, MAP_INCHES, LEAST_INCHES, BAR_INCHES = 2.4, 3.2, 0.8, 0.18
 
 
-def pictures_of(curves: Content | None) -> tuple[list[EmbeddedPicture], list[str]]:
+def pictures_of(curves: Content) -> tuple[list[EmbeddedPicture], list[str]]:
     """Draw the pictures that curves.json holds, and tell which it has not and why.
 
     Raises
@@ -61,8 +61,6 @@ def pictures_of(curves: Content | None) -> tuple[list[EmbeddedPicture], list[str
     InputError
         If it holds something else.
     """
-    if curves is None:
-        return [], ["curves.json: no pictures of where the gap is"]
     try:
         return [_drawn(one) for one in curves["pictures"]], list(curves["not_drawn"])
     except (KeyError, TypeError, ValueError) as error:
@@ -71,20 +69,14 @@ def pictures_of(curves: Content | None) -> tuple[list[EmbeddedPicture], list[str
         ) from error
 
 
-def first_picture(curves: Content | None) -> Figure:
-    """Draw how modes move with the level, where that is seen; else the first picture.
-
-    Without any, the figure says so.
-    """
-    pictures = [] if curves is None else curves["pictures"]
+def first_picture(curves: Content) -> Figure:
+    """Draw how modes move with the level where that is seen, else the first picture."""
+    pictures = curves["pictures"]
     levels = [one for one in pictures if one["name"] == LEVELS]
-    for picture in (*levels, *pictures):
-        panels = picture["panels"]
-        figure = Figure(figsize=(PAGE, max(map(_height, panels))))
-        _fill(figure.subplots(1, len(panels), squeeze=False)[0], picture)
-        return figure
-    figure = Figure(figsize=(PAGE, LEAST_INCHES))
-    figure.text(0.5, 0.5, "no picture of where the gap is", ha="center", va="center")
+    picture = (*levels, *pictures)[0]
+    panels = picture["panels"]
+    figure = Figure(figsize=(PAGE, max(map(_height, panels))))
+    _fill(figure.subplots(1, len(panels), squeeze=False)[0], picture)
     return figure
 
 
