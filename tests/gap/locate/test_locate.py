@@ -129,7 +129,7 @@ def test_of_several_effects_the_larger_comes_first_and_behind_them_the_rest():
 
 @pytest.mark.parametrize(("name", "plant"), CASES)
 def test_views_are_of_the_contract_and_say_their_own_numbers(name, plant):
-    views = views_of(name, plant, *SEEN[plant])
+    views = views_of(name, plant)
     assert {view.view for view in views} == KINDS
     assert len(views) == len(KINDS)
     assert views == ranked(views)

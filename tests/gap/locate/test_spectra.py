@@ -1,13 +1,10 @@
-"""Spectra and peaks beside those of ``scipy.signal``, which takes long to load."""
+"""Spectra beside those of ``scipy.signal``, which takes long to load."""
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from scipy import signal
 
 from hystbench.gap.locate.frequency import SEGMENTS, _lines
-from hystbench.gap.locate.mode import _highest_points
 from hystbench.gap.records.scored_samples import Compared
 from tests.gap.made import record
 
@@ -35,10 +32,3 @@ def test_spectra_are_those_of_scipy(count, period):
     np.testing.assert_allclose(frequency, lines[1:])
     power = expected.reshape(9, -1)[:, 1:] * lines[1]
     np.testing.assert_allclose(matrix, power, rtol=1e-9, atol=1e-12)
-
-
-@given(st.lists(st.integers(1, 4), min_size=1, max_size=12))
-def test_peaks_are_those_of_scipy(power):
-    """Ends and levels of several lines with them."""
-    expected, _ = signal.find_peaks([0, *power, 0])
-    np.testing.assert_array_equal(_highest_points(np.array(power, float)), expected - 1)

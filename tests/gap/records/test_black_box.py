@@ -157,7 +157,7 @@ def test_a_dead_simulation_and_a_short_record_are_no_trouble():
 
 def test_heavy_libraries_are_imported_late():
     code = (
-        "import sys, hystbench.gap.holdout.shrink, hystbench.gap.report, "
+        "import sys, hystbench.gap.holdout.shrink, "
         "hystbench.gap.experiment.candidates, hystbench.gap.records.black_box; "
         "print({'sklearn', 'scipy', 'matplotlib', 'jinja2'} & set(sys.modules))"
     )

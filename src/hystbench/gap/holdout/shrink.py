@@ -8,14 +8,16 @@ there is no residual after, and nothing of the gap counts as gone.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.nuisance import Nuisance, left_over
 from hystbench.metrics import rms
 from hystbench.record import FloatArray, Record
+
+if TYPE_CHECKING:
+    from hystbench.gap.records.floor import Floor
 
 #: Draws of the bootstrap, and the part of them that its interval holds.
 BOOTSTRAP_DRAWS = 400

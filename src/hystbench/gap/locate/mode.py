@@ -18,7 +18,6 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 
 from hystbench.gap.records.scored_samples import Compared, whole_periods
@@ -318,7 +317,12 @@ def find_modes(level: Sequence[LevelLines], integrals: int) -> tuple[Mode, ...]:
 
 
 def _peaks(lines: LevelLines) -> list[float]:
-    """Give the frequencies of the strongest peaks, in Hz."""
+    """Give the frequencies of the strongest peaks, in Hz.
+
+    The ends of the band count: a mode may be highest there.
+    """
+    from scipy.signal import find_peaks  # late: it takes long to load
+
     at, power = lines.frequency[lines.excited], np.abs(lines.y[lines.excited]) ** 2
     if not len(at):
         return []
@@ -326,18 +330,6 @@ def _peaks(lines: LevelLines) -> list[float]:
     ends = np.searchsorted(at, around, "right")
     sums = np.concatenate([[0.0], np.cumsum(power)])
     smooth = (sums[ends[1]] - sums[ends[0]]) / (ends[1] - ends[0])
-    tops = _highest_points(smooth)
+    tops = find_peaks([0.0, *smooth, 0.0])[0] - 1
     strongest = tops[np.argsort(-smooth[tops])][:MOST_PEAKS]
     return [float(at[top]) for top in strongest]
-
-
-def _highest_points(power: FloatArray) -> NDArray[np.intp]:
-    """Give where a power is higher than on both sides, in the middle of a level.
-
-    The ends of the band count: a mode may be highest there.
-    """
-    rises = np.diff(np.concatenate([[0.0], power, [0.0]]))
-    steps = np.flatnonzero(rises)
-    up, down = rises[steps[:-1]] > 0, rises[steps[1:]] < 0
-    first, last = steps[:-1], steps[1:] - 1
-    return (first + last)[up & down] // 2
