@@ -7,6 +7,8 @@ named, what they add stands in its place.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from hystbench.blocks.curve import AHEAD
@@ -20,7 +22,6 @@ from hystbench.gap.locate.forms import (
     named_or,
     narrowest,
     narrowest_bins,
-    view_of,
 )
 from hystbench.gap.locate.picture import (
     block_means,
@@ -81,7 +82,7 @@ def amplitude(samples: ViewSamples) -> View:
         f"is {form.words}; most of it lies where the {name} is between "
         f"{shortly(start)} and {shortly(end)} {unit}."
     )
-    return view_of("amplitude", form, name, (start, end), unit, told)
+    return form.seen("amplitude", name, (start, end), unit, told)
 
 
 def branch(samples: ViewSamples) -> View:
@@ -107,8 +108,7 @@ def branch(samples: ViewSamples) -> View:
         "falling" if rising < 1 - ONE_SIDED_SHARE else "rising",
         "rising" if rising > ONE_SIDED_SHARE else "falling",
     )
-    drawn = [over_input(samples)]
-    return view_of("branch", form, "branch", ends, "", told, drawn)
+    return form.seen("branch", "branch", ends, "", told, over_input(samples))
 
 
 def rate(samples: ViewSamples) -> View:
@@ -126,7 +126,7 @@ def rate(samples: ViewSamples) -> View:
         f"{shortly(ends[0])} to {shortly(ends[1])} {unit}."
     )
     axis, plane = "magnitude of the input's rate", over_plane(samples)
-    return view_of("rate", form, axis, ends, unit, told, [plane] if plane else [])
+    return form.seen("rate", axis, ends, unit, told, *([plane] if plane else []))
 
 
 def slow_time(samples: ViewSamples) -> View:
@@ -149,8 +149,8 @@ def slow_time(samples: ViewSamples) -> View:
         f"follows the input with a memory, {form.words}; most of it lies between "
         f"{shortly(ends[0])} and {shortly(ends[1])} s."
     )
-    axis, drawn = "time in the record", [over_time(samples)]
-    return view_of("slow-time", form, axis, ends, "s", told, drawn)
+    axis, drawn = "time in the record", over_time(samples)
+    return form.seen("slow-time", axis, ends, "s", told, drawn)
 
 
 def _passed(
@@ -190,7 +190,7 @@ def delay(samples: ViewSamples) -> View:
         "rate and amplitude."
     )
     ends = (shift - margin, shift + margin)
-    return view_of("delay", form, "delay", ends, "s", told)
+    return form.seen("delay", "delay", ends, "s", told)
 
 
 def fit_delay(samples: ViewSamples) -> tuple[float, FloatArray]:
@@ -285,8 +285,8 @@ def record(samples: ViewSamples) -> View:
         f"offset of each record's own would take away {percent(own.share)}."
         + (f" It leaves {alone} alone." if quiet else "")
     )
-    ends, drawn = (names[first], names[last]), [over_records(names, shares)]
-    return view_of("record", form, "record", ends, "", told, drawn, share)
+    ends, drawn = (names[first], names[last]), over_records(names, shares)
+    return replace(form, share=share).seen("record", "record", ends, "", told, drawn)
 
 
 def _share_of(power: FloatArray, part: Mask) -> float:

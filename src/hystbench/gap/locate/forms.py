@@ -37,35 +37,6 @@ LEAST_SHARE = 0.01
 
 
 @dataclass(frozen=True)
-class FittedForm:
-    """A fitted form: some function of an axis, with its number of free parameters."""
-
-    words: str
-    """What it is, behind "of the gap is"."""
-    fitted: FloatArray
-    """Shape (n,). What the form says of the residual, in its unit."""
-    explained: float
-    """Mean square that leaves the residual with it."""
-    freedom: float
-    saved: float
-    """Description length saved, in nats."""
-    share: float
-    """Of the gap's power, what noise buys taken off."""
-    weights: FloatArray
-    """Shape (columns,). Of the last record, where each has its own."""
-    added: tuple[FloatArray, ...] = ()
-    """What a named effect adds to each record; none of a form of the view's own."""
-    p_value: float = 1.0
-    """How often a residual without this structure, but of the same colour, would look
-    as much like it."""
-
-    @property
-    def named(self) -> bool:
-        """Whether it is what a named effect adds."""
-        return bool(self.added)
-
-
-@dataclass(frozen=True)
 class View:
     """Where the gap lies, in one kind of view."""
 
@@ -107,44 +78,60 @@ class View:
         }
 
 
-def view_of(
-    view: ViewKind,
-    form: FittedForm,
-    axis: str,
-    ends: tuple[float | str, float | str],
-    unit: str,
-    told: str,
-    pictures: Sequence[ViewPicture] = (),
-    share: float | None = None,
-) -> View:
-    """Give the view that a form tells.
+@dataclass(frozen=True)
+class FittedForm:
+    """A fitted form: some function of an axis, with its number of free parameters."""
 
-    Parameters
-    ----------
-    view, axis, unit, pictures
-        As for :class:`View`.
-    form : FittedForm
-    ends : tuple of (float or str, float or str)
-        Of the range.
-    told : str
-        What the sentence says behind "so much of the gap".
-    share : float, optional
-        That of the form by default.
-    """
-    share = form.share if share is None else share
-    return View(
-        view=view,
-        axis=axis,
-        start=ends[0],
-        end=ends[1],
-        unit=unit,
-        share_of_gap_power=share,
-        p_value=form.p_value,
-        sentence=f"{percent(share)} of the gap {told}",
-        saved=form.saved,
-        named=form.named,
-        pictures=tuple(pictures),
-    )
+    words: str
+    """What it is, behind "of the gap is"."""
+    fitted: FloatArray
+    """Shape (n,). What the form says of the residual, in its unit."""
+    explained: float
+    """Mean square that leaves the residual with it."""
+    freedom: float
+    saved: float
+    """Description length saved, in nats."""
+    share: float
+    """Of the gap's power, what noise buys taken off."""
+    weights: FloatArray
+    """Shape (columns,). Of the last record, where each has its own."""
+    added: tuple[FloatArray, ...] = ()
+    """What a named effect adds to each record; none of a form of the view's own."""
+    p_value: float = 1.0
+    """How often a residual without this structure, but of the same colour, would look
+    as much like it."""
+
+    @property
+    def named(self) -> bool:
+        """Whether it is what a named effect adds."""
+        return bool(self.added)
+
+    def seen(
+        self,
+        view: ViewKind,
+        axis: str,
+        ends: tuple[float, float] | tuple[str, str],
+        unit: str,
+        told: str,
+        *pictures: ViewPicture,
+    ) -> View:
+        """Give the view that it tells.
+
+        Its range has two ``ends``; behind "so much of the gap" stands what is ``told``.
+        """
+        return View(
+            view=view,
+            axis=axis,
+            start=ends[0],
+            end=ends[1],
+            unit=unit,
+            share_of_gap_power=self.share,
+            p_value=self.p_value,
+            sentence=f"{percent(self.share)} of the gap {told}",
+            saved=self.saved,
+            named=self.named,
+            pictures=pictures,
+        )
 
 
 def saved(samples: ViewSamples, explained: float, freedom: float) -> float:

@@ -12,7 +12,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from scipy import fft
 
 from hystbench.gap.locate.distortion import take_distortion
-from hystbench.gap.locate.forms import View, fit_form, named_or, narrowest_bins, view_of
+from hystbench.gap.locate.forms import View, fit_form, named_or, narrowest_bins
 from hystbench.gap.locate.picture import (
     FREQUENCY,
     Axis,
@@ -68,8 +68,7 @@ def frequency(samples: ViewSamples) -> View:
     if distortion is not None:
         told += distortion.told
         drawn.append(distortion.picture(samples.units[1]))
-    ends = (start, end)
-    return view_of("frequency", form, "frequency", ends, "Hz", told, drawn)
+    return form.seen("frequency", "frequency", (start, end), "Hz", told, *drawn)
 
 
 def _bands(samples: ViewSamples, spectra: BinSpectra) -> list[list[list[FloatArray]]]:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.gap.locate.forms import View, fit_form, named_or, narrowest, view_of
+from hystbench.gap.locate.forms import View, fit_form, named_or, narrowest
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.records.floor import periodogram
 from hystbench.gap.records.nuisance import shows_a_path
@@ -66,7 +66,7 @@ def unexplained(samples: ViewSamples) -> View:
         f"is {form.words}, which the input does not explain, between {shortly(start)} "
         f"and {shortly(end)} {unit} {within}."
     )
-    return view_of("unexplained", form, axis, (start, end), unit, told)
+    return form.seen("unexplained", axis, (start, end), unit, told)
 
 
 def _drift_columns(samples: ViewSamples) -> list[FloatArray]:
