@@ -41,7 +41,7 @@ class Remembered:
     Parameters
     ----------
     folder : Path
-    say, bound
+    say : callable
         As for :class:`hystbench.kept_files.KeptFiles`.
 
     Attributes
@@ -50,12 +50,10 @@ class Remembered:
         Results that were computed, and those that an earlier run has spared.
     """
 
-    def __init__(
-        self, folder: Path, say: Callable[[str], None], bound: int = BOUND
-    ) -> None:
+    def __init__(self, folder: Path, say: Callable[[str], None]) -> None:
         self.folder = folder
         self.made = self.found = 0
-        self._files = KeptFiles(folder, "*.json", bound, say, "results")
+        self._files = KeptFiles(folder, "*.json", BOUND, say, "results")
 
     def result(
         self,

@@ -126,12 +126,7 @@ def judge_and_tell(
         "verdict": found.verdict,
         "reason": reason,
         "effects": effects,
-        "fit": _fit(start, state, floor)
-        | {
-            "left": left.share,
-            "lone_share": left.lone,
-            "unrepeated": left.unrepeated,
-        },
+        "fit": _fit(start, state, floor, left),
         "unnamed": found.unnamed.mapping(share),
         "where": [view.to_mapping() for view in where],
         "ranking": ranking_rows(named),
@@ -266,7 +261,9 @@ def _used_up(calls: Calls) -> str:
     )
 
 
-def _fit(start: ModelState, state: ModelState, floor: Floor) -> dict[str, Any]:
+def _fit(
+    start: ModelState, state: ModelState, floor: Floor, left: Left
+) -> dict[str, Any]:
     """Tell what is gone on the fit records, and how much no other record knows."""
     square = floor.rms**2
     before, after = (each.power(square) for each in (start, state))
@@ -281,4 +278,7 @@ def _fit(start: ModelState, state: ModelState, floor: Floor) -> dict[str, Any]:
         "noise": floor.rms,
         "step_error": error,
         "floor": floor_with_steps(floor.rms, error),
+        "left": left.share,
+        "lone_share": left.lone,
+        "unrepeated": left.unrepeated,
     }

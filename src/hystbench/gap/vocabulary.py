@@ -9,13 +9,16 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hystbench.device_kinds import BEHAVIOURS, DeviceKind, behaviour_of
 from hystbench.errors import InputError, nearest
 from hystbench.gap.progress import Say
 from hystbench.quantities import Quantities
 from hystbench.sentences import listed
+
+if TYPE_CHECKING:
+    from hystbench.gap.effects.effect import Effect
 
 
 @dataclass(frozen=True)
@@ -38,13 +41,12 @@ class Vocabulary:
 
     def __post_init__(self) -> None:
         """Refuse names that mean nothing."""
-        from hystbench.gap.effects import effects  # late: it imports them all
-
+        known = _effects()
         for option, names in (("--without", self.without), ("--with", self.fixed)):
             for name in names:
-                if name not in effects():
+                if name not in known:
                     raise InputError(
-                        f"{option}: no effect {name!r}; {nearest(name, effects())}"
+                        f"{option}: no effect {name!r}; {nearest(name, known)}"
                     )
                 if names.count(name) > 1:
                     raise InputError(f"{option}: {name!r} twice; expected it once")
@@ -68,11 +70,9 @@ class Vocabulary:
         """Effects that the kind of device leaves out, which nobody named."""
         if self.kind is None:
             return ()
-        from hystbench.gap.effects import effects  # late: as above
-
         return tuple(
             name
-            for name, effect in effects().items()
+            for name, effect in _effects().items()
             if name not in {*self.without, *self.fixed}
             and not effect.possible_in(self.kind)
         )
@@ -80,10 +80,8 @@ class Vocabulary:
     @property
     def offered(self) -> tuple[str, ...]:
         """Effects that the search may name, in their order."""
-        from hystbench.gap.effects import effects  # late: as above
-
         closed = {*self.without, *self.fixed, *self.impossible}
-        return tuple(name for name in effects() if name not in closed)
+        return tuple(name for name in _effects() if name not in closed)
 
     def words(self) -> list[str]:
         """Say what the user asked for and the device leaves out, a sentence each."""
@@ -98,12 +96,11 @@ class Vocabulary:
             said.append(f"you put in {named}")
         if self.without:
             said.append(f"you left out {all_of(self.without, *untried)}")
-        from hystbench.gap.effects import effects  # late: as above
-        from hystbench.gap.effects.effect import StoreEffect
+        from hystbench.gap.effects.effect import StoreEffect  # late: as below
 
         # Nobody looks for a level in what is no store.
         impossible = tuple(
-            x for x in self.impossible if not isinstance(effects()[x], StoreEffect)
+            x for x in self.impossible if not isinstance(_effects()[x], StoreEffect)
         )
         if impossible:
             said.append(
@@ -120,6 +117,12 @@ class Vocabulary:
             "impossible": list(self.impossible),
             "sentence": "; ".join(self.words()),
         }
+
+
+def _effects() -> Mapping[str, Effect]:
+    from hystbench.gap.effects import effects  # late: it imports them all
+
+    return effects()
 
 
 EVERYTHING = Vocabulary()
@@ -190,13 +193,11 @@ def with_device(
 
 
 def _with_causes(named: list[dict[str, Any]], kind: DeviceKind | None) -> list[Any]:
-    from hystbench.gap.effects import effects  # late: as above
-
     return [
         item
         | {
             "behaviour": behaviour_of(item["name"]),
-            "causes": list(effects()[item["name"]].causes_in(kind)),
+            "causes": list(_effects()[item["name"]].causes_in(kind)),
         }
         for item in named
     ]

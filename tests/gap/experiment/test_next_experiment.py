@@ -53,12 +53,12 @@ def test_picks_the_sine_where_two_transfer_functions_differ_most():
     sines = [
         item
         for item in candidates(limits, "A")
-        if item.kind == "sine" and item.parameters["amplitude"][0] > 0.99
+        if item.kind == "sine" and item.parameters["amplitude"]["value"] > 0.99
     ]
     floor = 0.01
     found = next_experiment(one_set(*rivals), [record(sine(1))], floor, sines)
     # In steady state a gain takes away what is in phase with the mean of the two.
-    frequency = np.array([item.parameters["frequency_hz"][0] for item in sines])
+    frequency = np.array([item.parameters["frequency_hz"]["value"] for item in sines])
     wn, s = 2 * np.pi * 35.0, 2j * np.pi * frequency
     first = 2.0 + 0 * s
     second = 2 * (0.9 + 0.1 * wn**2 / (s**2 + 2 * 0.05 * wn * s + wn**2))

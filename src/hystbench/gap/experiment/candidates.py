@@ -113,8 +113,8 @@ class Excitation:
     """An input that could be tried."""
 
     kind: str
-    parameters: dict[str, tuple[float | list[float], str]]
-    """All that makes it."""
+    parameters: dict[str, dict[str, Any]]
+    """All that makes it: ``value`` and ``unit`` by name, as gap.json has them."""
     dt: float
     """Sampling interval in seconds."""
     u: FloatArray
@@ -124,11 +124,12 @@ class Excitation:
     def words(self) -> str:
         """Kind and parameters, as in ``sine (frequency 40 Hz, amplitude 2 A)``."""
         told = []
-        for name, (value, unit) in self.parameters.items():
+        for name, about in self.parameters.items():
             plain = name.removesuffix("_hz").removesuffix("_s").replace("_", " ")
+            value = about["value"]
             values = value if isinstance(value, list) else [value]
             shown = ", ".join(f"{item:.3g}" for item in values)
-            told.append(f"{plain} {shown} {unit}".rstrip())
+            told.append(f"{plain} {shown} {about['unit']}".rstrip())
         return f"{self.kind.replace('-', ' ')} ({', '.join(told)})"
 
     def write(self, channel: Channel, path: str | Path) -> None:
@@ -188,7 +189,7 @@ def candidates(limits: Limits, unit: str) -> tuple[Excitation, ...]:
 def _with_units(numbers: Numbers, unit: str, seconds: float) -> dict[str, Any]:
     """Give each number its unit: the end of its name tells, else it is the input's."""
     return {
-        name: (value, UNITS.get(name.rpartition("_")[2], unit))
+        name: {"value": value, "unit": UNITS.get(name.rpartition("_")[2], unit)}
         for name, value in {**numbers, "duration_s": seconds}.items()
     }
 

@@ -114,10 +114,7 @@ class Experiment:
         """Give what gap.json holds under ``next_experiment``."""
         return {
             "excitation": self.excitation.kind,
-            "parameters": {
-                name: {"value": value, "unit": unit}
-                for name, (value, unit) in self.excitation.parameters.items()
-            },
+            "parameters": self.excitation.parameters,
             "sampling_interval_s": self.excitation.dt,
             "separation": min(self.pairs.values()),
             "existing_separation": min(self.existing.values()),

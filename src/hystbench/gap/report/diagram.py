@@ -28,16 +28,12 @@ from hystbench.gap.report.diagram_layout import (
 from hystbench.gap.report.parts import Whose, in_one_line, stages
 from hystbench.model import Model
 
-#: Edge, face and width of the edge of a box. Added boxes differ by their edges too.
-LOOKS: dict[Whose, tuple[str, str, float]] = {
-    "simulator": (GREY, "#F2F2F2", 0.8),
-    "added": (BLUE, "#E1EEF7", 1.6),
-    "put in": (ORANGE, "#FCF2DC", 1.6),
-}
-SAID: dict[Whose, str] = {
-    "simulator": "the simulator",
-    "added": "added by the search",
-    "put in": "put in by you",
+#: Edge, face and width of the edge of a box, and what they mean. Added boxes differ by
+#: their edges too.
+LOOKS: dict[Whose, tuple[str, str, float, str]] = {
+    "simulator": (GREY, "#F2F2F2", 0.8, "the simulator"),
+    "added": (BLUE, "#E1EEF7", 1.6, "added by the search"),
+    "put in": (ORANGE, "#FCF2DC", 1.6, "put in by you"),
 }
 DRAWN = {"color": BLACK, "linewidth": 0.8}
 """Look of a line."""
@@ -95,7 +91,7 @@ def _paint(axes: Axes, shapes: Sequence[Shape]) -> None:
 def _frame(
     axes: Axes, x: float, y: float, width: float, height: float, whose: Whose
 ) -> None:
-    edge, face, thick = LOOKS[whose]
+    edge, face, thick, _ = LOOKS[whose]
     style = "round,pad=0,rounding_size=0.04"
     look: dict[str, Any] = {"edgecolor": edge, "facecolor": face, "linewidth": thick}
     axes.add_patch(FancyBboxPatch((x, y), width, height, boxstyle=style, **look))
@@ -143,5 +139,7 @@ def _key(axes: Axes, there: Collection[Whose]) -> None:
     x = PAD
     for whose in (each for each in LOOKS if each in there):
         _frame(axes, x, -0.17, 0.16, 0.1, whose)
-        axes.text(x + 0.22, -0.12, SAID[whose], fontsize=NUMBER_POINTS, va="center")
+        axes.text(
+            x + 0.22, -0.12, LOOKS[whose][-1], fontsize=NUMBER_POINTS, va="center"
+        )
         x += 1.5
