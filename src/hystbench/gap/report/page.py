@@ -97,8 +97,7 @@ def with_optional(content: Mapping[str, Any]) -> dict[str, Any]:
     """Give what gap.json holds, with what it may leave out."""
     gap = LEFT_OUT | dict(content)
     gap["gap"] = INTERVALS | gap["gap"]
-    if gap["black_box"]:
-        gap["black_box"] = INTERVALS | gap["black_box"]
+    gap["black_box"] = INTERVALS | gap["black_box"]
     return gap
 
 
@@ -155,8 +154,6 @@ def _diagram(content: Content) -> EmbeddedPicture:
 
 def _input_column(gap: dict[str, Any]) -> str:
     """Name the column of an input of one's own, as hystbench simulate reads it."""
-    if not gap["simulator"]:
-        return ""
     channel = gap["simulator"]["input"]
     return column_name(channel["name"], channel["unit"])
 
@@ -225,13 +222,11 @@ def _declined(gap: dict[str, Any]) -> list[dict[str, Any]]:
     return list(reversed(found.values()))
 
 
-def _ladder(gap: dict[str, Any]) -> EmbeddedPicture | None:
+def _ladder(gap: dict[str, Any]) -> EmbeddedPicture:
     rungs = [
         (f"+ {item['name']}" if k else item["name"], item["rms"])
         for k, item in enumerate(gap["ladder"])
     ]
-    if not rungs:
-        return None
     return draw(
         pictures.sizes,
         rungs,
