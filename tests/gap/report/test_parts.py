@@ -198,14 +198,6 @@ def test_a_simulator_of_ones_own_has_the_name_of_its_function():
     assert found.core.words == "rig.model:run"
 
 
-def test_an_effect_of_a_later_vocabulary_is_found_by_its_name():
-    """gap.json may name an effect that this version does not know."""
-    unknown = effect("backlash", half_width=(0.5, "mm"))
-    found = stages(model({"backlash": {"half_width": 0.5}}), gap(unknown))
-    assert found[0].core.whose == "added"
-    assert stages(model(MECHANISM), gap(effect("of-tomorrow", blocks=())))[0].core.words
-
-
 @pytest.mark.parametrize(
     ("name", "value", "unit", "expected"),
     [

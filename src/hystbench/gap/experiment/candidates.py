@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.files import write_csv
+from hystbench.files import write_columns
 from hystbench.record import Channel, FloatArray, Record, column_name
 from hystbench.signals import Signal
 from hystbench.waveforms.chirp import Chirp
@@ -148,11 +148,9 @@ class Excitation:
         if Path(path).suffix == ".npz":
             Signal("next-experiment", self.dt, self.u, channel.unit).save(path)
             return
-        rows = (
-            (f"{k * self.dt:.9g}", f"{value:.9g}") for k, value in enumerate(self.u)
-        )
-        columns = ["time_s", column_name(channel.name, channel.unit)]
-        write_csv(Path(path), columns, rows)
+        name = column_name(channel.name, channel.unit)
+        columns = {"time_s": np.arange(len(self.u)) * self.dt, name: self.u}
+        write_columns(path, columns, 9)
 
 
 def candidates(limits: Limits, unit: str) -> tuple[Excitation, ...]:

@@ -105,7 +105,7 @@ def _runs_away(content: Mapping[str, Any]) -> list[str]:
 
 def _new_in_every_record(content: Mapping[str, Any], names: list[str]) -> list[str]:
     share = content["fit"]["new_in_every_record"]
-    beside = [name for name in names if _is_beside(effects().get(name))]
+    beside = [name for name in names if _is_beside(effects()[name])]
     if share < WORTH_A_REASON or not beside:
         return []
     return [
@@ -114,9 +114,9 @@ def _new_in_every_record(content: Mapping[str, Any], names: list[str]) -> list[s
     ]
 
 
-def _is_beside(effect: Effect | None) -> bool:
+def _is_beside(effect: Effect) -> bool:
     """Tell whether an effect can be a signal beside the chain."""
-    return effect is not None and type(effect).describe is not Effect.describe
+    return type(effect).describe is not Effect.describe
 
 
 def _outside(content: Mapping[str, Any]) -> list[str]:

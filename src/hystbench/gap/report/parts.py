@@ -80,8 +80,7 @@ class _Owner:
     @property
     def of_block(self) -> bool:
         """Whether they are numbers of a block that is not the effect's own."""
-        effect = effects().get(self.effect)
-        return bool(effect and effect.numbers)
+        return bool(effects()[self.effect].numbers)
 
     @property
     def part(self) -> Part:
@@ -222,8 +221,7 @@ def _owners(model: Model, gap: Mapping[str, Any]) -> dict[int, list[_Owner]]:
             own = _Owner(item["name"], "added", _told_of(item, model.chain[k]))
             found.setdefault(k, []).append(own)
     for item in (gap.get("built_in") or {"effects": []})["effects"]:
-        effect = effects().get(item["name"])
-        names = {item["name"], *(effect.laws if effect else ())}
+        names = {item["name"], *effects()[item["name"]].laws}
         for k, block in enumerate(model.chain):
             if block.name in names and all(x.of_block for x in found.get(k, [])):
                 own = _Owner(item["name"], "put in", _now_of(item, block))
