@@ -109,12 +109,13 @@ def test_a_file_that_cannot_be_read_is_replaced(tmp_path):
     assert json.loads(file.read_text()) == [2]
 
 
-def test_the_folder_stays_within_its_bound(tmp_path):
+def test_the_folder_stays_within_its_bound(tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "BOUND", 500)
     for k in range(10):
-        one(Remembered(tmp_path, silent, bound=500), str(k), "x" * 100)
+        one(Remembered(tmp_path, silent), str(k), "x" * 100)
     sizes = [file.stat().st_size for file in tmp_path.glob("*.json")]
     assert sum(sizes) <= 500
-    assert one(Remembered(tmp_path, silent, bound=500), "9", "new") == "x" * 100
+    assert one(Remembered(tmp_path, silent), "9", "new") == "x" * 100
 
 
 def test_where_nothing_can_be_written_it_is_said_once(tmp_path):
