@@ -41,12 +41,11 @@ class Vocabulary:
 
     def __post_init__(self) -> None:
         """Refuse names that mean nothing."""
-        known = _effects()
         for option, names in (("--without", self.without), ("--with", self.fixed)):
             for name in names:
-                if name not in known:
+                if name not in _effects():
                     raise InputError(
-                        f"{option}: no effect {name!r}; {nearest(name, known)}"
+                        f"{option}: no effect {name!r}; {nearest(name, _effects())}"
                     )
                 if names.count(name) > 1:
                     raise InputError(f"{option}: {name!r} twice; expected it once")
