@@ -45,7 +45,7 @@ class Calls:
     bound: int | None = None
     """Calls that may be made at most."""
     reserve: int = 0
-    """Of these, calls that are kept back until :meth:`release`."""
+    """Of these, calls that are kept back, until it is set to zero."""
     kept: KeptOutputs | None = None
     """Outputs on disk, of this run and of earlier ones."""
     say: Callable[[str], None] = _silent
@@ -132,10 +132,6 @@ class Calls:
     def refused(self) -> bool:
         """Tell whether a call was needed that the bound did not allow."""
         return self._refused
-
-    def release(self) -> None:
-        """Allow the calls that were kept back."""
-        self.reserve = 0
 
     def _found_or_made(
         self, simulator: Simulator, z: FloatArray, dt: float
