@@ -139,7 +139,7 @@ def loop_of_plays(records: Sequence[Record]) -> Model:
     thresholds = amplitude * np.arange(PLAY_OPERATORS) / PLAY_OPERATORS
     tables, outputs = [], []
     for record in records:
-        plays = play(record.u, thresholds)[0]
+        plays = play(record.u, thresholds)
         weight = 1 / np.sqrt(len(record))  # a record counts once, however long
         tables.append(weight * np.column_stack([np.ones(len(record)), plays]))
         outputs.append(weight * record.y)
