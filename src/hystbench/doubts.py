@@ -10,7 +10,7 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from hystbench.copies import CommonPiece, Written, common_piece
-from hystbench.dataset import Dataset
+from hystbench.dataset import CHANNELS, Dataset
 from hystbench.errors import InputError
 from hystbench.record import FloatArray, Record
 from hystbench.units import named_otherwise, plain, prefixed, seconds
@@ -113,7 +113,7 @@ def _said(dataset: Dataset, one: Record, two: Record, piece: CommonPiece) -> str
 
 def _other_columns(dataset: Dataset) -> Iterator[str]:
     """Tell of columns whose names end with another unit than the one that is said."""
-    for key in ("time", "input", "output", "simulated"):
+    for key in CHANNELS:
         about = dataset.about.get(key)
         if about is None or about.get("meant"):
             continue

@@ -95,7 +95,7 @@ def check(dataset: Dataset, effects: bool = True) -> Check:
     records = tuple(dataset.read(name) for name in dataset.record_files)
     fit = [record for record in records if record.use == "fit"]
     base = loop_of_plays(fit)
-    hold = dataset.about["input"].get("hold", "band-limited")
+    hold = dataset.input_hold
     outputs = run_base(base, records, hold)
     compared = [Compared(*pair) for pair in zip(records, outputs, strict=True)]
     facts = tuple(facts_of(dataset, item) for item in compared)

@@ -22,8 +22,12 @@ from hystbench.inspection.columns import (
     Flags,
     RecordColumns,
 )
-from hystbench.inspection.input_summary import InputSummary, summary_of
-from hystbench.inspection.missing import cannot_be_bridged, runs
+from hystbench.inspection.input_summary import (
+    InputSummary,
+    cannot_be_bridged,
+    runs,
+    summary_of,
+)
 from hystbench.inspection.names import split_unit
 from hystbench.periods import find_period
 from hystbench.record import Record
