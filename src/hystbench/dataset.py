@@ -14,7 +14,7 @@ from hystbench.device_kinds import DEVICE_KINDS, DeviceKind
 from hystbench.errors import InputError, nearest, short
 from hystbench.formats import SUFFIXES, Column, Table, read_table
 from hystbench.quantities import QUANTITIES, Quantities, Quantity, quantity_of
-from hystbench.record import Channel, Record, Use
+from hystbench.record import Channel, Hold, Record, Use
 from hystbench.samples import (
     UNIFORM_TOLERANCE,
     check_moves,
@@ -34,7 +34,6 @@ from hystbench.yaml_files import load_yaml
 RECORD_NAME = re.compile(r"[^.\-\s{}*?\\\x00-\x1f][^{}*?\\\x00-\x1f]*")
 
 
-InputHold = Literal["zero-order", "linear", "band-limited"]
 CHANNELS = ("time", "input", "output", "simulated")
 """What a column of a dataset may be."""
 
@@ -68,9 +67,9 @@ class Dataset:
         return tuple(self.entry(name).get("stands_still", ()))
 
     @property
-    def input_hold(self) -> InputHold:
+    def input_hold(self) -> Hold:
         """How the input moves between samples."""
-        hold: InputHold = self.about["input"].get("hold", "band-limited")
+        hold: Hold = self.about["input"].get("hold", "band-limited")
         return hold
 
     def meant(self, name: str) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 import zipfile
 from pathlib import Path
-from typing import Annotated, NamedTuple, cast
+from typing import Annotated, NamedTuple
 
 import click
 import numpy as np
@@ -112,9 +112,8 @@ def _read_file(record: Path, dataset: Path | None, expected: Channel) -> Simulat
         )
     if names:
         found = about.read(names[0])
-        hold = cast(Hold, about.about["input"].get("hold", "band-limited"))
-        own = found.dt, found.u, found.input
-        return SimulationTask(*own, hold, found, about.simulated_column)
+        own = found.dt, found.u, found.input, about.input_hold
+        return SimulationTask(*own, found, about.simulated_column)
     files = [file.name for file in about.record_files.values()]
     raise InputError(
         f"{about.path}: records: {record} is none of them; "
