@@ -17,10 +17,19 @@ from hystbench.figures.style import (
     axis_label,
     unit_text,
 )
+from hystbench.gap.fitting.parameter_units import written
 from hystbench.gap.report.pictures import EmbeddedPicture, draw
-from hystbench.inspection import words
 from hystbench.inspection.check import Check
 from hystbench.inspection.facts import Facts
+from hystbench.inspection.screen import (
+    FLOORS,
+    KINDS,
+    band,
+    headline,
+    jitter_text,
+    percent,
+    quantity,
+)
 from hystbench.inspection.visible import REVEALED, SmallestSeen
 from hystbench.report.layout import page_environment
 from hystbench.report.markup import one_micro
@@ -34,6 +43,8 @@ LOOPS_IN_ROW = 4
 """Loops in a row."""
 LEAST_STRENGTH = 1e-4
 """Share of the output below which the axis of strength ends."""
+RIVALS_TOLD = 2
+"""Rivals that are named."""
 
 
 def page(found: Check) -> str:
@@ -43,14 +54,14 @@ def page(found: Check) -> str:
     unit = unit_text(record.output.unit)
     made = template.render(
         name=found.dataset.name,
-        headline=words.headline(found),
+        headline=headline(found),
         channels=f"{record.input.name} ({unit_text(record.input.unit)}) to "
         f"{record.output.name} ({unit})",
-        noise=f"{words.quantity(found.floor.rms, record.output.unit)} rms, "
-        f"{words.FLOORS[found.floor.method]}",
-        left=f"{words.quantity(found.left, record.output.unit)} rms",
+        noise=f"{quantity(found.floor.rms, record.output.unit)} rms, "
+        f"{FLOORS[found.floor.method]}",
+        left=f"{quantity(found.left, record.output.unit)} rms",
         findings=found.findings,
-        kinds=words.KINDS,
+        kinds=KINDS,
         records=_records(found),
         pictures=_pictures(found),
         chart=_chart(found),
@@ -73,7 +84,7 @@ def _records(found: Check) -> PageTable:
             x.period, str(x.period or "none")
         ),
         Heading("periods", True): lambda x: number(x.periods, f"{x.periods:.3g}"),
-        Heading("band"): words.band,
+        Heading("band"): band,
         Heading(f"input ({unit_text(record.input.unit)})"): lambda x: (
             f"{x.input.low:.3g} to {x.input.high:.3g}"
         ),
@@ -99,7 +110,7 @@ def _records(found: Check) -> PageTable:
 def _jitter(item: Facts) -> str:
     if item.jitter is None:
         return "no clock"
-    return words.jitter_text(item.jitter).removesuffix(" %")
+    return jitter_text(item.jitter).removesuffix(" %")
 
 
 def _pictures(found: Check) -> list[EmbeddedPicture]:
@@ -146,12 +157,10 @@ def _revealed(found: Check) -> PageTable:
     units = record.input.unit, record.output.unit
     shown: dict[Heading, Callable[[SmallestSeen], Cell | str]] = {
         Heading("effect"): attrgetter("effect"),
-        Heading("seen from", True): lambda x: number(
-            x.seen_from, words.percent(x.seen_from)
-        ),
-        Heading("that is"): lambda x: words.strength(x, *units),
+        Heading("seen from", True): lambda x: number(x.seen_from, percent(x.seen_from)),
+        Heading("that is"): lambda x: _strength(x, *units),
         Heading("in the form"): lambda x: x.form.replace("_", " "),
-        Heading("can be mistaken for"): lambda x: words.mistaken(x) or "nothing",
+        Heading("can be mistaken for"): lambda x: _mistaken(x) or "nothing",
     }
     return table_of(
         "revealed",
@@ -263,3 +272,25 @@ def strengths(axes: Sequence[Axes], effects: Sequence[SmallestSeen]) -> None:
 def _legend(ax: Axes) -> None:
     """Put the legend above the axes, in one row."""
     ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, frameon=False)
+
+
+def _strength(item: SmallestSeen, of_input: str, of_output: str) -> str:
+    """Write the number at which an effect is seen first, with its unit."""
+    if math.isnan(item.value):
+        return ""
+    unit = written(item.unit, of_input, of_output)
+    name = item.number.replace("_", " ").removesuffix(" s").removesuffix(" hz")
+    return f"{name} {quantity(item.value, unit)}"
+
+
+def _mistaken(item: SmallestSeen) -> str:
+    """Say what an effect may be mistaken for until it is how large."""
+    near = item.rivals[:RIVALS_TOLD]
+    if not near:
+        return ""
+    told = [
+        f"{name} (never told)" if share > 1 else f"{name} (up to {percent(share)})"
+        for name, share in near
+    ]
+    more = len(item.rivals) - len(near)
+    return ", ".join(told) + (f" and {more} more" if more else "")
