@@ -72,7 +72,11 @@ def doubts(
         if one.use != two.use:
             _refuse_copy(dataset, one, two, piece)
         if not any("copy" in dataset.meant(item.name) for item in (one, two)):
-            found.append(_copy(dataset, one, two, piece))
+            found.append(
+                f"{_said(dataset, one, two, piece)}; it counts twice; leave one out, "
+                "or where both are meant say 'meant: [copy]' of one of them in "
+                "dataset.yaml"
+            )
     for channel in ("input", "output"):
         found += _other_size(dataset, records, channel, about)
     found += _staircases(dataset, concerned)
@@ -87,13 +91,6 @@ def _refuse_copy(
     raise InputError(
         f"{_said(dataset, one, two, piece)}, which is to be fitted; expected records "
         "held out that no fit has seen: measure another, or give both 'use: fit'"
-    )
-
-
-def _copy(dataset: Dataset, one: Record, two: Record, piece: CommonPiece) -> str:
-    return (
-        f"{_said(dataset, one, two, piece)}; it counts twice; leave one out, or where "
-        "both are meant say 'meant: [copy]' of one of them in dataset.yaml"
     )
 
 
