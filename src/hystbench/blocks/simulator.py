@@ -90,16 +90,6 @@ class Simulator(Block, place="base"):
         """
         return current().output(self, z, dt)
 
-    def again(self, z: FloatArray, dt: float) -> FloatArray:
-        """Run the simulator, whatever it gave before.
-
-        Raises
-        ------
-        InputError
-            As :meth:`call` does; or the calls that a user allows are used up.
-        """
-        return current().fresh(self, z, dt)
-
 
 def _checked(z: FloatArray, given: ArrayLike) -> FloatArray:
     """Check what a simulator gave: as many finite real numbers as samples."""

@@ -59,8 +59,6 @@ class Check:
     facts: tuple[Facts, ...]
     """In their order."""
     floor: Floor
-    base: Model
-    """Beside which effects were simulated."""
     left: float
     """Rms of what it leaves on the fit records, in the output's unit."""
     findings: tuple[Finding, ...]
@@ -111,7 +109,6 @@ def check(dataset: Dataset, effects: bool = True) -> Check:
         tuple(item.record for item in compared),
         facts,
         floor,
-        base,
         left,
         tuple(_findings(dataset, records, facts, floor)),
         seen_effects(base, [item.record for item in to_fit], floor.rms, hold)

@@ -37,8 +37,6 @@ class InputSummary:
     """Range, in the input's unit."""
     rate: float
     """Rms of its rate, in its unit a second."""
-    fastest: float
-    """Largest rate."""
 
     @property
     def span(self) -> float:
@@ -64,15 +62,13 @@ def summary_of(u: FloatArray, dt: float) -> InputSummary:
     total = np.cumsum(power)
     edges = ((1 - POWER_SHARE) / 2 * total[-1], (1 + POWER_SHARE) / 2 * total[-1])
     low, high = np.searchsorted(total, edges) / (len(u) * dt)
-    slopes = np.diff(u) / dt
     return InputSummary(
         _kind(u, power),
         max(float(low), 1 / (len(u) * dt)),
         max(float(high), 1 / (len(u) * dt)),
         float(u.min()),
         float(u.max()),
-        rms(slopes),
-        float(np.abs(slopes).max()),
+        rms(np.diff(u) / dt),
     )
 
 
