@@ -34,10 +34,6 @@ class CallsUsedUp(InputError):  # noqa: N818  (a bound that was asked for)
     """The calls that a user allows are used up."""
 
 
-def _silent(line: str) -> None:
-    """Tell nobody."""
-
-
 @dataclass
 class Calls:
     """Outputs of simulators, each made by a call or known from an earlier one."""
@@ -48,7 +44,7 @@ class Calls:
     """Of these, calls that are kept back, until it is set to zero."""
     kept: KeptOutputs | None = None
     """Outputs on disk, of this run and of earlier ones."""
-    say: Callable[[str], None] = _silent
+    say: Callable[[str], None] = lambda _: None
     """Told a line of progress at a time."""
     clock: Callable[[], float] = time.monotonic
     """Gives seconds."""
