@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from hystbench.blocks.added_signals import SensorNoise
+from hystbench.blocks.sensor_noise import SensorNoise
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import Block
 from hystbench.blocks.force import Force
