@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -14,7 +14,7 @@ from hystbench.device_kinds import DEVICE_KINDS, DeviceKind
 from hystbench.errors import InputError, nearest, short
 from hystbench.formats import SUFFIXES, Column, Table, read_table
 from hystbench.quantities import QUANTITIES, Quantities, Quantity, quantity_of
-from hystbench.record import Channel, FloatArray, Record, Use
+from hystbench.record import Channel, Hold, Record, Use
 from hystbench.samples import (
     UNIFORM_TOLERANCE,
     check_moves,
@@ -34,7 +34,8 @@ from hystbench.yaml_files import load_yaml
 RECORD_NAME = re.compile(r"[^.\-\s{}*?\\\x00-\x1f][^{}*?\\\x00-\x1f]*")
 
 
-InputHold = Literal["zero-order", "linear", "band-limited"]
+CHANNELS = ("time", "input", "output", "simulated")
+"""What a column of a dataset may be."""
 
 
 @dataclass(frozen=True)
@@ -66,9 +67,9 @@ class Dataset:
         return tuple(self.entry(name).get("stands_still", ()))
 
     @property
-    def input_hold(self) -> InputHold:
+    def input_hold(self) -> Hold:
         """How the input moves between samples."""
-        hold: InputHold = self.about["input"].get("hold", "band-limited")
+        hold: Hold = self.about["input"].get("hold", "band-limited")
         return hold
 
     def meant(self, name: str) -> tuple[str, ...]:
@@ -91,34 +92,28 @@ class Dataset:
             increase uniformly, or a channel does not move.
         """
         file, entry = self.record_files[name], self.entry(name)
-        time_about = self.about.get("time")
-        channels = [self.about["input"], self.about["output"]]
-        abouts = [*channels]
-        if time_about is not None:
-            abouts.insert(0, time_about)
-        if self.simulated_column is not None:
-            abouts.append(self.about["simulated"])
-        _check_digest(self.path, file, entry)
-        table = read_table(file, [item["column"] for item in abouts])
-        columns = [table.column(x["column"], entry.get("group", "")) for x in abouts]
-        for about, column in zip(abouts, columns, strict=True):
-            check_unit(file, about, column)
-        rows = rows_of(self.path, table, entry, columns)
-        signals = [
-            whole(table, column, rows, entry.get("missing")) for column in columns
-        ]
-        if time_about is not None:
-            unit = seconds(f"{self.path}: time: unit", time_about["unit"])
-            tolerance = time_about.get("tolerance", UNIFORM_TOLERANCE)
-            time = signals.pop(0) * unit
+        table, columns, rows = self.columns(name)
+        signals = {
+            key: whole(table, column, rows, entry.get("missing"))
+            for key, column in columns.items()
+        }
+        if "time" in signals:
+            about = self.about["time"]
+            unit = seconds(f"{self.path}: time: unit", about["unit"])
+            tolerance = about.get("tolerance", UNIFORM_TOLERANCE)
+            time = signals["time"] * unit
             dt = sampling_interval(table, time, tolerance, rows.start)
         else:
-            dt = 1.0 / self._sampling_frequency(table, columns, entry)
-        u, y, *others = signals
+            dt = 1.0 / self._sampling_frequency(table, columns.values(), entry)
         # Time alone may be interpolated without a loss: it is uniform anyway.
-        lost = ~np.all(
-            [np.isfinite(x.values[rows]) for x in columns[-len(signals) :]], 0
-        )
+        there = [
+            np.isfinite(column.values[rows])
+            for key, column in columns.items()
+            if key != "time"
+        ]
+        lost = ~np.all(there, 0)
+        u, y = signals["input"], signals["output"]
+        channels = [self.about["input"], self.about["output"]]
         for item, values in zip(channels, (u, y), strict=True):
             check_moves(file, item, values)
         given, measured = (Channel(_name(item), item["unit"]) for item in channels)
@@ -135,12 +130,41 @@ class Dataset:
             "measured",
             self.use(name),
             period,
-            others[0] if others else None,
+            signals.get("simulated"),
             lost if lost.any() else None,
         )
 
+    def columns(self, name: str) -> tuple[Table, dict[str, Column], slice]:
+        """Read the columns of a record, as they stand in its file.
+
+        Returns
+        -------
+        table : Table
+            All that was read of the file.
+        columns : dict of str to Column
+            By what they are: those of :data:`CHANNELS` that dataset.yaml names.
+        rows : slice
+            The record's samples in them.
+
+        Raises
+        ------
+        InputError
+            If a column is missing or has another unit, or there are no such rows.
+        """
+        file, entry = self.record_files[name], self.entry(name)
+        abouts = {key: self.about[key] for key in CHANNELS if key in self.about}
+        _check_digest(self.path, file, entry)
+        table = read_table(file, [about["column"] for about in abouts.values()])
+        columns = {
+            key: table.column(about["column"], entry.get("group", ""))
+            for key, about in abouts.items()
+        }
+        for key, about in abouts.items():
+            check_unit(file, about, columns[key])
+        return table, columns, rows_of(self.path, table, entry, [*columns.values()])
+
     def _sampling_frequency(
-        self, table: Table, columns: Sequence[Column], entry: Mapping[str, Any]
+        self, table: Table, columns: Iterable[Column], entry: Mapping[str, Any]
     ) -> float:
         """Give the sampling frequency in Hz of a record without a column of time."""
         for about in (entry, self.about):
@@ -257,7 +281,7 @@ def dataset_of(file: Path, about: dict[str, Any]) -> Dataset:
         )
     if not any(dataset.use(name) == "fit" for name in files):
         raise InputError(f"{file}: records: expected at least one with 'use: fit'")
-    channels = [key for key in ("time", "input", "output", "simulated") if key in about]
+    channels = [key for key in CHANNELS if key in about]
     columns = [about[channel]["column"] for channel in channels]
     for column in columns:
         if columns.count(column) > 1:
@@ -275,33 +299,6 @@ def dataset_of(file: Path, about: dict[str, Any]) -> Dataset:
     if "time" in about:
         seconds(f"{file}: time: unit", about["time"]["unit"])
     return dataset
-
-
-def read_input(file: Path, column: str) -> tuple[float, FloatArray]:
-    """Read an input of one's own: a CSV file with the columns time_s and another.
-
-    Parameters
-    ----------
-    file : Path
-    column : str
-        Name of the input's column.
-
-    Returns
-    -------
-    dt : float
-        Sampling interval in seconds.
-    u : ndarray, shape (n,)
-
-    Raises
-    ------
-    InputError
-        If a column is missing, a cell is no finite number, or sampling is not uniform.
-    """
-    table = read_table(file, ["time_s", column])
-    columns = [table.column(name) for name in ("time_s", column)]
-    rows = rows_of(file, table, {}, columns)
-    time, u = (whole(table, each, rows, None, False) for each in columns)
-    return sampling_interval(table, time, UNIFORM_TOLERANCE, 0, False), u
 
 
 def _file_of(about: Path, entry: Mapping[str, Any]) -> Path:

@@ -10,7 +10,7 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from hystbench.copies import CommonPiece, Written, common_piece
-from hystbench.dataset import Dataset
+from hystbench.dataset import CHANNELS, Dataset
 from hystbench.errors import InputError
 from hystbench.record import FloatArray, Record
 from hystbench.units import named_otherwise, plain, prefixed, seconds
@@ -72,7 +72,11 @@ def doubts(
         if one.use != two.use:
             _refuse_copy(dataset, one, two, piece)
         if not any("copy" in dataset.meant(item.name) for item in (one, two)):
-            found.append(_copy(dataset, one, two, piece))
+            found.append(
+                f"{_said(dataset, one, two, piece)}; it counts twice; leave one out, "
+                "or where both are meant say 'meant: [copy]' of one of them in "
+                "dataset.yaml"
+            )
     for channel in ("input", "output"):
         found += _other_size(dataset, records, channel, about)
     found += _staircases(dataset, concerned)
@@ -87,13 +91,6 @@ def _refuse_copy(
     raise InputError(
         f"{_said(dataset, one, two, piece)}, which is to be fitted; expected records "
         "held out that no fit has seen: measure another, or give both 'use: fit'"
-    )
-
-
-def _copy(dataset: Dataset, one: Record, two: Record, piece: CommonPiece) -> str:
-    return (
-        f"{_said(dataset, one, two, piece)}; it counts twice; leave one out, or where "
-        "both are meant say 'meant: [copy]' of one of them in dataset.yaml"
     )
 
 
@@ -113,7 +110,7 @@ def _said(dataset: Dataset, one: Record, two: Record, piece: CommonPiece) -> str
 
 def _other_columns(dataset: Dataset) -> Iterator[str]:
     """Tell of columns whose names end with another unit than the one that is said."""
-    for key in ("time", "input", "output", "simulated"):
+    for key in CHANNELS:
         about = dataset.about.get(key)
         if about is None or about.get("meant"):
             continue

@@ -12,15 +12,13 @@ from numpy.typing import NDArray
 from hystbench.errors import InputError
 
 
-def library(name: str, package: str, place: object, extra: str) -> Any:
+def library(name: str, place: object, extra: str) -> Any:
     """Import a library that a file or a simulator needs.
 
     Parameters
     ----------
     name : str
-        As Python imports it.
-    package : str
-        As pip installs it.
+        As Python imports it; pip installs its first part.
     place : object
         What needs it, for the message.
     extra : str
@@ -34,6 +32,7 @@ def library(name: str, package: str, place: object, extra: str) -> Any:
     try:
         return importlib.import_module(name)
     except ImportError as error:
+        package = name.partition(".")[0]
         raise InputError(
             f"{place}: needs the package {package} ({error}); install it with "
             f"\"pip install 'hystbench[{extra}]'\" or 'pip install {package}'"

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.blocks.attached import Simulated, attached, through_near
-from hystbench.blocks.base import Block, RandomBlock
+from hystbench.blocks.base import Block
 from hystbench.blocks.held import HOLDS, HeldBlock, Hold
 from hystbench.blocks.parameter import Value
 from hystbench.blocks.simulated_column import SimulatedColumn
@@ -103,7 +103,7 @@ class Model:
         dt : float
             Sampling interval in seconds.
         rng : numpy.random.Generator, optional
-            Source of the random blocks' signals. Without it they add nothing and
+            Source of the sensor's noise. Without it none is added and
             the result is the same every time.
 
         Returns
@@ -115,8 +115,8 @@ class Model:
         y = u
         for step in self.steps:
             y = step.simulate(y, u, dt)
-            if rng is not None and isinstance(step, RandomBlock):
-                y = y + step.draw(len(y), dt, rng)
+            if rng is not None and hasattr(step, "draw"):
+                y = y + step.draw(len(y), rng)
         return y
 
     def simulate_near(

@@ -20,7 +20,7 @@ FORMS: tuple[Form, ...] = ("eq4", "eq12")
 
 def play(
     v: ArrayLike, thresholds: ArrayLike, state: ArrayLike | None = None
-) -> tuple[FloatArray, FloatArray]:
+) -> FloatArray:
     """Play operators, Eqs. 1 and 2.
 
     Parameters
@@ -34,10 +34,8 @@ def play(
 
     Returns
     -------
-    outputs : ndarray, shape (n, m)
+    ndarray, shape (n, m)
         Output of each operator at each sample.
-    state : ndarray, shape (m,)
-        Outputs after the last sample.
     """
     v = _array(v)
     return generalized_play(v, v, thresholds, state)
@@ -48,7 +46,7 @@ def generalized_play(
     right: ArrayLike,
     thresholds: ArrayLike,
     state: ArrayLike | None = None,
-) -> tuple[FloatArray, FloatArray]:
+) -> FloatArray:
     """Generalized play operators, Eq. 4: ``max(right - r, min(left + r, w))``.
 
     Eq. 12 is the same on envelopes that :func:`follow_direction` rewrote.
@@ -64,10 +62,8 @@ def generalized_play(
 
     Returns
     -------
-    outputs : ndarray, shape (n, m)
+    ndarray, shape (n, m)
         Output of each operator at each sample.
-    state : ndarray, shape (m,)
-        Outputs after the last sample.
 
     Raises
     ------
@@ -79,7 +75,7 @@ def generalized_play(
     end = _state(state, len(r))
     outputs = np.empty((len(left), len(r)))
     kernels.call("hb_play", len(left), len(r), left, right, r, end, outputs)
-    return outputs, end
+    return outputs
 
 
 def generalized_prandtl_ishlinskii(
@@ -200,7 +196,7 @@ def growing_play(
         If shapes differ, or a threshold or growth is negative.
     """
     if growth is None:
-        return play(v, thresholds)[0]
+        return play(v, thresholds)
     v, r = _signal("v", v), _thresholds(thresholds)
     factor = _growth(growth, len(v))
     state, outputs = np.zeros(len(r)), np.empty((len(v), len(r)))
@@ -272,9 +268,8 @@ def state_space(
     c: ArrayLike,
     d: float,
     u: ArrayLike,
-    x0: ArrayLike | None = None,
-) -> tuple[FloatArray, FloatArray]:
-    """Simulate a discrete linear system with one input and one output.
+) -> FloatArray:
+    """Simulate a discrete linear system with one input and one output, from rest.
 
     ``x(k+1) = A x(k) + B u(k)``, ``y(k) = C x(k) + D u(k)``. How the input moves
     between samples (zero- or first-order hold) is in the matrices, not here.
@@ -289,15 +284,11 @@ def state_space(
         Direct feedthrough D.
     u : array_like, shape (n,)
         Input.
-    x0 : array_like, shape (s,), optional
-        State at the first sample; zero by default.
 
     Returns
     -------
-    y : ndarray, shape (n,)
+    ndarray, shape (n,)
         Output.
-    x : ndarray, shape (s,)
-        State after the last sample.
 
     Raises
     ------
@@ -312,14 +303,14 @@ def state_space(
         raise InputError(
             f"state space: A {matrix.shape}, B {b.shape}, C {c.shape} do not fit"
         )
-    x = kernels.pad(_state(x0, size))
+    x = kernels.pad(np.zeros(size))
     columns = np.zeros((len(x), len(x)))
     columns[:size, :size] = matrix.T
     y = np.empty(len(u))
     arrays = (columns, kernels.pad(b), kernels.pad(c))
     sizes = (len(u), len(x) // kernels.WIDTH, size)
     kernels.call("hb_state_space", *sizes, *arrays, float(d), u, x, y)
-    return y, x[:size].copy()
+    return y
 
 
 def follow_direction(v: FloatArray, left: FloatArray, right: FloatArray) -> None:

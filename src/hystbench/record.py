@@ -21,6 +21,8 @@ ComplexArray = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
 Origin = Literal["twin", "plant", "measured"]
 Use = Literal["fit", "hold-out"]
+Hold = Literal["zero-order", "linear", "band-limited"]
+"""How an input moves between two samples."""
 
 KEPT = ("name", "dt", "input", "output", "origin", "use", "period_samples")
 """What an archive holds of a record beside its arrays."""

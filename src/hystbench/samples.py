@@ -7,7 +7,7 @@ from typing import Any, cast
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.formats import Column, Table
+from hystbench.formats import Column, Table, read_table
 from hystbench.record import FloatArray
 from hystbench.units import check_same_unit, is_known
 
@@ -176,3 +176,30 @@ def sampling_interval(
             f"{tolerance:.3g} of a step{hint}"
         )
     return dt
+
+
+def read_input(file: Path, column: str) -> tuple[float, FloatArray]:
+    """Read an input of one's own: a CSV file with the columns time_s and another.
+
+    Parameters
+    ----------
+    file : Path
+    column : str
+        Name of the input's column.
+
+    Returns
+    -------
+    dt : float
+        Sampling interval in seconds.
+    u : ndarray, shape (n,)
+
+    Raises
+    ------
+    InputError
+        If a column is missing, a cell is no finite number, or sampling is not uniform.
+    """
+    table = read_table(file, ["time_s", column])
+    columns = [table.column(name) for name in ("time_s", column)]
+    rows = rows_of(file, table, {}, columns)
+    time, u = (whole(table, each, rows, None, False) for each in columns)
+    return sampling_interval(table, time, UNIFORM_TOLERANCE, 0, False), u

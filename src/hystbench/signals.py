@@ -54,13 +54,13 @@ def load_signal(path: str | Path) -> Signal:
         )
 
 
-def check_definition(
+def make_signal(
     name: str,
     definition: Mapping[str, Mapping[str, Any]],
     common: Mapping[str, Any],
     place: str = "config.yaml",
-) -> tuple[str, dict[str, Any]]:
-    """Check a signal's definition in config.yaml without making the signal.
+) -> Signal:
+    """Make a signal from its definition in config.yaml.
 
     Parameters
     ----------
@@ -69,39 +69,48 @@ def check_definition(
     definition : mapping
         One key, the kind, and its parameters; they win over ``common``.
     common : mapping
-        Values for the parameters that the definition leaves out.
+        Values for the parameters that the definition leaves out, and the ``unit``.
     place : str
         Name of the file, for messages.
-
-    Returns
-    -------
-    kind : str
-    values : dict
-        A value for each parameter of the kind.
 
     Raises
     ------
     InputError
-        If the kind or a parameter is unknown, or one is missing.
+        If the kind or a parameter is unknown, one is missing or of a wrong value, a
+        frequency is not below half the sampling frequency, or the signal does not move.
     """
-    place = f"{place}: excitations: {name}"
+    where = f"{place}: excitations: {name}"
     ((kind, given),) = definition.items()
     known = waveforms(kind)
-    refuse_unknown(kind, known, f"{place}: unknown kind {kind!r}")
+    refuse_unknown(kind, known, f"{where}: unknown kind {kind!r}")
     waveform = known[kind]
     parameters = inspect.signature(waveform.samples).parameters
-    expected = list(parameters)
     for key in given:
-        refuse_unknown(key, expected, f"{place}: unknown key {key!r}")
-    values = {key: common[key] for key in expected if key in common} | dict(given)
-    for key in expected:
+        refuse_unknown(key, parameters, f"{where}: unknown key {key!r}")
+    values = {key: common[key] for key in parameters if key in common} | dict(given)
+    for key, parameter in parameters.items():
         if key not in values:
-            raise InputError(f"{place}: {kind} misses the key {key!r}")
+            raise InputError(f"{where}: {kind} misses the key {key!r}")
         # Of a module whose annotations are no text, the name comes with its module.
-        told = inspect.formatannotation(parameters[key].annotation).strip("'")
+        told = inspect.formatannotation(parameter.annotation).strip("'")
         annotation = told.rpartition(".")[2]
-        _check_value(f"{place}: {key}", key, values[key], annotation, waveform)
-    return kind, values
+        _check_value(f"{where}: {key}", key, values[key], annotation, waveform)
+    nyquist = values["sampling_frequency_hz"] / 2
+    for key, value in values.items():
+        if key.endswith("_hz") and key != "sampling_frequency_hz":
+            highest = max(value) if isinstance(value, list) else value
+            if highest >= nyquist:
+                raise InputError(
+                    f"{where}: {key}: {highest:g}; expected below {nyquist:g} Hz, "
+                    "half the sampling frequency"
+                )
+    with placed(f"{where}: "):
+        u = waveform.samples(**values)
+    if len(u) < 2 or np.ptp(u) == 0:
+        raise InputError(
+            f"{where}: {len(u)} samples that do not move; expected a signal"
+        )
+    return Signal(name, 1 / values["sampling_frequency_hz"], u, common["unit"])
 
 
 def _check_value(
@@ -121,39 +130,3 @@ def _check_value(
     if key not in waveform.any_sign and any(number < least for number in numbers):
         more = "0 or more" if least == 0 else "1 or more" if least == 1 else "above 0"
         raise InputError(f"{place}: {value!r}; expected {more}")
-
-
-def make_signal(
-    name: str,
-    definition: Mapping[str, Mapping[str, Any]],
-    common: Mapping[str, Any],
-    place: str = "config.yaml",
-) -> Signal:
-    """Make a signal from its definition in config.yaml.
-
-    Takes what :func:`check_definition` takes; ``common`` has the ``unit`` as well.
-
-    Raises
-    ------
-    InputError
-        As there, or if a frequency is not below half the sampling frequency or the
-        signal does not move.
-    """
-    kind, values = check_definition(name, definition, common, place)
-    where = f"{place}: excitations: {name}"
-    nyquist = values["sampling_frequency_hz"] / 2
-    for key, value in values.items():
-        if key.endswith("_hz") and key != "sampling_frequency_hz":
-            highest = max(value) if isinstance(value, list) else value
-            if highest >= nyquist:
-                raise InputError(
-                    f"{where}: {key}: {highest:g}; expected below {nyquist:g} Hz, "
-                    "half the sampling frequency"
-                )
-    with placed(f"{where}: "):
-        u = waveforms(kind)[kind].samples(**values)
-    if len(u) < 2 or np.ptp(u) == 0:
-        raise InputError(
-            f"{where}: {len(u)} samples that do not move; expected a signal"
-        )
-    return Signal(name, 1 / values["sampling_frequency_hz"], u, common["unit"])

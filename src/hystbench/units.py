@@ -15,12 +15,13 @@ PREFIXES = {"n": 1e-9, "u": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1
 """SI prefixes by a thousand; ``u`` is micro."""
 SYMBOLS = ("m", "s", "A", "V", "N", "T", "W", "J", "K", "C", "Hz", "Pa", "rad", "g")
 """Symbols that carry prefixes and need no library to be known."""
+SIMPLE = re.compile(f"([{''.join(PREFIXES)}]?)({'|'.join(SYMBOLS)})")
+"""A symbol with a prefix or without one."""
 NONE = ("-", "1", "")
 """What stands for a number without a unit."""
 LONGEST = 40
 """Letters of a unit."""
 
-_SIMPLE = re.compile(f"([{''.join(PREFIXES)}]?)({'|'.join(SYMBOLS)})")
 _MICRO = re.compile("[\u00b5\u03bc]")  # the sign, and the Greek letter
 _TORQUE = re.compile(f"(?<![A-Za-z])([{''.join(PREFIXES)}]?N)([cm]?m)(?![A-Za-z])")
 _EXPONENT = r"(?:\*\*|\^)\s*[-+]?(?:\d(?:\.\d)?|\(\s*[-+]?\d(?:[./]\d)?\s*\))"
@@ -55,7 +56,7 @@ def check_known(place: str, unit: str) -> None:
     InputError
         With the nearest unit, and how to write a number without one.
     """
-    if unit.strip() in NONE or _SIMPLE.fullmatch(plain(unit)):
+    if unit.strip() in NONE or SIMPLE.fullmatch(plain(unit)):
         return
     _parsed(place, unit)
 
@@ -139,7 +140,7 @@ def prefixed(unit: str, factor: float) -> str | None:
     factor : float
         By how much numbers look too large: 1000 makes ``mA`` of ``A``.
     """
-    found = re.match(_SIMPLE.pattern + r"(?![A-Za-z])", plain(unit))
+    found = re.match(SIMPLE.pattern + r"(?![A-Za-z])", plain(unit))
     if found is None:
         return None
     prefix, symbol = found.groups()
@@ -154,9 +155,9 @@ def named_otherwise(column: str, unit: str) -> str | None:
 
     Prefixes alone are looked at: ``time_ms`` beside ``s``, ``i (mA)`` beside ``A``.
     """
-    said = _SIMPLE.fullmatch(plain(unit))
+    said = SIMPLE.fullmatch(plain(unit))
     last = re.search(r"[\s_/(\[]([^\W\d_]+)[)\]]?$", plain(column))
-    named = _SIMPLE.fullmatch(last[1]) if last else None
+    named = SIMPLE.fullmatch(last[1]) if last else None
     if said is None or named is None or said[2] != named[2] or said[1] == named[1]:
         return None
     return named[0]
@@ -186,7 +187,7 @@ def alike(place: str, unit: str, references: Iterable[str]) -> str | None:
         If it is no unit.
     """
     references = tuple(references)
-    simple = _SIMPLE.fullmatch(plain(unit))
+    simple = SIMPLE.fullmatch(plain(unit))
     if simple is not None and simple[2] in references:
         return simple[2]  # known without a library that takes long to load
     base, with_force = _made_of(place, unit)

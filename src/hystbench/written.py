@@ -253,7 +253,7 @@ def reads(path: str | Path) -> None:
         return  # whoever reads it says so
     run.inputs[found.st_dev, found.st_ino] = path
     for output in run.outputs.values():
-        _refuse_input(output, run)
+        _refuse_input(output)
 
 
 def is_input(path: str | Path) -> bool:
@@ -300,8 +300,7 @@ def check_free(path: str | Path) -> None:
     described = _described(path)
     if not os.path.lexists(path):
         return
-    if _run.get() is not None:
-        _refuse_input(path, _run.get() or CommandFiles())
+    _refuse_input(path)
     if path.is_dir() and not path.is_symlink():
         raise InputError(f"{path}: a folder; expected a file or nothing")
     if is_ours(path):
@@ -334,8 +333,11 @@ def check_writable(folder: str | Path) -> None:
         raise InputError(f"{place}: not writable; expected a folder to write into")
 
 
-def _refuse_input(output: Path, run: CommandFiles) -> None:
+def _refuse_input(output: Path) -> None:
     """Refuse an output that is an input by another name, or by the same."""
+    run = _run.get()
+    if run is None:
+        return
     try:
         found = output.stat()
     except OSError:

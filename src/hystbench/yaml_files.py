@@ -80,9 +80,15 @@ def parse_yaml(text: str, place: str) -> Any:
             if node is None:
                 return None
             _check_keys(loader, node, place)
-            return _constructed(loader, node, place)
+            return loader.construct_document(node)
         finally:
             loader.dispose()
+    except InputError:
+        raise
+    except ValueError as error:  # a date such as 2024-13-45, or too many digits
+        raise InputError(
+            f"{place}: a date or number that is none ({error}); expected text in quotes"
+        ) from error
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = f"line {mark.line + 1}: " if mark else ""
@@ -91,15 +97,6 @@ def parse_yaml(text: str, place: str) -> Any:
             if problem.startswith(known):
                 problem = hint
         raise InputError(f"{place}: {where}{problem}") from error
-
-
-def _constructed(loader: Any, node: Node, place: str) -> Any:
-    try:
-        return loader.construct_document(node)
-    except ValueError as error:  # a date such as 2024-13-45, or too many digits
-        raise InputError(
-            f"{place}: a date or number that is none ({error}); expected text in quotes"
-        ) from error
 
 
 def _check_bounds(events: Any, place: str) -> None:

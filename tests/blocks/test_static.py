@@ -28,7 +28,7 @@ def test_values_worked_out_by_hand(block, expected):
 
 def test_sensor_noise_is_white_and_of_the_stated_rms():
     n = 100_000
-    noise = SensorNoise(rms=0.3).draw(n, 1e-4, np.random.default_rng(7))
+    noise = SensorNoise(rms=0.3).draw(n, np.random.default_rng(7))
     # Five standard errors of mean, rms and lag-one correlation of white noise.
     assert abs(noise.mean()) < 5 * 0.3 / np.sqrt(n)
     assert abs(noise.std() / 0.3 - 1) < 5 / np.sqrt(2 * n)

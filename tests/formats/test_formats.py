@@ -243,7 +243,7 @@ def test_a_missing_library_is_told_with_what_to_install(monkeypatch):
         raise ImportError(f"No module named {name!r}")
 
     monkeypatch.setattr(libraries.importlib, "import_module", missing)
-    said = message(lambda: libraries.library("h5py", "h5py", "rig.mat", "formats"))
+    said = message(lambda: libraries.library("h5py", "rig.mat", "formats"))
     assert "rig.mat: needs the package h5py" in said
     assert "pip install 'hystbench[formats]'" in said
 

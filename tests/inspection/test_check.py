@@ -8,7 +8,7 @@ import pytest
 
 from hystbench.dataset import load_dataset
 from hystbench.inspection import screen
-from hystbench.inspection.check import check
+from hystbench.inspection.check import check, loop_of_plays
 from hystbench.inspection.page import page
 from tests.inspection.made import COUNT, DT, loop, sine, write
 
@@ -203,7 +203,8 @@ def test_what_is_simulated_at_the_strength_said_is_there(plain):
     values = {"quadratic": 0.0, "cubic": 0.0, item.number: item.value}
     block = registry()["sensor-nonlinearity"].from_mapping(values)
     fit = [record for record in plain.records if record.use == "fit"]
-    outputs = [plain.base.simulate(record.u, record.dt) for record in fit]
+    base = loop_of_plays(fit)
+    outputs = [base.simulate(record.u, record.dt) for record in fit]
     adds = [block.simulate(y, y, DT) - y for y in outputs]
     share = np.sqrt(np.mean(np.concatenate(adds) ** 2))
     share /= np.sqrt(np.mean([np.var(record.y) for record in fit]))

@@ -46,7 +46,7 @@ def test_denormals_are_not_flushed():
     tiny = 2.0**-1060  # half of it is still a number, if a denormal one
     _, weights = lms([1.0], [tiny], 0.5, 1.0)
     assert weights[0] == tiny / 2
-    y, _ = state_space([[0.5]], [1.0], [1.0], 0.0, [tiny, 0, 0])
+    y = state_space([[0.5]], [1.0], [1.0], 0.0, [tiny, 0, 0])
     assert list(y) == [0, tiny, tiny / 2]
 
 
@@ -56,7 +56,7 @@ def test_denormals_are_not_flushed_in_the_rest_of_the_process():
 
 
 def test_infinite_envelopes_do_not_move_an_operator():
-    outputs, _ = generalized_play([np.inf, 1.0], [-np.inf, 1.0], [0.0, 0.5], [3.0, 3.0])
+    outputs = generalized_play([np.inf, 1.0], [-np.inf, 1.0], [0.0, 0.5], [3.0, 3.0])
     np.testing.assert_array_equal(outputs, [[3.0, 3.0], [1.0, 1.5]])
 
 

@@ -70,10 +70,10 @@ def test_plain_equations_and_compiled_operators_agree(values, radii):
 
     v, r = np.array(values), np.array(radii)
     left, right = gamma_left(v, ENVELOPE), gamma_right(v, ENVELOPE)
-    compiled, _ = operators.play(v, r)
+    compiled = operators.play(v, r)
     np.testing.assert_allclose(play(v, r), compiled, atol=1e-14)
-    compiled, _ = operators.generalized_play(left, right, r)
+    compiled = operators.generalized_play(left, right, r)
     np.testing.assert_allclose(generalized_play(v, r, ENVELOPE), compiled, atol=1e-14)
-    compiled, _ = operators.generalized_play(*sides("eq12", v, 0.0, left, right), r)
+    compiled = operators.generalized_play(*sides("eq12", v, 0.0, left, right), r)
     plain = generalized_play_eq12(v, r, ENVELOPE)
     np.testing.assert_allclose(plain, compiled, atol=1e-14)

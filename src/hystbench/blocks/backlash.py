@@ -22,8 +22,7 @@ class Backlash(Block, name="backlash", place="mechanics"):
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Follow the input at the edges of the gap."""
-        y, _ = play(z, [self.half_width], z[:1])
-        return y[:, 0]
+        return play(z, [self.half_width], z[:1])[:, 0]
 
     def step(self, sampling: Sampling) -> Step:
         """Give the play operator that starts at its first sample."""

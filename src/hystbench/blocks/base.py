@@ -185,19 +185,3 @@ class PolynomialBlock(Block):
     def step(self, sampling: Sampling) -> Step:
         """Give the polynomial."""
         return polynomial(*self.coefficients)
-
-
-class RandomBlock(Block):
-    """A block that adds a random signal.
-
-    Without a random generator a model adds nothing here, so that
-    :meth:`simulate` is the block's mean.
-    """
-
-    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """Return ``z`` as it is: the mean of what the block adds is zero."""
-        return z
-
-    @abstractmethod
-    def draw(self, n: int, dt: float, rng: np.random.Generator) -> FloatArray:
-        """Draw ``n`` samples of the random signal."""

@@ -34,10 +34,6 @@ class CallsUsedUp(InputError):  # noqa: N818  (a bound that was asked for)
     """The calls that a user allows are used up."""
 
 
-def _silent(line: str) -> None:
-    """Tell nobody."""
-
-
 @dataclass
 class Calls:
     """Outputs of simulators, each made by a call or known from an earlier one."""
@@ -45,10 +41,10 @@ class Calls:
     bound: int | None = None
     """Calls that may be made at most."""
     reserve: int = 0
-    """Of these, calls that are kept back until :meth:`release`."""
+    """Of these, calls that are kept back, until it is set to zero."""
     kept: KeptOutputs | None = None
     """Outputs on disk, of this run and of earlier ones."""
-    say: Callable[[str], None] = _silent
+    say: Callable[[str], None] = lambda _: None
     """Told a line of progress at a time."""
     clock: Callable[[], float] = time.monotonic
     """Gives seconds."""
@@ -132,10 +128,6 @@ class Calls:
     def refused(self) -> bool:
         """Tell whether a call was needed that the bound did not allow."""
         return self._refused
-
-    def release(self) -> None:
-        """Allow the calls that were kept back."""
-        self.reserve = 0
 
     def _found_or_made(
         self, simulator: Simulator, z: FloatArray, dt: float

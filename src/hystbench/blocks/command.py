@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from hystbench.blocks.parameter import number, text
-from hystbench.blocks.simulator import Simulator, digest_of
+from hystbench.blocks.simulator import CallError, Simulator, digest_of
 from hystbench.errors import InputError, short
 from hystbench.record import FloatArray
 from hystbench.scratch import scratch_folder
@@ -67,7 +67,7 @@ class Command(Simulator, name="command"):
             files.insert(0, Path(program))
         return digest_of(self.command, *files)
 
-    def run(self, call: str, z: FloatArray, dt: float) -> list[float]:
+    def run(self, z: FloatArray, dt: float) -> list[float]:
         """Start the program once."""
         time = np.arange(len(z)) * dt
         rows = zip(time.tolist(), z.tolist(), strict=True)
@@ -79,14 +79,14 @@ class Command(Simulator, name="command"):
                 given.write_text(table)
             stands = {INPUT: str(given), OUTPUT: str(gives), STEP: repr(dt)}
             words = [_filled(word, stands) for word in shlex.split(self.command)]
-            said = self._run(call, words, "" if by_file else table)
+            said = self._run(words, "" if by_file else table)
             if OUTPUT in self.command:
                 if not gives.is_file():
-                    raise InputError(f"{call}, it wrote no file {OUTPUT}")
+                    raise CallError(f"wrote no file {OUTPUT}")
                 said = gives.read_text(errors="replace")
-        return _numbers(call, said, dt, len(z))
+        return _numbers(said, dt, len(z))
 
-    def _run(self, call: str, words: list[str], table: str) -> str:
+    def _run(self, words: list[str], table: str) -> str:
         """Run a program to its end and give what it wrote to its standard output."""
         try:
             # Never through a shell; the line stands in the user's own model file.
@@ -109,17 +109,14 @@ class Command(Simulator, name="command"):
                 said, wrong = process.communicate(table, timeout=self.timeout_s)
             except subprocess.TimeoutExpired:
                 _end(process)
-                raise InputError(
-                    f"{call}, it ran for more than {self.timeout_s:g} s (timeout_s)"
-                ) from None
+                told = f"ran for more than {self.timeout_s:g} s (timeout_s)"
+                raise CallError(told) from None
             except BaseException:
                 _end(process)
                 raise
         if process.returncode:
             last = (wrong.strip().splitlines() or ["no message"])[-1]
-            raise InputError(
-                f"{call}, it ended with status {process.returncode}: {short(last)}"
-            )
+            raise CallError(f"ended with status {process.returncode}: {short(last)}")
         return said
 
 
@@ -136,7 +133,7 @@ def _filled(word: str, stands: dict[str, str]) -> str:
     return word
 
 
-def _numbers(call: str, said: str, dt: float, count: int) -> list[float]:
+def _numbers(said: str, dt: float, count: int) -> list[float]:
     """Read the last cell of each row; one header is passed over."""
     rows = [line.strip() for line in said.splitlines() if line.strip()]
     header = ""
@@ -144,17 +141,17 @@ def _numbers(call: str, said: str, dt: float, count: int) -> list[float]:
         header, *rows = rows
     if len(rows) != count:
         first = f", the first {short(rows[0])}" if rows else ""
-        raise InputError(
-            f"{call}, it wrote {len(rows)} rows{first}; expected {count}, one a sample"
+        raise CallError(
+            f"wrote {len(rows)} rows{first}; expected {count}, one a sample"
         )
     for k, row in enumerate(rows, start=1):
         if not _is_number(_last(row)):
-            raise InputError(f"{call}, it wrote {short(row)} as row {k}; expected y")
-    _refuse_decimal_commas(call, header, rows, dt)
+            raise CallError(f"wrote {short(row)} as row {k}; expected y")
+    _refuse_decimal_commas(header, rows, dt)
     return [float(_last(row)) for row in rows]
 
 
-def _refuse_decimal_commas(call: str, header: str, rows: list[str], dt: float) -> None:
+def _refuse_decimal_commas(header: str, rows: list[str], dt: float) -> None:
     """Refuse rows whose last comma may be a decimal one.
 
     It is none where commas alone part the cells and a number of the table has a point,
@@ -162,7 +159,7 @@ def _refuse_decimal_commas(call: str, header: str, rows: list[str], dt: float) -
 
     Raises
     ------
-    InputError
+    CallError
         If nothing tells.
     """
     unclear = [k for k, row in enumerate(rows) if DECIMAL_COMMA.search(_cells(row)[-1])]
@@ -176,9 +173,9 @@ def _refuse_decimal_commas(call: str, header: str, rows: list[str], dt: float) -
             return
         if all(_is_timed(row, k * dt, dt) for k, row in enumerate(rows)):
             return
-    raise InputError(
-        f"{call}, it wrote {short(row)} as row {unclear[0] + 1}, whose comma may be a "
-        f"decimal one; expected y with a decimal point, or a header such as {HEADER}"
+    raise CallError(
+        f"wrote {short(row)} as row {unclear[0] + 1}, whose comma may be a decimal "
+        f"one; expected y with a decimal point, or a header such as {HEADER}"
     )
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from hystbench.blocks.kept_outputs import source_digest
 from hystbench.blocks.parameter import text
-from hystbench.blocks.simulator import Simulator
+from hystbench.blocks.simulator import CallError, Simulator
 from hystbench.errors import InputError, in_line, nearest
 from hystbench.record import FloatArray
 
@@ -48,14 +48,14 @@ class External(Simulator, name="external"):
         """The function's name."""
         return self.function
 
-    def run(self, call: str, z: FloatArray, dt: float) -> Any:
+    def run(self, z: FloatArray, dt: float) -> Any:
         """Import the function, and call it once."""
         function = imported(self.function)
         try:
             return function(np.array(z), dt)
         except (Exception, SystemExit) as error:
             # Whatever a user's program raises is to be told in one line.
-            raise InputError(f"{call}, it raised {in_line(error)}") from error
+            raise CallError(f"raised {in_line(error)}") from error
 
     def source(self) -> str:
         """Digest of the modules that the function is made of."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.blocks.parameter import text
-from hystbench.blocks.simulator import FileSimulator, same_file
+from hystbench.blocks.simulator import CallError, FileSimulator, same_file
 from hystbench.errors import InputError, in_line, refuse_unknown
 from hystbench.libraries import library
 from hystbench.record import FloatArray
@@ -41,10 +41,10 @@ class Fmu(FileSimulator, name="fmu"):
         named = ":".join(filter(None, (self.input, self.output)))
         return f"{self.file}:{named}" if named else self.file
 
-    def run(self, call: str, z: FloatArray, dt: float) -> np.ndarray:
+    def run(self, z: FloatArray, dt: float) -> np.ndarray:
         """Run the unit once, from its start."""
         path = self.path
-        fmpy = library("fmpy", "fmpy", self.label, "simulators")
+        fmpy = library("fmpy", self.label, "simulators")
         folder, description = _unpacked(fmpy, self.label, *same_file(path))
         given = _variable(description, self.label, "input", self.input)
         gives = _variable(description, self.label, "output", self.output)
@@ -64,7 +64,7 @@ class Fmu(FileSimulator, name="fmu"):
             )
         except Exception as error:
             # A unit, and FMPy of it, may raise anything.
-            raise InputError(f"{call}, it failed: {in_line(error)}") from error
+            raise CallError(f"failed: {in_line(error)}") from error
         return np.asarray(found[gives])
 
 

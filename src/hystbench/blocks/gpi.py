@@ -92,8 +92,7 @@ class GeneralizedPrandtlIshlinskii(PlayBlock, name="gpi", place="base"):
         ndarray, shape (n, operators)
         """
         left, right, _ = self._envelopes(v)
-        outputs, _ = generalized_play(left, right, self.thresholds)
-        return outputs[-len(v) :]
+        return generalized_play(left, right, self.thresholds)[-len(v) :]
 
     def _envelopes(self, v: FloatArray) -> tuple[FloatArray, FloatArray, int]:
         """Give the envelope functions of an input, and how often it passes."""

@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import ClassVar, Literal, cast
+from typing import ClassVar, cast, get_args
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import choice
+from hystbench.record import Hold as Hold
 
-Hold = Literal["zero-order", "linear", "band-limited"]
-HOLDS: tuple[Hold, ...] = ("zero-order", "linear", "band-limited")
+HOLDS: tuple[Hold, ...] = get_args(Hold)
 
 
 class HeldBlock(Block):

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.blocks.parameter import text
-from hystbench.blocks.simulator import FileSimulator, same_file
+from hystbench.blocks.simulator import CallError, FileSimulator, same_file
 from hystbench.errors import InputError, in_line
 from hystbench.libraries import library
 from hystbench.record import FloatArray
@@ -45,10 +45,10 @@ class Onnx(FileSimulator, name="onnx"):
         """The file."""
         return self.file
 
-    def run(self, call: str, z: FloatArray, dt: float) -> np.ndarray:
+    def run(self, z: FloatArray, dt: float) -> np.ndarray:
         """Run the graph once."""
         path = self.path
-        runtime = library("onnxruntime", "onnxruntime", self.label, "simulators")
+        runtime = library("onnxruntime", self.label, "simulators")
         session = _session(runtime, self.label, *same_file(path))
         first, *more = session.get_inputs()
         if len(more) > 1:
@@ -64,7 +64,7 @@ class Onnx(FileSimulator, name="onnx"):
             found = session.run([session.get_outputs()[0].name], feed)[0]
         except Exception as error:
             # The runtime raises anything of a graph that does not fit.
-            raise InputError(f"{call}, it failed: {in_line(error)}") from error
+            raise CallError(f"failed: {in_line(error)}") from error
         given = np.asarray(found)
         return given.reshape(-1) if given.size == len(z) else given
 

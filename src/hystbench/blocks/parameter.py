@@ -125,16 +125,11 @@ def number(
     low: float = -HUGE,
     high: float = HUGE,
     default: object = MISSING,
+    whole: bool = False,
 ) -> Any:
     """Declare a parameter that is one number; without bounds it may be any."""
-    return _declare(Parameter("number", unit, meaning, low, high), default)
-
-
-def count(
-    meaning: str, low: float = -HUGE, high: float = HUGE, default: object = MISSING
-) -> Any:
-    """Declare a parameter that counts something: a whole number."""
-    return _declare(Parameter("number", "-", meaning, low, high, whole=True), default)
+    about = Parameter("number", unit, meaning, low, high, whole=whole)
+    return _declare(about, default)
 
 
 def numbers(

@@ -5,7 +5,7 @@ from functools import cached_property
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.parameter import TINY, count, number, numbers
+from hystbench.blocks.parameter import TINY, number, numbers
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.record import FloatArray
@@ -49,7 +49,9 @@ class Preisach(HystereticBlock, name="preisach", place="material"):
     half_width_spreads: tuple[float, ...] = numbers(
         "U", "standard deviation of (a - b) / 2", TINY, as_many_as="weights"
     )
-    cells: float = count("cells of the grid along each axis", 2, 1000, 128.0)
+    cells: float = number(
+        "-", "cells of the grid along each axis", 2, 1000, 128.0, whole=True
+    )
 
     @cached_property
     def cell_weights(self) -> FloatArray:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.blocks.curve import CENTRAL, about_sample
-from hystbench.blocks.parameter import choice, count, number
+from hystbench.blocks.parameter import choice, number
 from hystbench.blocks.step import PASSED, Sampling, Step, foretold
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.rdgpi.model import STARTS, RateDependentGPI
@@ -37,7 +37,9 @@ class RateDependentPrandtlIshlinskii(HystereticBlock, name="rdgpi", place="base"
     tau: float = number("1/U", "decay of the weights over the thresholds")
     envelope_gain: float = number("-", "the paper's xi", -1e6, 1e6)
     envelope_offset: float = number("U", "the paper's mu")
-    order: float = count("N, one less than the operators", 0, 1000, 30.0)
+    order: float = number(
+        "-", "N, one less than the operators", 0, 1000, 30.0, whole=True
+    )
     start: str = choice("operators before the first sample", STARTS, "rest")
 
     def check(self) -> None:

@@ -4,16 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.blocks.base import RandomBlock
+from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import number
 from hystbench.blocks.step import Sampling, Step, polynomial
 from hystbench.record import FloatArray
 
 
-class SensorNoise(RandomBlock, name="sensor-noise", place="sensor"):
+class SensorNoise(Block, name="sensor-noise", place="sensor"):
     """White Gaussian noise of zero mean added to the output.
 
-    Without a random generator nothing is added.
+    Without a random generator a model adds nothing here: that is the mean.
 
     References
     ----------
@@ -23,7 +23,11 @@ class SensorNoise(RandomBlock, name="sensor-noise", place="sensor"):
 
     rms: float = number("Y", "standard deviation of a sample", 0.0)
 
-    def draw(self, n: int, dt: float, rng: np.random.Generator) -> FloatArray:
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Return ``z`` as it is."""
+        return z
+
+    def draw(self, n: int, rng: np.random.Generator) -> FloatArray:
         """Draw independent normal samples."""
         return rng.normal(0.0, self.rms, n)
 

@@ -14,6 +14,10 @@ from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 
+class CallError(ValueError):
+    """What a simulator did wrong: the end of a sentence that begins with its call."""
+
+
 class Simulator(Block, place="base"):
     """A whole simulator as a block: called with samples, it gives as many.
 
@@ -39,21 +43,21 @@ class Simulator(Block, place="base"):
         """What messages call it, and by which its outputs are known."""
 
     @abstractmethod
-    def run(self, call: str, z: FloatArray, dt: float) -> ArrayLike:
+    def run(self, z: FloatArray, dt: float) -> ArrayLike:
         """Run the simulator once; what it gives is not checked yet.
 
         Parameters
         ----------
-        call : str
-            Who is called with what, for messages.
         z : ndarray, shape (n,)
         dt : float
             Sampling interval in seconds.
 
         Raises
         ------
+        CallError
+            If it fails.
         InputError
-            If it cannot be run, or fails.
+            If it cannot be run.
         """
 
     def call(self, z: FloatArray, dt: float) -> FloatArray:
@@ -62,10 +66,15 @@ class Simulator(Block, place="base"):
         Raises
         ------
         InputError
-            As :meth:`run` does, and if it gives anything else.
+            If it cannot be run, fails, or gives anything else.
         """
-        call = f"{self.label}: called with {len(z)} samples and dt = {dt:g} s"
-        return checked(call, z, self.run(call, z, dt))
+        try:
+            return _checked(z, self.run(z, dt))
+        except CallError as error:
+            raise InputError(
+                f"{self.label}: called with {len(z)} samples and dt = {dt:g} s, it "
+                f"{error}"
+            ) from error
 
     @abstractmethod
     def source(self) -> str:
@@ -81,49 +90,22 @@ class Simulator(Block, place="base"):
         """
         return current().output(self, z, dt)
 
-    def again(self, z: FloatArray, dt: float) -> FloatArray:
-        """Run the simulator, whatever it gave before.
 
-        Raises
-        ------
-        InputError
-            As :meth:`call` does; or the calls that a user allows are used up.
-        """
-        return current().fresh(self, z, dt)
-
-
-def checked(call: str, z: FloatArray, given: ArrayLike) -> FloatArray:
-    """Check what a simulator gave: as many finite real numbers as samples.
-
-    Parameters
-    ----------
-    call : str
-        Who was called with what, for the message.
-    z : ndarray, shape (n,)
-    given : array_like
-
-    Raises
-    ------
-    InputError
-        If it is anything else.
-    """
+def _checked(z: FloatArray, given: ArrayLike) -> FloatArray:
+    """Check what a simulator gave: as many finite real numbers as samples."""
     if np.iscomplexobj(given):  # NumPy would drop the imaginary part
-        raise InputError(f"{call}, it gave complex numbers; expected real ones")
+        raise CallError("gave complex numbers; expected real ones")
     try:
         y = np.array(given, dtype=np.float64)
     except (TypeError, ValueError):
-        raise InputError(
-            f"{call}, it gave {type(given).__name__}; expected {len(z)} numbers"
-        ) from None
+        told = f"gave {type(given).__name__}; expected {len(z)} numbers"
+        raise CallError(told) from None
     if y.shape != z.shape:
-        raise InputError(
-            f"{call}, it gave an array of shape {y.shape}; expected ({len(z)},)"
-        )
+        raise CallError(f"gave an array of shape {y.shape}; expected ({len(z)},)")
     lost = np.flatnonzero(~np.isfinite(y))
     if len(lost):
-        raise InputError(
-            f"{call}, it gave {y[lost[0]]} at sample {lost[0]}; expected finite numbers"
-        )
+        first = lost[0]
+        raise CallError(f"gave {y[first]} at sample {first}; expected finite numbers")
     return y
 
 

@@ -47,7 +47,7 @@ def crate(
     workflow and licence of PROJECT, and ro-crate-metadata.json: what each is, who made
     it, with which versions. Needs the package rocrate.
     """
-    rocrate = library("rocrate.rocrate", "rocrate", "crate", "crate")
+    rocrate = library("rocrate.rocrate", "crate", "crate")
     if out.exists():
         raise InputError(f"{out}: there already; expected the name of a new folder")
     for name in (WORKFLOW, CITATION):

@@ -9,7 +9,6 @@ import click
 from hystbench import options
 from hystbench.blocks.held import Hold
 from hystbench.blocks.step import LARGEST_POINTS, Sampling
-from hystbench.dataset import read_input
 from hystbench.errors import InputError, placed
 from hystbench.export import c, fmu, python
 from hystbench.export.described import Described, describe, exact_delay
@@ -19,6 +18,7 @@ from hystbench.export.past import begun, begun_inverse
 from hystbench.files import atomic_path, whole_folder, write_text
 from hystbench.model import Model, load_model
 from hystbench.record import FloatArray, column_name
+from hystbench.samples import read_input
 from hystbench.signature import In, InputHigh, InputLow, OutFolder, command
 
 

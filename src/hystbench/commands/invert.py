@@ -8,7 +8,6 @@ import numpy as np
 
 from hystbench import options
 from hystbench.blocks.step import Sampling
-from hystbench.dataset import read_input
 from hystbench.errors import InputError
 from hystbench.export import python
 from hystbench.export.inverse import describe_inverse
@@ -18,6 +17,7 @@ from hystbench.inverse.feedforward import BAND_SHARE, InputRange, feedforward
 from hystbench.metrics import rms
 from hystbench.model import Model, load_model
 from hystbench.record import FloatArray, column_name
+from hystbench.samples import read_input
 from hystbench.signature import In, InputHigh, InputLow, Out, command
 
 

@@ -2,18 +2,19 @@
 
 import zipfile
 from pathlib import Path
-from typing import Annotated, NamedTuple, cast
+from typing import Annotated, NamedTuple
 
 import click
 import numpy as np
 
 from hystbench import options
 from hystbench.blocks.held import Hold
-from hystbench.dataset import load_dataset, read_input
+from hystbench.dataset import load_dataset
 from hystbench.errors import InputError, nearest
 from hystbench.files import write_columns
 from hystbench.model import check_bounded, load_model
 from hystbench.record import Channel, FloatArray, Record, column_name, load_record
+from hystbench.samples import read_input
 from hystbench.signals import load_signal
 from hystbench.signature import In, Out, command
 from hystbench.units import check_same_unit
@@ -111,9 +112,8 @@ def _read_file(record: Path, dataset: Path | None, expected: Channel) -> Simulat
         )
     if names:
         found = about.read(names[0])
-        hold = cast(Hold, about.about["input"].get("hold", "band-limited"))
-        own = found.dt, found.u, found.input
-        return SimulationTask(*own, hold, found, about.simulated_column)
+        own = found.dt, found.u, found.input, about.input_hold
+        return SimulationTask(*own, found, about.simulated_column)
     files = [file.name for file in about.record_files.values()]
     raise InputError(
         f"{about.path}: records: {record} is none of them; "

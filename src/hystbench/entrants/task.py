@@ -64,10 +64,9 @@ def read(dataset: Path, model: Path) -> Given:
     """
     about = load_dataset(dataset)
     records = [about.read(name) for name in about.record_files]
-    hold = about.about["input"].get("hold", "band-limited")
     return Given(
         about.name,
-        load_model(model).with_hold(hold),
+        load_model(model).with_hold(about.input_hold),
         tuple(record for record in records if record.use == "fit"),
         tuple(record for record in records if record.use == "hold-out"),
         model,

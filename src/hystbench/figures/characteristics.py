@@ -32,7 +32,7 @@ def draw_play() -> Figure:
     ):
         # From rest at the lower end, so that the loop is closed.
         v = _there_and_back(amplitude)
-        outputs, _ = play(v, [1.0], state=[1.0 - amplitude])
+        outputs = play(v, [1.0], state=[1.0 - amplitude])
         w = outputs[:, 0]
         label = f"amplitude {amplitude:g} $r$"
         axes.plot(v, w, color=color, linestyle=dashes, linewidth=1.4, label=label)
@@ -64,7 +64,7 @@ def draw_generalized_play() -> Figure:
     r = thresholds(envelope, amplitude, _ORDER)[_OPERATOR]
     # At the lower end Eq. 4 takes the state from zero to the left envelope: the loop.
     v = _there_and_back(amplitude)
-    outputs, _ = generalized_play(envelope.left(v), envelope.right(v), [r])
+    outputs = generalized_play(envelope.left(v), envelope.right(v), [r])
     w = outputs[:, 0]
 
     grid = np.linspace(-amplitude, amplitude, 201)

@@ -23,7 +23,7 @@ UNITS = ("units", "unit", "Units", "Unit", "unit_string")
 
 def read(path: Path) -> Table:
     """Read all datasets that hold numbers, named by their path in the file."""
-    h5py = library("h5py", "h5py", path, "formats")
+    h5py = library("h5py", path, "formats")
     found = Filling(path)
 
     def take(name: str, item: Any) -> None:

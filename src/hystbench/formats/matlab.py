@@ -75,7 +75,7 @@ def _elements(array: np.ndarray, name: str) -> Iterator[tuple[Any, str]]:
 
 
 def _version_73(path: Path) -> Iterator[tuple[str, Any]]:
-    h5py = library("h5py", "h5py", path, "formats")
+    h5py = library("h5py", path, "formats")
     with told(path, "MATLAB file"), h5py.File(path, "r") as content:
         seen: set[int] = set()
         for name in content:

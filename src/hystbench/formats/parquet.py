@@ -29,12 +29,12 @@ def read(path: Path) -> Table:
 
 def _frame(path: Path) -> Any:
     if find_spec("pyarrow") is not None:
-        parquet = library("pyarrow.parquet", "pyarrow", path, "formats")
+        parquet = library("pyarrow.parquet", path, "formats")
         with told(path, "Parquet file"):
             frame = parquet.read_table(path).to_pandas()
     else:
         # A tenth of the size; pandas no longer takes it as an engine of its own.
-        parquet = library("fastparquet", "fastparquet", path, "formats")
+        parquet = library("fastparquet", path, "formats")
         with told(path, "Parquet file"), path.open("rb") as stream:
             frame = parquet.ParquetFile(stream).to_pandas()
     # An index with a name is a column, as a rule the time.

@@ -42,19 +42,13 @@ class Column:
     """As the file tells it."""
     sampling_frequency_hz: float | None = None
     """Of this column alone, as the file tells it."""
-    in_groups: bool = True
-    """Whether a slash in the name stands between a group and a name in it. In a text it
-    does not: a header may be ``speed [m/s]``."""
-
-    @property
-    def group(self) -> str:
-        """The group that it lies in, empty at the top."""
-        return self.name.rpartition("/")[0] if self.in_groups else ""
+    group: str = ""
+    """The group of the file that it lies in; empty at the top."""
 
     @property
     def short(self) -> str:
         """Its name inside its group."""
-        return self.name.rpartition("/")[2] if self.in_groups else self.name
+        return self.name.removeprefix(f"{self.group}/" if self.group else "")
 
 
 @dataclass(frozen=True, repr=False)
@@ -220,7 +214,9 @@ class Filling:
     def _take(
         self, name: str, values: FloatArray, unit: str | None, frequency: float | None
     ) -> None:
-        self.columns.append(Column(name, values, unit, frequency, self.in_groups))
+        # In a table without groups a name may be ``speed [m/s]``.
+        group = name.rpartition("/")[0] if self.in_groups else ""
+        self.columns.append(Column(name, values, unit, frequency, group))
 
     def leave_out(self, name: str, what: str, why: str = "") -> None:
         """Note that something of the file is no column."""

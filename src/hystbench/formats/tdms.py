@@ -13,7 +13,7 @@ UNITS = ("unit_string", "NI_UnitDescription", "unit", "Unit")
 
 def read(path: Path) -> Table:
     """Read all channels, as ``group/channel``, with unit and sampling frequency."""
-    nptdms = library("nptdms", "nptdms", path, "formats")
+    nptdms = library("nptdms", path, "formats")
     found = Filling(path)
     with told(path, "TDMS file"), _heard(found.notes):
         content = nptdms.TdmsFile.read(path)

@@ -97,7 +97,7 @@ def read(path: Path, wanted: Collection[str] | None = None) -> Table:
                 f"{layout.names[k]}: dates and times, taken as {stamps[k]}; seconds "
                 "from the first"
             )
-        found.append(Column(layout.names[k], column, unit or None, in_groups=False))
+        found.append(Column(layout.names[k], column, unit or None))
     if layout.separator != "," or layout.decimal != ".":
         comma = ", decimal commas" if layout.decimal == "," else ""
         notes.append(f"columns separated by {SIGNS[layout.separator]}{comma}")

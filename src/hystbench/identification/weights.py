@@ -34,9 +34,7 @@ class Samples:
     def outputs(self, envelope: Envelope, thresholds: FloatArray) -> FloatArray:
         """Outputs of the generalized play operators, shape (n, N + 1)."""
         path = np.concatenate([self.lead, self.u])
-        values, _ = generalized_play(
-            envelope.left(path), envelope.right(path), thresholds
-        )
+        values = generalized_play(envelope.left(path), envelope.right(path), thresholds)
         return values[len(self.lead) :]
 
     def model(

@@ -59,8 +59,6 @@ class Check:
     facts: tuple[Facts, ...]
     """In their order."""
     floor: Floor
-    base: Model
-    """Beside which effects were simulated."""
     left: float
     """Rms of what it leaves on the fit records, in the output's unit."""
     findings: tuple[Finding, ...]
@@ -95,7 +93,7 @@ def check(dataset: Dataset, effects: bool = True) -> Check:
     records = tuple(dataset.read(name) for name in dataset.record_files)
     fit = [record for record in records if record.use == "fit"]
     base = loop_of_plays(fit)
-    hold = dataset.about["input"].get("hold", "band-limited")
+    hold = dataset.input_hold
     outputs = run_base(base, records, hold)
     compared = [Compared(*pair) for pair in zip(records, outputs, strict=True)]
     facts = tuple(facts_of(dataset, item) for item in compared)
@@ -111,7 +109,6 @@ def check(dataset: Dataset, effects: bool = True) -> Check:
         tuple(item.record for item in compared),
         facts,
         floor,
-        base,
         left,
         tuple(_findings(dataset, records, facts, floor)),
         seen_effects(base, [item.record for item in to_fit], floor.rms, hold)
@@ -139,7 +136,7 @@ def loop_of_plays(records: Sequence[Record]) -> Model:
     thresholds = amplitude * np.arange(PLAY_OPERATORS) / PLAY_OPERATORS
     tables, outputs = [], []
     for record in records:
-        plays = play(record.u, thresholds)[0]
+        plays = play(record.u, thresholds)
         weight = 1 / np.sqrt(len(record))  # a record counts once, however long
         tables.append(weight * np.column_stack([np.ones(len(record)), plays]))
         outputs.append(weight * record.y)

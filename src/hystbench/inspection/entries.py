@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hystbench.dataset import RECORD_NAME
 from hystbench.errors import InputError, refuse_unknown
@@ -22,11 +21,15 @@ from hystbench.inspection.columns import (
     Flags,
     RecordColumns,
 )
-from hystbench.inspection.input_summary import InputSummary, summary_of
-from hystbench.inspection.missing import cannot_be_bridged, runs
+from hystbench.inspection.input_summary import (
+    InputSummary,
+    cannot_be_bridged,
+    runs,
+    summary_of,
+)
 from hystbench.inspection.names import split_unit
 from hystbench.periods import find_period
-from hystbench.record import Record
+from hystbench.record import Mask, Record
 from hystbench.samples import UNIFORM_TOLERANCE
 from hystbench.units import seconds
 
@@ -169,7 +172,7 @@ def checked_frequency(told: str | float) -> float:
     return value
 
 
-def missing_in(part: RecordColumns, signals: ChosenColumns) -> NDArray[np.bool_]:
+def missing_in(part: RecordColumns, signals: ChosenColumns) -> Mask:
     """Tell of each sample whether time, input or output has no number."""
     columns = [part.columns[signals.input], part.columns[signals.output]]
     if signals.time is not None:
@@ -182,11 +185,11 @@ def missing_in(part: RecordColumns, signals: ChosenColumns) -> NDArray[np.bool_]
 def _without_missing(
     part: RecordColumns,
     signals: ChosenColumns,
-    entry: dict[str, Any],
+    entry: Entry,
     given: Flags,
     ask: Ask,
     notes: list[str],
-) -> list[dict[str, Any]]:
+) -> list[Entry]:
     """Give the entries of a part: one, or a piece each between missing samples."""
     bad = missing_in(part, signals)
     if not bad.any():
@@ -227,7 +230,7 @@ def _without_missing(
     return entries
 
 
-def _give_names(entries: list[dict[str, Any]]) -> None:
+def _give_names(entries: list[Entry]) -> None:
     """Name records that share a file or a stem, or whose stem is no name.
 
     They are called after file and group; where that is taken a number follows.
@@ -259,11 +262,8 @@ def _name_of(place: Path) -> str:
 
 
 def with_roles(
-    entries: list[Entry],
-    records: Sequence[Record],
-    given: Flags,
-    notes: list[str],
-) -> list[dict[str, Any]]:
+    entries: list[Entry], records: Sequence[Record], given: Flags, notes: list[str]
+) -> list[Entry]:
     """Give the entries of several records with their roles."""
     names = [record.name for record in records]
     if given.hold_out:
@@ -283,9 +283,7 @@ def with_roles(
     ]
 
 
-def cut_in_two(
-    entry: dict[str, Any], record: Record, missing: NDArray[np.bool_]
-) -> list[dict[str, Any]]:
+def cut_in_two(entry: Entry, record: Record, missing: Mask) -> list[Entry]:
     """Cut a lone record: two thirds to fit, a third held out.
 
     Samples that are missing at the cut belong to neither.

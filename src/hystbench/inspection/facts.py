@@ -8,11 +8,13 @@ import numpy as np
 
 from hystbench.dataset import Dataset
 from hystbench.errors import InputError
-from hystbench.formats import read_table
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.records.usable import IF_REAL, check_usable
-from hystbench.inspection.input_summary import InputSummary, summary_of
-from hystbench.inspection.missing import cannot_be_bridged
+from hystbench.inspection.input_summary import (
+    InputSummary,
+    cannot_be_bridged,
+    summary_of,
+)
 from hystbench.periods import find_period, repeats
 from hystbench.record import FloatArray, Record, Use
 from hystbench.units import seconds
@@ -183,23 +185,17 @@ def _clock_and_missing(
 
     Also whether a gap of the input is longer than a straight line can stand for.
     """
-    about, entry = dataset.about.get("time"), dataset.entry(record.name)
-    wanted = [dataset.about[key]["column"] for key in ("input", "output")]
-    if about is not None:
-        wanted.append(about["column"])
-    elif "missing" not in entry:
+    about = dataset.about.get("time")
+    if about is None and "missing" not in dataset.entry(record.name):
         return None, 0, False
-    table = read_table(dataset.record_files[record.name], wanted)
-    first, last = entry.get("rows", (1, None))
-    columns = [
-        table.column(name, entry.get("group", "")).values[first - 1 : last]
-        for name in wanted
-    ]
-    missing = int(np.count_nonzero(~np.all(np.isfinite(columns), axis=0)))
-    too_far = bool(missing and cannot_be_bridged(columns[0]).any())
+    _, columns, rows = dataset.columns(record.name)
+    columns.pop("simulated", None)
+    values = {key: column.values[rows] for key, column in columns.items()}
+    missing = int(np.count_nonzero(~np.all(np.isfinite([*values.values()]), axis=0)))
+    too_far = bool(missing and cannot_be_bridged(values["input"]).any())
     if about is None:
         return None, missing, too_far
-    steps = np.diff(columns[-1]) * seconds("time: unit", about["unit"])
+    steps = np.diff(values["time"]) * seconds("time: unit", about["unit"])
     return float(np.nanstd(steps)) / record.dt, missing, too_far
 
 

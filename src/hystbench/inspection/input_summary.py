@@ -1,4 +1,4 @@
-"""What kind of input a record has, how fast and how large it is."""
+"""What kind of input a record has, how fast and large it is, and gaps in it."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 
 from hystbench.metrics import rms
-from hystbench.record import FloatArray
+from hystbench.record import FloatArray, Mask
 
 InputKind = Literal["sine", "sum of sines", "sweep", "steps", "ramps", "broadband"]
 
@@ -37,8 +37,6 @@ class InputSummary:
     """Range, in the input's unit."""
     rate: float
     """Rms of its rate, in its unit a second."""
-    fastest: float
-    """Largest rate."""
 
     @property
     def span(self) -> float:
@@ -64,15 +62,13 @@ def summary_of(u: FloatArray, dt: float) -> InputSummary:
     total = np.cumsum(power)
     edges = ((1 - POWER_SHARE) / 2 * total[-1], (1 + POWER_SHARE) / 2 * total[-1])
     low, high = np.searchsorted(total, edges) / (len(u) * dt)
-    slopes = np.diff(u) / dt
     return InputSummary(
         _kind(u, power),
         max(float(low), 1 / (len(u) * dt)),
         max(float(high), 1 / (len(u) * dt)),
         float(u.min()),
         float(u.max()),
-        rms(slopes),
-        float(np.abs(slopes).max()),
+        rms(np.diff(u) / dt),
     )
 
 
@@ -111,3 +107,42 @@ def _sweeps(u: FloatArray) -> bool:
     ways = np.sign(np.diff(gaps))
     one_way = np.count_nonzero(ways == ways[0]) >= len(ways) - 1
     return bool(one_way and gaps.max() > 2 * gaps.min())
+
+
+BRIDGED_PERIODS = 0.25
+"""Of the fastest period of an input, that a straight line may stand for: over more of
+it the line misses a turn, and hysteresis remembers turns."""
+
+
+def runs(mask: Mask) -> list[tuple[int, int]]:
+    """Give the stretches where a mask is true: the first sample, and the one behind."""
+    edges = np.flatnonzero(
+        np.diff(np.concatenate([[False], mask, [False]]).astype(int))
+    )
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+
+
+def cannot_be_bridged(u: FloatArray) -> Mask:
+    """Mark the gaps of an input that are too long for a straight line.
+
+    Parameters
+    ----------
+    u : ndarray, shape (n,)
+        NaN where it is missing; a few samples are there.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        Gaps of more than a quarter of the shortest period in the band that holds 99 %
+        of the input's power.
+    """
+    lost = ~np.isfinite(u)
+    marked = np.zeros(len(u), dtype=np.bool_)
+    if not lost.any():
+        return marked
+    there = np.flatnonzero(~lost)
+    bridged = np.interp(np.arange(len(u)), there, u[there])
+    fastest = summary_of(bridged, 1.0).high_hz  # in periods a sample
+    for first, behind in runs(lost):
+        marked[first:behind] = (behind - first) * fastest > BRIDGED_PERIODS
+    return marked

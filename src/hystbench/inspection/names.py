@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 
 from hystbench.errors import InputError
-from hystbench.units import PREFIXES, SYMBOLS, is_known, plain, seconds
+from hystbench.units import PREFIXES, SIMPLE, is_known, plain, seconds
 
 #: Words of a name, in small letters. Of compounds the end counts: ``spulenstrom``.
 TIME = ("time", "t", "zeit", "temps", "tiempo", "tempo", "timestamp", "timestamps")
@@ -46,15 +46,10 @@ def split_unit(name: str) -> tuple[str, str | None]:
         if found and is_known(found["unit"]):
             return found["name"].strip(), plain(found["unit"])
     found = _SUFFIX.match(name)
-    if found and _is_simple(plain(found["unit"])):
+    # Nothing else than letters with a prefix ends a name so.
+    if found and SIMPLE.fullmatch(plain(found["unit"])):
         return found["name"].replace("_", " ").strip(), plain(found["unit"])
     return name.replace("_", " ").strip(), None
-
-
-def _is_simple(unit: str) -> bool:
-    """Tell whether letters are a symbol with a prefix: nothing else ends a name."""
-    named = "|".join(SYMBOLS)
-    return bool(re.fullmatch(f"[{''.join(PREFIXES)}]?({named})", unit))
 
 
 def is_time(name: str, unit: str | None) -> bool:

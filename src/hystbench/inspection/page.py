@@ -1,18 +1,50 @@
-"""The page of a check."""
+"""The page of a check: tables and pictures, HTML in one file."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from operator import attrgetter
 
-from hystbench.figures.style import COLUMN, PAGE, unit_text
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import FuncFormatter, NullFormatter
+
+from hystbench.figures.style import (
+    BLUE,
+    COLUMN,
+    GREY,
+    PAGE,
+    VERMILION,
+    axis_label,
+    unit_text,
+)
+from hystbench.gap.fitting.parameter_units import written
 from hystbench.gap.report.pictures import EmbeddedPicture, draw
-from hystbench.inspection import pictures, words
 from hystbench.inspection.check import Check
 from hystbench.inspection.facts import Facts
+from hystbench.inspection.screen import (
+    FLOORS,
+    KINDS,
+    band,
+    headline,
+    jitter_text,
+    percent,
+    quantity,
+)
 from hystbench.inspection.visible import REVEALED, SmallestSeen
 from hystbench.report.layout import page_environment
 from hystbench.report.markup import one_micro
 from hystbench.report.table import Cell, Heading, PageTable, number, table_of
+
+MOST_LOOPS = 8
+"""Records whose loops are drawn."""
+LOOP_POINTS = 3000
+"""Of a loop, at most."""
+LOOPS_IN_ROW = 4
+"""Loops in a row."""
+LEAST_STRENGTH = 1e-4
+"""Share of the output below which the axis of strength ends."""
+RIVALS_TOLD = 2
+"""Rivals that are named."""
 
 
 def page(found: Check) -> str:
@@ -22,14 +54,14 @@ def page(found: Check) -> str:
     unit = unit_text(record.output.unit)
     made = template.render(
         name=found.dataset.name,
-        headline=words.headline(found),
+        headline=headline(found),
         channels=f"{record.input.name} ({unit_text(record.input.unit)}) to "
         f"{record.output.name} ({unit})",
-        noise=f"{words.quantity(found.floor.rms, record.output.unit)} rms, "
-        f"{words.FLOORS[found.floor.method]}",
-        left=f"{words.quantity(found.left, record.output.unit)} rms",
+        noise=f"{quantity(found.floor.rms, record.output.unit)} rms, "
+        f"{FLOORS[found.floor.method]}",
+        left=f"{quantity(found.left, record.output.unit)} rms",
         findings=found.findings,
-        kinds=words.KINDS,
+        kinds=KINDS,
         records=_records(found),
         pictures=_pictures(found),
         chart=_chart(found),
@@ -52,7 +84,7 @@ def _records(found: Check) -> PageTable:
             x.period, str(x.period or "none")
         ),
         Heading("periods", True): lambda x: number(x.periods, f"{x.periods:.3g}"),
-        Heading("band"): words.band,
+        Heading("band"): band,
         Heading(f"input ({unit_text(record.input.unit)})"): lambda x: (
             f"{x.input.low:.3g} to {x.input.high:.3g}"
         ),
@@ -78,18 +110,18 @@ def _records(found: Check) -> PageTable:
 def _jitter(item: Facts) -> str:
     if item.jitter is None:
         return "no clock"
-    return words.jitter_text(item.jitter).removesuffix(" %")
+    return jitter_text(item.jitter).removesuffix(" %")
 
 
 def _pictures(found: Check) -> list[EmbeddedPicture]:
-    count = min(len(found.records), pictures.MOST_LOOPS)
-    columns = min(count, pictures.LOOPS_IN_ROW)
+    count = min(len(found.records), MOST_LOOPS)
+    columns = min(count, LOOPS_IN_ROW)
     rows = math.ceil(count / columns)
     more = len(found.records) - count
     rest = f"; {more} more are not drawn" if more else ""
     return [
         draw(
-            pictures.loops,
+            loops,
             found,
             words=f"Output over input of each record{rest}",
             height=0.4 + 1.6 * rows,
@@ -97,7 +129,7 @@ def _pictures(found: Check) -> list[EmbeddedPicture]:
             panels=(rows, columns),
         ),
         draw(
-            pictures.bands,
+            bands,
             found,
             words="Band and swing of each record's input: between and beyond them "
             "nothing is known of the device",
@@ -111,7 +143,7 @@ def _chart(found: Check) -> EmbeddedPicture | None:
     if not shown:
         return None
     return draw(
-        pictures.strengths,
+        strengths,
         found.effects,
         words="How strong each effect must be to be seen, and to be told from every "
         f"other effect; beyond the dashed line, {100 * REVEALED:g} % of the output, it "
@@ -125,12 +157,10 @@ def _revealed(found: Check) -> PageTable:
     units = record.input.unit, record.output.unit
     shown: dict[Heading, Callable[[SmallestSeen], Cell | str]] = {
         Heading("effect"): attrgetter("effect"),
-        Heading("seen from", True): lambda x: number(
-            x.seen_from, words.percent(x.seen_from)
-        ),
-        Heading("that is"): lambda x: words.strength(x, *units),
+        Heading("seen from", True): lambda x: number(x.seen_from, percent(x.seen_from)),
+        Heading("that is"): lambda x: _strength(x, *units),
         Heading("in the form"): lambda x: x.form.replace("_", " "),
-        Heading("can be mistaken for"): lambda x: words.mistaken(x) or "nothing",
+        Heading("can be mistaken for"): lambda x: _mistaken(x) or "nothing",
     }
     return table_of(
         "revealed",
@@ -150,3 +180,117 @@ def _hidden(found: Check) -> PageTable:
         {Heading("effect"): attrgetter("effect"), Heading("why"): attrgetter("why")},
         cards=True,
     )
+
+
+def loops(axes: Sequence[Axes], found: Check) -> None:
+    """Draw the output over the input of each record."""
+    flat = np.ravel(np.asarray(axes))
+    record = found.records[0]
+    for ax, item in zip(flat, found.records, strict=False):
+        step = max(1, len(item) // LOOP_POINTS)
+        colour = BLUE if item.use == "fit" else VERMILION
+        ax.plot(item.u[::step], item.y[::step], color=colour, linewidth=0.7)
+        ax.set_title(f"{item.name} ({item.use})", fontsize=7)
+    for ax in flat[len(found.records) :]:
+        ax.set_visible(False)
+    columns = min(LOOPS_IN_ROW, len(found.records))
+    for k, ax in enumerate(flat[: len(found.records)]):
+        if k % columns == 0:
+            ax.set_ylabel(axis_label(record.output))
+        if k + columns >= min(len(found.records), len(flat)):
+            ax.set_xlabel(axis_label(record.input))
+
+
+def bands(axes: Sequence[Axes], found: Check) -> None:
+    """Draw each record's band, over the swing of its input."""
+    (ax,) = axes
+    for use, colour in (("fit", BLUE), ("hold-out", VERMILION)):
+        inputs = [item.input for item in found.facts if item.use == use]
+        for k, given in enumerate(inputs):
+            ax.plot(
+                [given.low_hz, given.high_hz],
+                [given.span, given.span],
+                color=colour,
+                marker="|",
+                markersize=7,
+                linewidth=2,
+                alpha=0.8,
+                label=None if k else use,
+            )
+    ax.set_xscale("log")
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    ax.xaxis.set_minor_formatter(NullFormatter())
+    ax.set_ylim(bottom=0)
+    ax.set_xlabel("frequency (Hz)")
+    name = found.records[0].input
+    ax.set_ylabel(axis_label(type(name)(f"{name.name}, peak to peak", name.unit)))
+    _legend(ax)
+
+
+def strengths(axes: Sequence[Axes], effects: Sequence[SmallestSeen]) -> None:
+    """Draw from which strength on each effect is seen, and told from every other."""
+    (ax,) = axes
+    shown = [item for item in effects if math.isfinite(item.seen_from)]
+    places = np.arange(len(shown))
+    seen = np.array([max(item.seen_from, LEAST_STRENGTH) for item in shown])
+    told = np.array([item.told_from for item in shown])
+    top = 3.0
+    for place, low, high in zip(places, seen, told, strict=True):
+        ax.plot([low, min(high, top)], [place, place], color=GREY, linewidth=1)
+    ax.plot(seen, places, "o", color=BLUE, label="seen from", markersize=5)
+    inside = told <= top
+    ax.plot(
+        told[inside],
+        places[inside],
+        "D",
+        color=VERMILION,
+        markersize=4,
+        label="told from all others from",
+        fillstyle="none",
+    )
+    if (~inside).any():
+        ax.plot(
+            np.full(np.count_nonzero(~inside), top),
+            places[~inside],
+            ">",
+            color=VERMILION,
+            markersize=5,
+            label="never told from one",
+        )
+    ax.axvline(REVEALED, color=GREY, linestyle="--", linewidth=0.8)
+    ax.set_xscale("log")
+    ax.set_xlim(min(float(seen.min(initial=1e-2)), 1e-2) / 1.5, top * 1.25)
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g}"))
+    ax.xaxis.set_minor_formatter(NullFormatter())
+    ax.set_xlabel("what the effect adds, rms (% of the output)")
+    ax.set_yticks(places, [item.effect for item in shown])
+    ax.invert_yaxis()
+    ax.grid(axis="x", alpha=0.3)
+    _legend(ax)
+
+
+def _legend(ax: Axes) -> None:
+    """Put the legend above the axes, in one row."""
+    ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, frameon=False)
+
+
+def _strength(item: SmallestSeen, of_input: str, of_output: str) -> str:
+    """Write the number at which an effect is seen first, with its unit."""
+    if math.isnan(item.value):
+        return ""
+    unit = written(item.unit, of_input, of_output)
+    name = item.number.replace("_", " ").removesuffix(" s").removesuffix(" hz")
+    return f"{name} {quantity(item.value, unit)}"
+
+
+def _mistaken(item: SmallestSeen) -> str:
+    """Say what an effect may be mistaken for until it is how large."""
+    near = item.rivals[:RIVALS_TOLD]
+    if not near:
+        return ""
+    told = [
+        f"{name} (never told)" if share > 1 else f"{name} (up to {percent(share)})"
+        for name, share in near
+    ]
+    more = len(item.rivals) - len(near)
+    return ", ".join(told) + (f" and {more} more" if more else "")

@@ -4,25 +4,24 @@ Records that say the same are one line, and so are findings of one topic. What i
 off is told; the page has all.
 """
 
+import math
 from collections.abc import Iterable, Sequence
 from itertools import groupby
 from textwrap import wrap
 
+from hystbench.figures.style import unit_text
 from hystbench.inspection.check import Check, Finding
 from hystbench.inspection.facts import Facts
 from hystbench.inspection.visible import SmallestSeen
-from hystbench.inspection.words import (
-    EVEN_CLOCK,
-    FLOORS,
-    KINDS,
-    band,
-    headline,
-    jitter_text,
-    level,
-    percent,
-    quantity,
-)
 
+FLOORS = {
+    "repeats": "measured by repeats",
+    "declared": "declared",
+    "upper-bound": "an upper bound, as nothing repeats",
+}
+KINDS = {"wrong": "refused by 'hystbench gap'", "missing": "to add", "note": "note"}
+EVEN_CLOCK = 1e-6
+"""Of a step: a clock that is as even as that."""
 WIDTH = 100
 """Letters of a line."""
 SCREEN_LINES = 40
@@ -208,3 +207,46 @@ def _listed(parts: Iterable[str]) -> list[str]:
     """Put parts behind each other; none is broken between two lines."""
     kept = ", ".join(part.replace(" ", "\0") for part in parts)
     return [line.replace("\0", " ") for line in _lines(kept, 4, 4)]
+
+
+def percent(share: float) -> str:
+    """Write a share in percent with two digits."""
+    return "never" if math.isinf(share) else f"{100 * share:.2g} %"
+
+
+def quantity(value: float, unit: str) -> str:
+    """Write a number with its unit, if it has one."""
+    return f"{value:.3g} {unit_text(unit)}".removesuffix(" -").strip()
+
+
+def headline(found: Check) -> str:
+    """Say in one sentence what is to be done, or that nothing is."""
+    wrong = sum(item.kind == "wrong" for item in found.findings)
+    missing = sum(item.kind == "missing" for item in found.findings)
+    seen, every = len(found.revealed), len(found.effects)
+    can = f"the records to fit can reveal {seen} of {every} effects"
+    if not every:
+        can = "which effects the records can reveal was not asked"
+    if wrong:
+        things = "thing is" if wrong == 1 else "things are"
+        return f"{wrong} {things} wrong, which 'hystbench gap' refuses; {can}."
+    if missing:
+        return f"Usable, with {missing} to add; {can}."
+    return f"Usable as it is; {can}."
+
+
+def level(facts: Facts, unit: str) -> str:
+    """Write the range of an input."""
+    item = facts.input
+    return f"{item.low:.3g} to {quantity(item.high, unit)}"
+
+
+def band(facts: Facts) -> str:
+    """Write the band of an input."""
+    item = facts.input
+    return f"{item.low_hz:.3g} to {item.high_hz:.3g} Hz"
+
+
+def jitter_text(jitter: float) -> str:
+    """Write a jitter in percent of a step; what is rounding is none."""
+    return "0 %" if jitter < EVEN_CLOCK else f"{100 * jitter:.1g} %"

@@ -25,7 +25,6 @@ class Shape:
 
     effect: str
     form: str
-    place: str
     values: dict[str, float]
     """Numbers that are searched, such as a time constant."""
     scaled: str
@@ -93,7 +92,7 @@ def _thinned(variant: Variant) -> list[Sequence[float]]:
 def _at(
     state: ModelState, variant: Variant, values: dict[str, float]
 ) -> Iterator[Shape]:
-    about = (variant.effect, variant.form, variant.place, values)
+    about = (variant.effect, variant.form, values)
     if variant.beside is not None:
         columns = beside_columns(state.records, state.sample, variant.beside, values)
         yield Shape(*about, "", None, columns, 1.0, variant.freedom)

@@ -21,7 +21,7 @@ from hystbench.gap.simulation.reshape import orthonormal, products, reshapings
 from hystbench.gap.thresholds import PARAMETER, PAYS
 from hystbench.inspection.shapes import Shape, shapes_of
 from hystbench.model import Model
-from hystbench.record import FloatArray, Record
+from hystbench.record import FloatArray, Hold, Record
 
 REVEALED = 0.1
 """Of the output's rms: an effect that must be larger to be seen is not revealed."""
@@ -36,7 +36,6 @@ class SmallestSeen:
     """How strong an effect must be on these records."""
 
     effect: str
-    place: str = ""
     seen_from: float = np.inf
     """The rms that it must add for the search to pay for it, as a share of the output's
     rms about its mean; infinite where nothing it does stands out."""
@@ -47,8 +46,6 @@ class SmallestSeen:
     """That number's name and unit in the block, U and Y for those of the signals."""
     form: str = ""
     """In which it is seen first, with the other numbers of that."""
-    absorbed: float = 0.0
-    """Share of the power of what it adds that the base could do as well."""
     rivals: tuple[tuple[str, float], ...] = ()
     """What it can be mistaken for, with the share from which on it can be told;
     infinite where never. The nearest first."""
@@ -67,7 +64,7 @@ class SmallestSeen:
 
 
 def seen_effects(
-    base: Model, records: Sequence[Record], floor: float, hold: str = "band-limited"
+    base: Model, records: Sequence[Record], floor: float, hold: Hold
 ) -> tuple[SmallestSeen, ...]:
     """Find how strong each effect must be to be seen and told on records.
 
@@ -92,7 +89,7 @@ def seen_effects(
         If the base does not run on the records.
     """
     sample = ScoredSamples.of(records)
-    state = ModelState(base.chain, tuple(records), sample, hold=hold)  # type: ignore[arg-type]
+    state = ModelState(base.chain, tuple(records), sample, hold=hold)
     shapes, declined = shapes_of(state)
     own = _own(state)
     if "hysteresis" in declined:
@@ -142,7 +139,7 @@ def _hysteresis(state: ModelState) -> list[Shape]:
     loop = loop - line @ np.linalg.lstsq(line, loop, rcond=None)[0]
     if not loop.any():
         return []
-    return [Shape("hysteresis", "", "material", {}, "", block, loop[:, None], 1.0, 8.0)]
+    return [Shape("hysteresis", "", {}, "", block, loop[:, None], 1.0, 8.0)]
 
 
 @dataclass(frozen=True)
@@ -221,12 +218,10 @@ class _Judge:
         share, value, item = min(found, key=lambda each: each.share)
         return SmallestSeen(
             item.shape.effect,
-            item.shape.place,
             share,
             value,
             *_number(item.shape),
             _words(item.shape),
-            item.absorbed,
             self._rivals(item, share, rest) if np.isfinite(share) else (),
             self._why(item, share),
         )

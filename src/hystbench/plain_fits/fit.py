@@ -95,7 +95,7 @@ def _fit_plays(task: Task, effect: str) -> EffectFit | None:
     thresholds = np.linspace(0.0, 0.9 * task.reach, PLAYS)
 
     def columns(record: Record) -> FloatArray:
-        plays = play(np.ascontiguousarray(record.u), thresholds)[0].T
+        plays = play(np.ascontiguousarray(record.u), thresholds).T
         signals = map(np.ascontiguousarray, np.concatenate([plays, plays**2]))
         return np.stack([through(rest, y, record) for y in signals], axis=1)
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hystbench.blocks.calls import current
 from hystbench.blocks.command import Command
 from hystbench.blocks.external import External
 from hystbench.blocks.fmu import Fmu
@@ -205,7 +206,7 @@ def _check_repeats(model: Model, evidence: Evidence) -> None:
         ]
         pairs = zip(inputs, evidence.fit, strict=True)
         outputs = [block.simulate(z, item.u, item.dt) for z, item in pairs]
-        again = block.again(inputs[0], first.dt)
+        again = current().fresh(block, inputs[0], first.dt)
         if not np.array_equal(again, outputs[0]):
             raise InputError(
                 f"{block.label}: called again with record {first.name} it gave "

@@ -236,7 +236,7 @@ def _statics(u: FloatArray, y: FloatArray) -> Columns:
 
 
 def _memory(dt: float, u: FloatArray, times: FloatArray) -> Columns:
-    plays = list(play(u, np.array(THRESHOLDS))[0].T)
+    plays = list(play(u, np.array(THRESHOLDS)).T)
     return [
         *plays,
         *(x**2 for x in plays[1:3]),

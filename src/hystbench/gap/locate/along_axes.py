@@ -93,7 +93,7 @@ def branch(samples: ViewSamples) -> View:
     """
     u, direction = samples.input / samples.reach, samples.direction
     thresholds = THRESHOLDS * samples.reach
-    signals = [play(item.record.u, thresholds)[0] for item in samples.compared]
+    signals = [play(item.record.u, thresholds) for item in samples.compared]
     plays = (samples.thinned(signals) / samples.reach).T
     alike, uneven = [u, direction, *plays], [np.ones_like(u), u**2, *plays[::2] ** 2]
     words = "the shape of the loop, at every rate alike"

@@ -168,7 +168,7 @@ def take_samples(
 
 def _direction(u: FloatArray, half_width: float) -> FloatArray:
     """Follow the input's direction through a play, so that noise does not turn it."""
-    followed = play(u, [half_width], [float(u[0])])[0][:, 0]
+    followed = play(u, [half_width], [float(u[0])])[:, 0]
     moves = np.sign(np.diff(followed, prepend=followed[0]))
     index = np.where(moves != 0, np.arange(len(u)), 0)
     return cast(FloatArray, moves[np.maximum.accumulate(index)])

@@ -76,7 +76,7 @@ def add_effects(
     except CallsUsedUp:
         return Named(found.state, found.rounds)
     finally:
-        current().release()
+        current().reserve = 0
 
 
 def settled(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Named:

@@ -261,7 +261,7 @@ class BoxInputs:
             lines += [low_pass(signal, dt, tau, signal[0])[rows] for tau in times]
         for frequency in np.geomspace(3 / self.longest, 0.2 / self.step, MODES):
             lines += [part[rows] for part in _ringing(s, dt, float(frequency))]
-        plays, _ = play(u, self.excursion * np.array(THRESHOLDS))
+        plays = play(u, self.excursion * np.array(THRESHOLDS))
         state = self.state(compared, rows)
         first, second = np.triu_indices(state.shape[1])
         return [
@@ -289,7 +289,7 @@ class BoxInputs:
         """Give input, output, their rates and one play, shape (rows, 5)."""
         dt = compared.record.dt
         u, s = self._scaled(compared)
-        middle, _ = play(u, [0.3 * self.excursion])
+        middle = play(u, [0.3 * self.excursion])
         rates = [
             np.gradient(x, dt) / r for x, r in zip((u, s), self.rates, strict=True)
         ]
@@ -349,9 +349,7 @@ def _ringing(signal: FloatArray, dt: float, frequency_hz: float) -> list[FloatAr
     pole = np.exp((-DAMPING + 1j) * 2 * np.pi * frequency_hz * dt)
     turn = np.array([[pole.real, -pole.imag], [pole.imag, pole.real]])
     drive = np.array([1 - abs(pole), 0.0])
-    return [
-        state_space(turn, drive, turn[k], float(drive[k]), signal)[0] for k in (0, 1)
-    ]
+    return [state_space(turn, drive, turn[k], float(drive[k]), signal) for k in (0, 1)]
 
 
 def _fastest(record: Record) -> float:

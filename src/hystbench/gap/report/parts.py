@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+from hystbench.blocks.sensor_noise import SensorNoise
 from hystbench.blocks.attached import AttachedBlock
-from hystbench.blocks.base import Block, RandomBlock
+from hystbench.blocks.base import Block
 from hystbench.blocks.force import Force
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.parameter import HUGE
@@ -118,7 +119,7 @@ def stages(model: Model, gap: Mapping[str, Any]) -> tuple[Stage, ...]:
     for k, block in enumerate(model.chain):
         own = owners.get(k, [])
         part = next((x.part for x in own if not x.of_block), Part(_name(block)))
-        if isinstance(block, RandomBlock):
+        if isinstance(block, SensorNoise):
             continue
         if isinstance(block, AttachedBlock):
             found[-1] = _attached(found[-1], block, host, part)

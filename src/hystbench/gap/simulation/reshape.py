@@ -176,7 +176,7 @@ def _mixed(
     amplitude = max(float(np.abs(z).max()) for z in v) or 1.0
     thresholds = np.arange(MIXED) / (MIXED + 1)  # the first is the input itself
     plays = [
-        np.ascontiguousarray(play(z / amplitude, thresholds)[0].T[:, _rows(k, sample)])
+        np.ascontiguousarray(play(z / amplitude, thresholds).T[:, _rows(k, sample)])
         for k, z in enumerate(v)
     ]
     each = range(MIXED)
@@ -203,7 +203,7 @@ def _powers(signals: Signals, sample: ScoredSamples | None) -> list[Signals]:
     thresholds = amplitude * np.arange(1, OPERATORS + 1) / (OPERATORS + 1)
     scaled = _at(tuple(z / amplitude for z in signals), sample)
     plays = [
-        np.ascontiguousarray(play(z, thresholds)[0].T[:, _rows(k, sample)]) / amplitude
+        np.ascontiguousarray(play(z, thresholds).T[:, _rows(k, sample)]) / amplitude
         for k, z in enumerate(signals)
     ]
     ways = []
