@@ -9,8 +9,8 @@ import pytest
 
 from hystbench.compare.beside import Drawn, Edge, Holding, Ranking
 from hystbench.compare.cells import ComparedCell, compare_cells
-from hystbench.compare.claims import judge_all
-from hystbench.compare.claims.claim import Claim, Judgement
+from hystbench.compare.claims import CLAIMS, judge_all
+from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.summary import (
     claim_counts,
@@ -45,7 +45,7 @@ DIVERGED = ("diverged at sample 3", "yes")
 
 
 def judgement(kind, basis, verdict, alone="", holdings=()):
-    claim = Claim("x", "", "", kind, "", basis, lambda _: None)
+    claim = replace(CLAIMS[0], id="x", claim="", kind=kind, basis=basis)
     return Judgement(claim, verdict, "", "not in tables", "", holdings, alone)
 
 
