@@ -18,8 +18,8 @@ from hystbench.compare.beside import (
     read_holdings,
     read_spreads,
 )
-from hystbench.compare.rows import finite_or_infinite, read_items, read_rows
-from hystbench.errors import InputError, refuse_unknown
+from hystbench.compare.rows import read_items
+from hystbench.errors import InputError, nearest
 from hystbench.files import read_json
 from hystbench.order_errors import OrderError
 from hystbench.published import (
@@ -176,17 +176,27 @@ class ClaimEvidence:
         )
 
 
-def _need(content: Mapping[str, Any], path: str | Path, key: str) -> Any:
-    """Take a key of a file or say which is missing."""
-    refuse_unknown(key, content, f"{path}: no key {key!r}")
-    return content[key]
+class _Content(dict[str, Any]):
+    """What a JSON file holds, or a part of it; a key that is missing is told."""
+
+    def __init__(self, path: str | Path, content: object) -> None:
+        if not isinstance(content, dict):
+            raise InputError(f"{path}: expected a JSON object")
+        super().__init__(content)
+        self.path = path
+
+    def __missing__(self, key: str) -> Any:
+        raise InputError(f"{self.path}: no key {key!r}; {nearest(key, self)}")
+
+    def part(self, key: str) -> _Content:
+        """Give the object under a key."""
+        return _Content(self.path, self[key])
 
 
-def _content(path: str | Path) -> dict[str, Any]:
-    content = read_json(path)
-    if not isinstance(content, dict):
-        raise InputError(f"{path}: expected a JSON object")
-    return content
+_KEPT = (
+    *("signal", "model", "origin", "error_kind", "convergence_s"),
+    *("mse", "re", "mse_after_transient", "re_after_transient"),
+)
 
 
 def read_run(path: str | Path) -> Run:
@@ -195,59 +205,47 @@ def read_run(path: str | Path) -> Run:
     Raises
     ------
     InputError
-        If a key is missing, or the status and the errors disagree.
+        If a key is missing.
     """
-    need = partial(_need, _content(path), path)
-    status, diverged = need("status"), need("diverged")
-    refuse_unknown(status, _STATUSES, f"{path}: status {status!r}")
-    if (status == "diverged") != (diverged is not None):
-        raise InputError(f"{path}: status {status!r} and 'diverged' disagree")
-    if status == "finite" and need("mse") is None:
-        raise InputError(f"{path}: a finite run needs an MSE")
+    content = _Content(path, read_json(path))
+    diverged = content["diverged"] is not None
     of_filter: dict[str, Any] = {}
-    if need("error_kind") == "one-step a priori":
-        eigenvalues = need("eigenvalues")
-        of_filter = {key: need(key) for key in ("order", "step_size", "bound")}
-        of_filter["weight_count"] = len(need("weights"))
-        of_filter["largest_eigenvalue"] = eigenvalues.get("largest")
-        of_filter["spread"] = eigenvalues.get("spread_nonzero")
+    if content["error_kind"] == "one-step a priori":
+        eigenvalues = content.part("eigenvalues")
+        of_filter = {key: content[key] for key in ("order", "step_size", "bound")}
+        of_filter["weight_count"] = len(content["weights"])
+        of_filter["largest_eigenvalue"] = eigenvalues["largest"]
+        of_filter["spread"] = eigenvalues["spread_nonzero"]
+    length = content["samples"] * content["dt_s"]
     return Run(
-        **{key: need(key) for key in _KEPT},
-        diverged=_need(diverged, path, "sentence") if diverged else None,
-        unit=_need(need("units"), path, "mse"),
-        transient_fraction=need("transient_s") / (need("samples") * need("dt_s")),
+        **{key: content[key] for key in _KEPT},
+        diverged=content.part("diverged")["sentence"] if diverged else None,
+        unit=content.part("units")["mse"],
+        transient_fraction=content["transient_s"] / length,
         **of_filter,
     )
 
 
-_STATUSES = ("finite", "diverged")
-_PARAMETERS = tuple(f"a{j}" for j in range(8))
-_IDENTIFIED = (
-    *("envelope", "thresholds", "weights", "J", "epsilon", "reached"),
-    *("relative_error", "published_relative_error"),
-)
-_KEPT = (
-    *("signal", "model", "origin", "error_kind", "convergence_s"),
-    *("mse", "re", "mse_after_transient", "re_after_transient"),
-)
+@dataclass(frozen=True)
+class EnvelopeError:
+    """MSE of the GPO filter on a signal, infinite where it diverged."""
+
+    signal: str
+    envelopes: str
+    """Either ``identified`` or ``published``."""
+    mse: float
 
 
 def read_envelope_errors(path: str | Path) -> dict[Cell, float]:
     """Read the GPO filter's MSE by signal and envelopes (identified, published)."""
-    columns = ("signal", "envelopes", "mse", "re", "status")
-    return {
-        (row["signal"], row["envelopes"]): finite_or_infinite(row["mse"], path, n)
-        for n, row in enumerate(read_rows(path, columns), 1)
-    }
+    rows = read_items(path, EnvelopeError)
+    return {(row.signal, row.envelopes): row.mse for row in rows}
 
 
 def read_identification(path: str | Path) -> dict[str, Any]:
     """Read the result of Algorithm 1."""
-    content = _content(path)
-    for key in _IDENTIFIED:
-        _need(content, path, key)
-    for key in _PARAMETERS:
-        _need(content["envelope"], path, key)
+    content = _Content(path, read_json(path))
+    content["envelope"] = content.part("envelope")
     return content
 
 
