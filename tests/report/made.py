@@ -11,7 +11,7 @@ from hystbench.compare.measured import compare_measured
 from hystbench.figures import drawer, style
 from hystbench.published.split import CALIBRATION_SIGNALS
 from hystbench.report.reproduction.page import page
-from hystbench.report.reproduction.read import read_content
+from hystbench.report.reproduction.read import Results
 from tests.conftest import ROOT
 from tests.figures.inputs import MODELS, a_record, save_a_run
 
@@ -69,10 +69,10 @@ def make_measured(folder: Path) -> list[Path]:
 
 def make_page(folder: Path, figures: list[Path], tables=(), **settings) -> Path:
     out = folder / "report.html"
-    content = read_content(
+    results = Results(
         out.parent, folder / "compare", figures, tables, CAPTIONS, SETTINGS | settings
     )
-    out.write_text(page(content), encoding="utf-8")
+    out.write_text(page(results), encoding="utf-8")
     return out
 
 
