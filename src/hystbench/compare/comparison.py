@@ -18,7 +18,7 @@ from hystbench.compare.tables import PrintedTable, paper_tables
 from hystbench.compare.verdict import first_result, print_tables, verdict_page
 from hystbench.files import write_json, write_text
 from hystbench.published import load_errors, signals
-from hystbench.published.audit import write_audit
+from hystbench.published.discrepancies import write_audit
 
 WRITTEN = (
     *("cells.csv", "off.csv", "claims.csv", "audit.csv", "summary.json", "margins.csv"),

@@ -111,7 +111,7 @@ def _read(path: Path) -> Identification:
     about = read_json(path)
     try:
         return Identification(
-            envelope=Envelope.from_dict(about["envelope"]),
+            envelope=Envelope(**about["envelope"]),
             thresholds=np.array(about["thresholds"]),
             weights=np.array(about["weights"]),
             offset=about["offset"],
