@@ -157,7 +157,7 @@ def test_units_change_no_error(unit_u, unit_y, unit_t):
             record(str(f), unit_u * sine(f), unit_y * plain(MODEL, sine(f), DT), unit_t)
             for f in (5, 50)
         ]
-        return identify_rdgpi(made, order=6, starts=1, start="rest").relative_error
+        return identify_rdgpi(made, order=6, starts=1).relative_error
 
     one, other = fit(1, 1, DT), fit(unit_u, unit_y, unit_t * DT)
     assert list(other.values()) == pytest.approx(list(one.values()), rel=0.05, abs=1e-4)
