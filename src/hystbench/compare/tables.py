@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pandas as pd
+from tabulate import tabulate
 
 from hystbench.compare.cells import NOT_RUN, ComparedCell
 from hystbench.files import write_text
@@ -27,9 +28,9 @@ TITLES = {
 METRIC_NAMES: dict[Metric, str] = {"mse": "MSE (um^2)", "re": "RE"}
 
 
-def grid(frame: pd.DataFrame, style: str) -> str:
+def grid(lines: Iterable[Iterable[str]], headers: Iterable[str], style: str) -> str:
     """Write a table of text in one of the styles of tabulate."""
-    return str(frame.to_markdown(index=False, tablefmt=style, disable_numparse=True))
+    return tabulate(lines, [*headers], tablefmt=style, disable_numparse=True)
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,11 @@ class PrintedTable:
     """What the marks in its cells mean; empty where there are none."""
     frame: pd.DataFrame
     """Its cells as text."""
+
+    def text(self, style: str) -> tuple[str, str, str]:
+        """Give caption, cells and legend as text, the cells in a style of tabulate."""
+        cells = grid(self.frame.to_numpy(), self.frame.columns, style)
+        return self.caption, cells, self.legend
 
     def csv(self) -> str:
         """Give the table as CSV, with the caption in a column of its own."""

@@ -153,6 +153,8 @@ class Claim:
     """How the sentence was made checkable, where its words alone do not say."""
     basis: str = ""
     """What the twin knew of it; see ``Basis``."""
+    shortly: str = ""
+    """The sentence in a few words, of a result that held-out signals may bear out."""
 
     def holds(self, evidence: ClaimEvidence) -> bool | None:
         """Tell whether it holds by evidence; None where it cannot be tested."""
