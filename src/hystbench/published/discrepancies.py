@@ -209,7 +209,7 @@ def _consistency(signal: str, found: SignalCheck) -> Iterator[AuditRow]:
             f"the pairs of {one} and {other} cannot both be true",
             f"they imply an RMS of {rms[one]} um and {rms[other]} um",
         )
-    for removed, left in zip(found.removals, found.rms, strict=True):
+    for removed, left in found.removals.items():
         ways = len(found.removals)
         rank = "the smallest set" if ways == 1 else f"one of {ways} smallest sets"
         agreed = "all filters agree"
@@ -231,7 +231,7 @@ def _consistency(signal: str, found: SignalCheck) -> Iterator[AuditRow]:
             f"the pair of {model} against the filters of Tables 1-3: "
             + ("it cannot be true of their record" if standing == "no" else "open"),
             f"it implies an RMS of {rms[model]} um; they leave "
-            + " or ".join(f"{left} um" for left in found.rms),
+            + " or ".join(f"{left} um" for left in found.removals.values()),
         )
 
 
