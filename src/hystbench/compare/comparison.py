@@ -6,12 +6,18 @@ from pathlib import Path
 from typing import Any
 
 from hystbench.compare.beside import write_margins
-from hystbench.compare.cells import CELL_COLUMNS, ComparedCell, compare_cells
+from hystbench.compare.cells import (
+    CELL_COLUMNS,
+    OFF_COLUMNS,
+    ComparedCell,
+    OffCell,
+    compare_cells,
+    off_cells,
+)
 from hystbench.compare.claims import CLAIM_COLUMNS, judge_all
 from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.measured import ERROR_COLUMNS, errors_table
-from hystbench.compare.off import OFF_COLUMNS, OffCell, off_cells
 from hystbench.compare.rows import or_diverged, write_fields
 from hystbench.compare.summary import summarise
 from hystbench.compare.tables import PrintedTable, paper_tables

@@ -11,20 +11,14 @@ from dataclasses import fields, replace
 from importlib.resources import files
 from typing import Any
 
-from hystbench.compare.claims import (
-    errors,
-    filters,
-    identification,
-    operators,
-    response,
-)
+from hystbench.compare.claims import errors, filters, operators, response
 from hystbench.compare.claims.claim import Claim, Judgement, Test, condition, judge
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.yaml_files import parse_yaml
 
 MEASURES = {
     f"{module.__name__.rpartition('.')[2]}.{name}": function
-    for module in (errors, filters, identification, operators, response)
+    for module in (errors, filters, operators, response)
     for name, function in vars(module).items()
     if inspect.isfunction(function) and function.__module__ == module.__name__
 }

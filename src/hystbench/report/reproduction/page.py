@@ -5,9 +5,8 @@ from typing import Any
 
 from markupsafe import Markup
 
-from hystbench.compare.cells import ComparedCell
+from hystbench.compare.cells import OFF_COLUMNS, ComparedCell
 from hystbench.compare.measured import ERROR_COLUMNS
-from hystbench.compare.off import OFF_COLUMNS
 from hystbench.compare.rows import headers, names_of, read_items
 from hystbench.figures.style import look, looks, signal_title
 from hystbench.files import read_json
