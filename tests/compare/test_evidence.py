@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from hystbench.compare.comparison import WRITTEN, compare_evidence
+from hystbench.compare.comparison import WRITTEN, Comparison
 from hystbench.compare.evidence import (
     read_envelope_errors,
     read_evidence,
@@ -174,7 +174,7 @@ def test_from_files_to_files(tmp_path):
     out = tmp_path / "compare"
     identified = write(tmp_path / "identified.json", IDENTIFIED)
     evidence = read_evidence(runs, records, identified=identified)
-    compare_evidence(evidence, ["sine-060hz"]).write(out)
+    Comparison(evidence, ["sine-060hz"]).write(out)
     names = {name for name in WRITTEN if "*" not in name} - {"added.csv"}
     assert {p.name for p in out.iterdir()} - {ENTRIES} == names | {"tables"}
     assert len(list((out / "tables").glob("table-*"))) == 12

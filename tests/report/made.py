@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
-from hystbench.compare.comparison import compare_evidence, held_out_signals
+from hystbench.compare.comparison import Comparison, held_out_signals
 from hystbench.compare.evidence import read_evidence
 from hystbench.compare.measured import compare_measured
 from hystbench.figures import drawer, style
@@ -50,7 +50,7 @@ def make_results(folder: Path, names=SIGNALS, models=MODELS) -> list[Path]:
     """Write what the page of a reproduction needs; give its figures."""
     runs = make_runs(folder, names, models)
     held_out = held_out_signals(CALIBRATION_SIGNALS)
-    compare_evidence(read_evidence(runs), held_out).write(folder / "compare")
+    Comparison(read_evidence(runs), held_out).write(folder / "compare")
     figures = [draw(folder / "figures", "figure-03-play")]
     if "gpo" in models:
         records = [folder / "records" / f"{name}.npz" for name in names]
