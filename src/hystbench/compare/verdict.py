@@ -40,9 +40,10 @@ def _paragraphs(template: str, summary: Mapping[str, Any]) -> list[str]:
         trim_blocks=True,
         autoescape=False,  # noqa: S701 - plain text
     )
+    short = {each.id: each.shortly or each.id for each in CLAIMS}
     filters: dict[str, Callable[[Any], str]] = {
         "percent": _percent,
-        "shortly": {each.id: each.shortly or each.id for each in CLAIMS}.get,
+        "shortly": lambda name: short[name],
         "digits": lambda value: f"{value:.3g}",
         "short": lambda value: f"{value:g}",
         "milli": lambda value: f"{1e3 * value:+.3g}",

@@ -12,7 +12,6 @@ from matplotlib.patches import Patch, Rectangle
 from hystbench.compare.cells import NOT_RUN, ComparedCell
 from hystbench.compare.evidence import read_run
 from hystbench.compare.rows import read_items
-from hystbench.errors import InputError
 from hystbench.figures import style
 
 # Blue and red stay apart for all kinds of colour blindness, and white is agreement.
@@ -36,8 +35,6 @@ def draw_heat_map(*, table: Path) -> Figure:
         The compared cells, one row a signal, model and metric.
     """
     cells = [cell for cell in read_items(table, ComparedCell) if cell.metric == "mse"]
-    if not cells:
-        raise InputError(f"{table}: no compared cell")
     signals = list(dict.fromkeys(cell.signal for cell in cells))
     models = style.in_order(cell.model for cell in cells)
     figure = Figure(figsize=(5.0, 1.5 + 0.24 * len(signals)))

@@ -15,10 +15,9 @@ from hystbench.compare.evidence import Run, read_run
 from hystbench.compare.rows import read_items
 from hystbench.errors import InputError
 from hystbench.figures import style
-from hystbench.figures.data import read_one
 from hystbench.files import read_json
 from hystbench.order_errors import OrderError
-from hystbench.record import FloatArray
+from hystbench.record import FloatArray, load_record
 
 #: Panels side by side.
 _COLUMNS = 3
@@ -40,7 +39,7 @@ def draw_order(*, table: Path, records: Sequence[Path]) -> Figure:
         The record of the sweep, for its unit.
     """
     points = read_items(table, OrderError)
-    record = read_one(records, "the one of the sweep")
+    record = load_record(*records)
     figure = Figure(figsize=(style.COLUMN, 2.9))
     axes = figure.subplots()
     for model in style.in_order(point.model for point in points):
@@ -83,8 +82,6 @@ def draw_learning(*, runs: Sequence[Path]) -> Figure:
     its end is marked at the upper edge.
     """
     curves = [curve for curve in map(_read, runs) if curve is not None]
-    if not curves:
-        raise InputError("no run of an adaptive filter; expected one (--run)")
     signals = dict.fromkeys(curve.run.signal for curve in curves)
     columns = min(_COLUMNS, len(signals))
     rows = math.ceil(len(signals) / columns)
@@ -132,8 +129,6 @@ def _limits(curves: Sequence[_Curve]) -> tuple[float, float]:
     spanned = [curve for curve in curves if not curve.run.diverged] or curves
     values = np.concatenate([curve.value for curve in spanned])
     values = values[np.isfinite(values) & (values > 0)]
-    if not len(values):
-        raise InputError("no squared error above zero; nothing to draw")
     return float(values.min()) / 2, float(values.max()) * 4
 
 
