@@ -19,7 +19,6 @@ from hystbench.compare.beside import (
     read_spreads,
 )
 from hystbench.compare.rows import read_items
-from hystbench.errors import InputError, nearest
 from hystbench.files import read_json
 from hystbench.order_errors import OrderError
 from hystbench.published import (
@@ -176,23 +175,6 @@ class ClaimEvidence:
         )
 
 
-class _Content(dict[str, Any]):
-    """What a JSON file holds, or a part of it; a key that is missing is told."""
-
-    def __init__(self, path: str | Path, content: object) -> None:
-        if not isinstance(content, dict):
-            raise InputError(f"{path}: expected a JSON object")
-        super().__init__(content)
-        self.path = path
-
-    def __missing__(self, key: str) -> Any:
-        raise InputError(f"{self.path}: no key {key!r}; {nearest(key, self)}")
-
-    def part(self, key: str) -> _Content:
-        """Give the object under a key."""
-        return _Content(self.path, self[key])
-
-
 _KEPT = (
     *("signal", "model", "origin", "error_kind", "convergence_s"),
     *("mse", "re", "mse_after_transient", "re_after_transient"),
@@ -200,27 +182,20 @@ _KEPT = (
 
 
 def read_run(path: str | Path) -> Run:
-    """Read the file of one run.
-
-    Raises
-    ------
-    InputError
-        If a key is missing.
-    """
-    content = _Content(path, read_json(path))
-    diverged = content["diverged"] is not None
+    """Read the file of one run."""
+    content = read_json(path)
+    diverged = content["diverged"]
     of_filter: dict[str, Any] = {}
     if content["error_kind"] == "one-step a priori":
-        eigenvalues = content.part("eigenvalues")
         of_filter = {key: content[key] for key in ("order", "step_size", "bound")}
         of_filter["weight_count"] = len(content["weights"])
-        of_filter["largest_eigenvalue"] = eigenvalues["largest"]
-        of_filter["spread"] = eigenvalues["spread_nonzero"]
+        of_filter["largest_eigenvalue"] = content["eigenvalues"]["largest"]
+        of_filter["spread"] = content["eigenvalues"]["spread_nonzero"]
     length = content["samples"] * content["dt_s"]
     return Run(
         **{key: content[key] for key in _KEPT},
-        diverged=content.part("diverged")["sentence"] if diverged else None,
-        unit=content.part("units")["mse"],
+        diverged=diverged["sentence"] if diverged else None,
+        unit=content["units"]["mse"],
         transient_fraction=content["transient_s"] / length,
         **of_filter,
     )
@@ -242,17 +217,10 @@ def read_envelope_errors(path: str | Path) -> dict[Cell, float]:
     return {(row.signal, row.envelopes): row.mse for row in rows}
 
 
-def read_identification(path: str | Path) -> dict[str, Any]:
-    """Read the result of Algorithm 1."""
-    content = _Content(path, read_json(path))
-    content["envelope"] = content.part("envelope")
-    return content
-
-
 FILES: dict[str, tuple[str, Callable[[str | Path], Any]]] = {
     "order_sweep": ("order_sweep", partial(read_items, kind=OrderError)),
     "order_sweep_other": ("order_sweep_other", partial(read_items, kind=OrderError)),
-    "identified": ("identification", read_identification),
+    "identified": ("identification", read_json),
     "envelopes": ("envelope_errors", read_envelope_errors),
     "twin_errors": ("spreads", read_spreads),
     "twin_claims": ("holdings", read_holdings),
@@ -275,18 +243,8 @@ def read_evidence(
     runs, records : iterable of path
     **files : path or None
         By the names in ``FILES``; one left out, or None, was not run.
-
-    Raises
-    ------
-    InputError
-        If a file is not what it should be, or two runs are of one signal and model.
     """
-    found: dict[Cell, Run] = {}
-    for path in runs:
-        run = read_run(path)
-        if (run.signal, run.model) in found:
-            raise InputError(f"{path}: a second run of {run.model} on {run.signal}")
-        found[run.signal, run.model] = run
+    found = {(run.signal, run.model): run for run in map(read_run, runs)}
     read = {
         FILES[name][0]: FILES[name][1](path)
         for name, path in files.items()
