@@ -308,12 +308,6 @@ def test_one_missing_run_is_named():
     assert judgement.evidence == "not run: gpo on sine-060hz"
 
 
-def test_runs_on_measured_records_do_not_count():
-    found = {c: replace(r, origin="measured") for c, r in published_runs().items()}
-    judgement = judge(BY_ID["sums-gpo-best"], ClaimEvidence(runs=found))
-    assert judgement.verdict == "not testable"
-
-
 def test_a_diverged_run_is_worse_than_any():
     beaten = runs({(CHIRP, "gpo"): None})
     assert judge(BY_ID["chirp-gpo-best"], beaten).verdict == "not reproduced"

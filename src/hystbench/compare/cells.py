@@ -105,10 +105,9 @@ def compare_cells(
     """
     unseen = set(held_out)
     consistent = standings(evidence.published)
-    runs = evidence.twin_runs
     cells = []
     for pair in evidence.published:
-        run = runs.get((pair.signal, pair.model))
+        run = evidence.runs.get((pair.signal, pair.model))
         drawn = evidence.drawn.get(pair.signal)
         for metric in METRICS:
             errors = drawn.errors.get((pair.model, metric), ()) if drawn else ()
@@ -153,7 +152,7 @@ def rms_error_percent(evidence: ClaimEvidence) -> dict[str, float]:
     errors = {}
     for signal, checked in check(evidence.published).items():
         record = evidence.records.get(signal)
-        if record is None or record.origin != "twin":
+        if record is None:
             continue
         ours = rms(record.y)
         if signal in evidence.drawn:

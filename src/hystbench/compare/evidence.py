@@ -94,7 +94,7 @@ class Run:
 
 @dataclass(frozen=True)
 class ClaimEvidence:
-    """All that the claims are judged by; what was not run is missing here.
+    """All that the claims are judged by, of the twin; what was not run is missing.
 
     ``spreads`` and ``holdings`` are what other twins say, and ``constants`` what the
     ranking is with other constants; no claim is judged by them. Errors of a signal in
@@ -118,11 +118,6 @@ class ClaimEvidence:
     drawn: Mapping[str, Drawn] = field(default_factory=dict)
     edges: tuple[Edge, ...] = ()
     constants: tuple[Ranking, ...] = ()
-
-    @property
-    def twin_runs(self) -> dict[Cell, Run]:
-        """Runs on the twin: measured records have no published errors."""
-        return {cell: run for cell, run in self.runs.items() if run.origin == "twin"}
 
     @property
     def added_models(self) -> tuple[str, ...]:

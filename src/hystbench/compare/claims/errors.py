@@ -45,8 +45,7 @@ def errors_on(
             for pair in evidence.published
         }
     else:
-        runs = evidence.twin_runs.items()
-        found = {cell: run.error(metric) for cell, run in runs}
+        found = {cell: run.error(metric) for cell, run in evidence.runs.items()}
         for signal, drawn in evidence.drawn.items():
             for (model, each), errors in drawn.errors.items():
                 if each == metric and (signal, model) in found:

@@ -22,7 +22,7 @@ def lms_runs(evidence: ClaimEvidence, models: Sequence[str] = FILTERS) -> list[R
     NotTestable
         If there is none.
     """
-    runs = [run for run in evidence.twin_runs.values() if run.model in models]
+    runs = [run for run in evidence.runs.values() if run.model in models]
     if not runs:
         raise NotTestable(f"not run: {' and '.join(models)}")
     return runs
