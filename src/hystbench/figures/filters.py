@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,13 +10,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from hystbench.compare.beside import Edge
-from hystbench.compare.evidence import Run, read_run
+from hystbench.compare.evidence import read_run
 from hystbench.compare.rows import read_items
 from hystbench.errors import InputError
 from hystbench.figures import style
 from hystbench.files import read_json
 from hystbench.order_errors import OrderError
-from hystbench.record import FloatArray, load_record
+from hystbench.record import load_record
 
 #: Panels side by side.
 _COLUMNS = 3
@@ -65,15 +64,6 @@ def draw_order(*, table: Path, records: Sequence[Path]) -> Figure:
     return figure
 
 
-@dataclass(frozen=True)
-class _Curve:
-    """A run, and its smoothed squared error ``value`` at each ``time`` (s)."""
-
-    run: Run
-    time: FloatArray
-    value: FloatArray
-
-
 def draw_learning(*, runs: Sequence[Path]) -> Figure:
     """Draw one panel a signal, on a logarithmic scale.
 
@@ -81,55 +71,43 @@ def draw_learning(*, runs: Sequence[Path]) -> Figure:
     priori. A diverged run is drawn as far as the scale of the finite ones goes, and
     its end is marked at the upper edge.
     """
-    curves = [curve for curve in map(_read, runs) if curve is not None]
-    signals = dict.fromkeys(curve.run.signal for curve in curves)
+    read = zip(map(read_run, runs), map(read_json, runs), strict=True)
+    curves = [
+        (run, content["smoothed_squared_error"])
+        for run, content in read
+        if run.error_kind == "one-step a priori"
+    ]
+    learning = [run for run, _ in curves]
+    signals = dict.fromkeys(run.signal for run in learning)
     columns = min(_COLUMNS, len(signals))
     rows = math.ceil(len(signals) / columns)
     figure = Figure(figsize=(style.PAGE, 0.8 + 1.35 * rows))
     grid = figure.subplots(rows, columns, sharey=True, squeeze=False)
     for axes in grid.flat[len(signals) :]:
         axes.remove()
-    for axes, signal in zip(grid.flat, signals, strict=False):
+    panels = dict(zip(signals, grid.flat, strict=False))
+    for signal, axes in panels.items():
         axes.set_title(style.signal_title(signal))
-        for curve in curves:
-            if curve.run.signal == signal:
-                _curve(axes, curve)
+    for run, curve in curves:
+        axes, look = panels[run.signal], style.look(run.model)
+        axes.plot(curve["time_s"], curve["value"], **look.line)
+        if run.diverged:
+            style.mark_above(axes, curve["time_s"][-1:], look.color)
     grid[0, 0].set_yscale("log")
-    grid[0, 0].set_ylim(_limits(curves))
-    figure.supxlabel("time (s)", fontsize="medium")
-    unit = style.unit_text(curves[0].run.unit)
-    figure.supylabel(f"smoothed squared error ({unit})", fontsize="medium")
-    style.legend_above(
-        figure,
-        style.handles(
-            (curve.run.model for curve in curves),
-            diverged=any(curve.run.diverged for curve in curves),
-        ),
-    )
-    return figure
-
-
-def _read(path: Path) -> _Curve | None:
-    run = read_run(path)
-    if run.error_kind != "one-step a priori":
-        return None
-    about = read_json(path)["smoothed_squared_error"]
-    return _Curve(run, np.array(about["time_s"]), np.array(about["value"]))
-
-
-def _curve(axes: Axes, curve: _Curve) -> None:
-    look = style.look(curve.run.model)
-    axes.plot(curve.time, curve.value, **look.line)
-    if curve.run.diverged:
-        style.mark_above(axes, curve.time[-1:], look.color)
-
-
-def _limits(curves: Sequence[_Curve]) -> tuple[float, float]:
-    """Span the finite runs (all, where every one diverged), with room for marks."""
-    spanned = [curve for curve in curves if not curve.run.diverged] or curves
-    values = np.concatenate([curve.value for curve in spanned])
+    # The finite runs (all, where every one diverged), with room for marks.
+    spanned = [curve for run, curve in curves if not run.diverged] or [
+        curve for _, curve in curves
+    ]
+    values = np.concatenate([curve["value"] for curve in spanned])
     values = values[np.isfinite(values) & (values > 0)]
-    return float(values.min()) / 2, float(values.max()) * 4
+    grid[0, 0].set_ylim(values.min() / 2, values.max() * 4)
+    figure.supxlabel("time (s)", fontsize="medium")
+    unit = style.unit_text(learning[0].unit)
+    figure.supylabel(f"smoothed squared error ({unit})", fontsize="medium")
+    diverged = any(run.diverged for run in learning)
+    models = style.handles((run.model for run in learning), diverged=diverged)
+    style.legend_above(figure, models)
+    return figure
 
 
 def draw_edges(*, table: Path) -> Figure:
