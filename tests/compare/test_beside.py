@@ -2,7 +2,7 @@
 
 import pytest
 
-from hystbench.compare.beside import Holding, holding_text, read_holdings, read_spreads
+from hystbench.compare.beside import Holding, read_holdings, read_spreads
 from hystbench.compare.cells import CELL_COLUMNS, compare_cells
 from hystbench.compare.claims import CLAIM_COLUMNS, judge_all
 from hystbench.compare.evidence import ClaimEvidence
@@ -91,4 +91,3 @@ def test_where_a_claim_holds_stands_beside_its_verdict(holdings, tmp_path):
     assert rows["sums-gpo-best"]["holds_on"] == "gpi 1 of 2, preisach 0 of 1"
     assert rows["chirp-gpo-best"]["holds_on"] == "gpi 1 of 1; no other family was run"
     assert rows["stroke"]["holds_on"] == ""
-    assert holding_text(()) == ""

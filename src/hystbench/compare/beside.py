@@ -101,14 +101,6 @@ class Holding:
         return f"{self.family} {self.held} of {self.judged}"
 
 
-def holding_text(holdings: Sequence[Holding]) -> str:
-    """Say on which families a claim holds; empty where it was judged on none."""
-    if not holdings:
-        return ""
-    said = ", ".join(map(str, holdings))
-    return said if len(holdings) > 1 else f"{said}; no other family was run"
-
-
 def read_holdings(path: str | Path) -> dict[str, tuple[Holding, ...]]:
     """Read in how many experiments on twins of each family each claim holds."""
     counts: dict[str, dict[str, list[bool]]] = {}

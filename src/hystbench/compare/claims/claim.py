@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from hystbench.compare.beside import Holding, holding_text
+from hystbench.compare.beside import Holding
 from hystbench.compare.evidence import ClaimEvidence
 
 Verdict = Literal[
@@ -176,8 +176,9 @@ class Judgement:
 
     @property
     def holds_on(self) -> str:
-        """On how many twins of which family the claim holds; see ``Holding``."""
-        return holding_text(self.holdings)
+        """Say on how many twins of which family it holds; empty without any."""
+        said = ", ".join(map(str, self.holdings))
+        return f"{said}; no other family was run" if len(self.holdings) == 1 else said
 
 
 VERDICTS: dict[bool | None, Verdict] = {
