@@ -1,4 +1,4 @@
-"""What a comparison stands on: the runs' own files, read and checked."""
+"""What a comparison stands on: the runs' own files."""
 
 from __future__ import annotations
 
