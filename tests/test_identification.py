@@ -1,6 +1,7 @@
 """Algorithm 1 against plain NumPy and against what defines its parts."""
 
 import json
+from functools import cache
 
 import numpy as np
 import pytest
@@ -229,12 +230,18 @@ def test_the_same_seed_gives_the_same_answer(record):
     assert one.to_dict() == two.to_dict()
 
 
+@cache
+def in_plain_units():
+    """Give a record, and what is found in it."""
+    u = slow_sine(400)
+    y = plain_gpi(u, *plant())[0]
+    return u, y, identify(u, y, ORDER, starts=1, epsilon=0.0)
+
+
 @settings(max_examples=8)
 @given(st.floats(1e-4, 1e5), st.floats(1e-4, 1e5))
 def test_units_change_nothing(unit_u, unit_y):
-    u = slow_sine(400)
-    y = plain_gpi(u, *plant())[0]
-    one = identify(u, y, ORDER, starts=1, epsilon=0.0)
+    u, y, one = in_plain_units()
     other = identify(unit_u * u, unit_y * y, ORDER, starts=1, epsilon=0.0)
     assert other.relative_error == pytest.approx(one.relative_error, rel=0.1, abs=1e-4)
 

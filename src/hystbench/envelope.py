@@ -5,20 +5,19 @@ Using a GPO-Based Adaptive Filter".
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import MISSING, dataclass, fields
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from hystbench import kernels
-from hystbench.errors import InputError, refuse_unknown
+from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 
 class NamedNumbers:
-    """Mixin of a dataclass of numbers: all finite, and given and taken by name."""
+    """Mixin of a dataclass of numbers: all finite, and given by name."""
 
     place: ClassVar[str]
     """What messages call it."""
@@ -33,23 +32,6 @@ class NamedNumbers:
     def to_dict(self) -> dict[str, Any]:
         """Give the parameters by name."""
         return dict(vars(self))
-
-    @classmethod
-    def from_dict(cls, parameters: Mapping[str, Any]) -> Self:
-        """Make it from its parameters by name.
-
-        Raises
-        ------
-        InputError
-            If a name is missing or unknown.
-        """
-        known = {item.name: item for item in fields(cls)}  # type: ignore[arg-type]
-        for name in parameters:
-            refuse_unknown(name, known, f"{cls.place}.{name}: unknown")
-        for name, item in known.items():
-            if item.default is MISSING and name not in parameters:
-                raise InputError(f"{cls.place}.{name}: missing")
-        return cls(**parameters)
 
 
 @dataclass(frozen=True)

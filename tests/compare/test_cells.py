@@ -56,11 +56,6 @@ def test_a_perfect_run_is_infinitely_below():
     assert found.log10_ratio == -math.inf
 
 
-def test_measured_records_stay_out():
-    run = make_run(*FIRST, 0.01, origin="measured")
-    assert not cell(ClaimEvidence(runs={FIRST: run}), *FIRST).ran
-
-
 def test_consistency_of_the_printed_pair_goes_along():
     evidence = ClaimEvidence()
     assert cell(evidence, "sine-200hz", "delayed").published_consistent == "no"

@@ -5,11 +5,10 @@ import math
 
 import pytest
 
-from hystbench.compare.comparison import WRITTEN, compare_evidence
+from hystbench.compare.comparison import WRITTEN, Comparison
 from hystbench.compare.evidence import (
     read_envelope_errors,
     read_evidence,
-    read_identification,
     read_run,
 )
 from hystbench.compare.rows import read_items
@@ -92,46 +91,6 @@ def test_diverged_run_is_read(tmp_path):
     assert math.isinf(run.error("re"))
 
 
-@pytest.mark.parametrize(
-    "key", sorted(set(RUN) - {"samples", "dt_s", "taps", "transient_s"})
-)
-def test_missing_key_is_named(tmp_path, key):
-    path = write(tmp_path / "run.json", {k: v for k, v in RUN.items() if k != key})
-    with pytest.raises(InputError, match=rf"run.json: no key '{key}'"):
-        read_run(path)
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"status": "finit"}, "did you mean 'finite'"),
-        ({"status": "diverged"}, "disagree"),
-        ({"mse": None}, "needs an MSE"),
-    ],
-)
-def test_run_that_contradicts_itself_is_refused(tmp_path, changes, message):
-    path = write(tmp_path / "run.json", RUN | changes)
-    with pytest.raises(InputError, match=message):
-        read_run(path)
-
-
-def test_file_that_is_no_json_object_is_refused(tmp_path):
-    path = tmp_path / "run.json"
-    path.write_text("{", encoding="utf-8")
-    with pytest.raises(InputError, match="not a readable JSON file"):
-        read_run(path)
-    with pytest.raises(InputError, match="expected a JSON object"):
-        read_run(write(path, [1]))
-    with pytest.raises(FileNotFoundError, match=r"none\.json"):
-        read_run(tmp_path / "none.json")
-
-
-def test_two_runs_of_one_cell_are_refused(tmp_path):
-    paths = [write(tmp_path / f"{n}.json", RUN) for n in (1, 2)]
-    with pytest.raises(InputError, match=r"2.json: a second run of gpo on sine-010hz"):
-        read_evidence(paths)
-
-
 def test_order_sweep_is_read(tmp_path):
     path = tmp_path / "errors.csv"
     path.write_text(
@@ -165,18 +124,6 @@ def test_envelope_errors_are_read(tmp_path):
     assert read_envelope_errors(path) == {("a", "identified"): 0.5}
 
 
-def test_identification_is_read(tmp_path):
-    found = read_identification(write(tmp_path / "identified.json", IDENTIFIED))
-    assert found == IDENTIFIED
-
-
-def test_missing_envelope_parameter_is_named(tmp_path):
-    envelope = {k: v for k, v in IDENTIFIED["envelope"].items() if k != "a5"}
-    path = write(tmp_path / "identified.json", IDENTIFIED | {"envelope": envelope})
-    with pytest.raises(InputError, match="no key 'a5'"):
-        read_identification(path)
-
-
 def test_from_files_to_files(tmp_path):
     made = {"gpo": RUN, "rdgpi": FREE_RUN}
     runs = [write(tmp_path / f"{name}.json", run) for name, run in made.items()]
@@ -187,7 +134,7 @@ def test_from_files_to_files(tmp_path):
     out = tmp_path / "compare"
     identified = write(tmp_path / "identified.json", IDENTIFIED)
     evidence = read_evidence(runs, records, identified=identified)
-    compare_evidence(evidence, ["sine-060hz"]).write(out)
+    Comparison(evidence, ["sine-060hz"]).write(out)
     names = {name for name in WRITTEN if "*" not in name} - {"added.csv"}
     assert {p.name for p in out.iterdir()} - {ENTRIES} == names | {"tables"}
     assert len(list((out / "tables").glob("table-*"))) == 12

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from hystbench.compare.cells import compare_cells
+from hystbench.compare.cells import OFF_COLUMNS, compare_cells, off_cells
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.compare.off import OFF_COLUMNS, off_cells
 from hystbench.compare.rows import write_fields
 from tests.conftest import table
 

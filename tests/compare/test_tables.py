@@ -7,9 +7,9 @@ import docutils.core
 import pytest
 
 from hystbench.compare.cells import compare_cells
-from hystbench.compare.comparison import compare_evidence
+from hystbench.compare.comparison import Comparison
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.compare.tables import PrintedTable, paper_table, paper_tables
+from hystbench.compare.tables import PrintedTable, paper_table
 from hystbench.compare.verdict import (
     first_result,
     sentences,
@@ -23,7 +23,7 @@ def table(number, changes=None, missing=()):
     runs = published_runs(changes)
     for cell in missing:
         del runs[cell]
-    return paper_table(number, compare_cells(ClaimEvidence(runs=runs)))
+    return paper_table(number, compare_cells(ClaimEvidence(runs=runs)), {})
 
 
 def row(number, signal, error, **options):
@@ -36,7 +36,7 @@ def row(number, signal, error, **options):
 
 def test_shapes_are_those_of_the_paper():
     # two lines a signal; signal, error and two columns a model
-    shapes = [t.frame.shape for t in paper_tables(compare_cells(ClaimEvidence()))]
+    shapes = [each.frame.shape for each in Comparison(ClaimEvidence()).tables]
     assert shapes == [(18, 10), (2, 10), (6, 10), (20, 6)]
 
 
@@ -120,7 +120,7 @@ def test_tables_are_written_in_three_formats(tmp_path):
 
 @pytest.fixture
 def comparison():
-    return compare_evidence(ClaimEvidence(runs=published_runs()))
+    return Comparison(ClaimEvidence(runs=published_runs()))
 
 
 def test_verdict_takes_its_numbers_from_the_summary(comparison):
@@ -132,7 +132,7 @@ def test_verdict_takes_its_numbers_from_the_summary(comparison):
 
 
 def test_verdict_without_runs_says_so():
-    summary = compare_evidence(ClaimEvidence()).summary
+    summary = Comparison(ClaimEvidence()).summary
     assert "No filter was run" in sentences(summary)[0]
 
 
@@ -143,7 +143,7 @@ def test_verdict_where_most_diverged_says_so(comparison):
 
 def test_verdict_never_mixes_calibrated_and_held_out():
     held_out = ("sine-060hz", "chirp-1-100hz")
-    summary = compare_evidence(ClaimEvidence(runs=published_runs()), held_out).summary
+    summary = Comparison(ClaimEvidence(runs=published_runs()), held_out).summary
     changed = summary | {
         "calibrated": summary["calibrated"] | {"within_factor_2": 0.5},
         "held_out": summary["held_out"] | {"within_factor_2": 0.125},
@@ -165,7 +165,7 @@ def test_verdict_never_mixes_calibrated_and_held_out():
 
 def test_the_first_result_has_numbers_and_links():
     held_out = ("sine-060hz", "chirp-1-100hz")
-    found = compare_evidence(
+    found = Comparison(
         ClaimEvidence(runs=published_runs({("sine-060hz", "gpo"): 1.0})), held_out
     )
     usual = {
@@ -229,7 +229,7 @@ def test_verdict_in_markdown_has_a_row_for_each_filter(comparison):
 
 
 def test_the_small_table_keeps_the_halves_apart():
-    found = compare_evidence(ClaimEvidence(runs=published_runs()), ("sine-060hz",))
+    found = Comparison(ClaimEvidence(runs=published_runs()), ("sine-060hz",))
     text = verdict_page(found.summary, "pipe")
     for half in ("held out", "calibrated"):
         assert f"| {half}: gpo" in text
@@ -250,6 +250,6 @@ def test_a_diverged_run_is_told_below_its_table():
     runs = published_runs()
     first = next(iter(runs))
     runs[first] = make_run(*first, None, diverged=told)
-    table = paper_table(1, compare_cells(ClaimEvidence(runs=runs)))
+    table = paper_table(1, compare_cells(ClaimEvidence(runs=runs)), {})
     assert f"{first[0]}, {first[1]}: {told}" in table.legend
     assert "diverged" in table.markdown()

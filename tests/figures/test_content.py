@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from hystbench.envelope import PUBLISHED_ENVELOPE
-from hystbench.errors import InputError
 from hystbench.figures import drawer, style
 from hystbench.published import load_text
 from tests.figures.inputs import (
@@ -170,15 +169,6 @@ def test_identification_shows_j_the_tolerable_one_and_both_models(inputs):
     ]
 
 
-def test_identification_of_another_record_is_refused(inputs, tmp_path):
-    record = a_record("sine-010hz")
-    other = type(record)(**{**vars(record), "u": 2 * record.u})
-    other.save(tmp_path / "other.npz")
-    given = inputs.of("identification") | {"records": [tmp_path / "other.npz"]}
-    with pytest.raises(InputError, match="of another record"):
-        draw("identification", **given)
-
-
 def test_learning_curves_leave_out_what_does_not_learn(inputs):
     figure = draw("learning-curves", **inputs.of("learning-curves"))
     assert "RDGPI model" not in legend(figure)
@@ -188,8 +178,6 @@ def test_learning_curves_leave_out_what_does_not_learn(inputs):
         assert len(crosses) == lost
         assert len(axes.get_lines()) == 4 + lost
         assert axes.get_yscale() == "log"
-    with pytest.raises(InputError, match="no run of an adaptive filter"):
-        draw("learning-curves", runs=inputs.runs(SIGNALS, ("rdgpi",)))
 
 
 def test_learning_curves_keep_the_scale_of_the_finite_runs(inputs):
@@ -237,25 +225,6 @@ def test_errors_stand_where_they_are(inputs):
     # A model's mark lies in its record's row.
     rows = [round(float(mark.get_ydata()[0])) for mark in marks]
     assert rows == [n for n in range(len(SIGNALS)) for _ in MODELS]
-
-
-def test_runs_and_records_must_belong_together(inputs):
-    one, two = ("sine-010hz",), ("sine-010hz", "sine-020hz")
-    for name, records, signals, told in (
-        ("loops", one, two, "no record 'sine-020hz'"),
-        ("loops", two, one, "sine-020hz: no run on it"),
-        ("figure-10-sum", two, one, "2 records and 1 runs"),
-    ):
-        runs = inputs.runs(signals, ("gpo",))
-        with pytest.raises(InputError, match=told):
-            draw(name, records=inputs.record(*records), runs=runs)
-
-
-def test_arrays_must_be_beside_a_run(inputs, tmp_path):
-    run, _ = save_a_run(tmp_path, a_record("sine-010hz"), "gpo")
-    run.with_suffix(".npz").unlink()
-    with pytest.raises(InputError, match="not the arrays of a run"):
-        draw("figure-10-sum", records=inputs.record("sine-010hz"), runs=[run])
 
 
 def test_step_edges_stand_beside_both_bounds(inputs):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from hystbench.published import Pair, Printed, load_errors, load_table4_gpo, load_text
-from hystbench.published.audit import audit, write_audit
 from hystbench.published.discrepancies import (
+    audit,
     chirp_rate,
     crossings,
     envelopes,
@@ -17,6 +17,7 @@ from hystbench.published.discrepancies import (
     table4_gpo_repeats,
     table4_rows,
     units_of_sums,
+    write_audit,
 )
 from tests.conftest import table
 

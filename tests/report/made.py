@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
-from hystbench.compare.comparison import compare_evidence, held_out_signals
+from hystbench.compare.comparison import Comparison, held_out_signals
 from hystbench.compare.evidence import read_evidence
 from hystbench.compare.measured import compare_measured
 from hystbench.figures import drawer, style
 from hystbench.published.split import CALIBRATION_SIGNALS
 from hystbench.report.reproduction.page import page
-from hystbench.report.reproduction.read import read_content
+from hystbench.report.reproduction.read import Results
 from tests.conftest import ROOT
 from tests.figures.inputs import MODELS, a_record, save_a_run
 
@@ -50,7 +50,7 @@ def make_results(folder: Path, names=SIGNALS, models=MODELS) -> list[Path]:
     """Write what the page of a reproduction needs; give its figures."""
     runs = make_runs(folder, names, models)
     held_out = held_out_signals(CALIBRATION_SIGNALS)
-    compare_evidence(read_evidence(runs), held_out).write(folder / "compare")
+    Comparison(read_evidence(runs), held_out).write(folder / "compare")
     figures = [draw(folder / "figures", "figure-03-play")]
     if "gpo" in models:
         records = [folder / "records" / f"{name}.npz" for name in names]
@@ -69,10 +69,10 @@ def make_measured(folder: Path) -> list[Path]:
 
 def make_page(folder: Path, figures: list[Path], tables=(), **settings) -> Path:
     out = folder / "report.html"
-    content = read_content(
+    results = Results(
         out.parent, folder / "compare", figures, tables, CAPTIONS, SETTINGS | settings
     )
-    out.write_text(page(content), encoding="utf-8")
+    out.write_text(page(results), encoding="utf-8")
     return out
 
 

@@ -10,7 +10,6 @@ import pytest
 
 from hystbench.errors import InputError
 from hystbench.report.markup import first_sentence, inline, paragraphs
-from hystbench.report.picture import embedded
 from hystbench.report.table import Body, Cell, Heading, PageTable, number
 from tests.conftest import table as rows
 from tests.report.made import (
@@ -249,13 +248,6 @@ def test_a_wrong_file_is_one_line_and_the_page_stays(copied, name, text, told):
         make_page(copied, figures_of(copied))
     assert "\n" not in str(caught.value)
     assert (copied / "report.html").read_bytes() == before
-
-
-def test_a_picture_must_tell_its_size(tmp_path):
-    file = tmp_path / "a.svg"
-    file.write_text("<svg viewBox='0 0 1 1'/>")
-    with pytest.raises(InputError, match=r"a\.svg: expected an SVG picture"):
-        embedded(file, "", inline(""))
 
 
 def test_the_little_markup_of_captions():

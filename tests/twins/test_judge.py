@@ -6,7 +6,6 @@ import pytest
 
 from hystbench.compare.beside import read_holdings, read_spreads
 from hystbench.compare.claims import CLAIMS
-from hystbench.compare.claims.claim import holds
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.twins.experiments import CONFIGURED, TwinExperiment
 from hystbench.twins.judge import results_on_runs, write_twins
@@ -28,7 +27,7 @@ def outcome(changes, name, family="gpi", experiment=CONFIGURED):
 def test_every_claim_can_be_put_to_any_signals(claim):
     evidence = outcome({}, "gma").evidence
     for signals in ([], HELD_OUT, ["sine-060hz"], ["chirp-1-100hz"]):
-        found = holds(BY_ID[claim], evidence.on_signals(signals))
+        found = BY_ID[claim].holds(evidence.on_signals(signals))
         assert found in (True, False, None)
 
 

@@ -1,4 +1,4 @@
-"""What a comparison stands on: the runs' own files, read and checked."""
+"""What a comparison stands on: the runs' own files."""
 
 from __future__ import annotations
 
@@ -18,8 +18,7 @@ from hystbench.compare.beside import (
     read_holdings,
     read_spreads,
 )
-from hystbench.compare.rows import finite_or_infinite, read_items, read_rows
-from hystbench.errors import InputError, refuse_unknown
+from hystbench.compare.rows import read_items
 from hystbench.files import read_json
 from hystbench.order_errors import OrderError
 from hystbench.published import (
@@ -95,7 +94,7 @@ class Run:
 
 @dataclass(frozen=True)
 class ClaimEvidence:
-    """All that the claims are judged by; what was not run is missing here.
+    """All that the claims are judged by, of the twin; what was not run is missing.
 
     ``spreads`` and ``holdings`` are what other twins say, and ``constants`` what the
     ranking is with other constants; no claim is judged by them. Errors of a signal in
@@ -119,11 +118,6 @@ class ClaimEvidence:
     drawn: Mapping[str, Drawn] = field(default_factory=dict)
     edges: tuple[Edge, ...] = ()
     constants: tuple[Ranking, ...] = ()
-
-    @property
-    def twin_runs(self) -> dict[Cell, Run]:
-        """Runs on the twin: measured records have no published errors."""
-        return {cell: run for cell, run in self.runs.items() if run.origin == "twin"}
 
     @property
     def added_models(self) -> tuple[str, ...]:
@@ -176,85 +170,52 @@ class ClaimEvidence:
         )
 
 
-def _need(content: Mapping[str, Any], path: str | Path, key: str) -> Any:
-    """Take a key of a file or say which is missing."""
-    refuse_unknown(key, content, f"{path}: no key {key!r}")
-    return content[key]
-
-
-def _content(path: str | Path) -> dict[str, Any]:
-    content = read_json(path)
-    if not isinstance(content, dict):
-        raise InputError(f"{path}: expected a JSON object")
-    return content
-
-
-def read_run(path: str | Path) -> Run:
-    """Read the file of one run.
-
-    Raises
-    ------
-    InputError
-        If a key is missing, or the status and the errors disagree.
-    """
-    need = partial(_need, _content(path), path)
-    status, diverged = need("status"), need("diverged")
-    refuse_unknown(status, _STATUSES, f"{path}: status {status!r}")
-    if (status == "diverged") != (diverged is not None):
-        raise InputError(f"{path}: status {status!r} and 'diverged' disagree")
-    if status == "finite" and need("mse") is None:
-        raise InputError(f"{path}: a finite run needs an MSE")
-    of_filter: dict[str, Any] = {}
-    if need("error_kind") == "one-step a priori":
-        eigenvalues = need("eigenvalues")
-        of_filter = {key: need(key) for key in ("order", "step_size", "bound")}
-        of_filter["weight_count"] = len(need("weights"))
-        of_filter["largest_eigenvalue"] = eigenvalues.get("largest")
-        of_filter["spread"] = eigenvalues.get("spread_nonzero")
-    return Run(
-        **{key: need(key) for key in _KEPT},
-        diverged=_need(diverged, path, "sentence") if diverged else None,
-        unit=_need(need("units"), path, "mse"),
-        transient_fraction=need("transient_s") / (need("samples") * need("dt_s")),
-        **of_filter,
-    )
-
-
-_STATUSES = ("finite", "diverged")
-_PARAMETERS = tuple(f"a{j}" for j in range(8))
-_IDENTIFIED = (
-    *("envelope", "thresholds", "weights", "J", "epsilon", "reached"),
-    *("relative_error", "published_relative_error"),
-)
 _KEPT = (
     *("signal", "model", "origin", "error_kind", "convergence_s"),
     *("mse", "re", "mse_after_transient", "re_after_transient"),
 )
 
 
+def read_run(path: str | Path) -> Run:
+    """Read the file of one run."""
+    content = read_json(path)
+    diverged = content["diverged"]
+    of_filter: dict[str, Any] = {}
+    if content["error_kind"] == "one-step a priori":
+        of_filter = {key: content[key] for key in ("order", "step_size", "bound")}
+        of_filter["weight_count"] = len(content["weights"])
+        of_filter["largest_eigenvalue"] = content["eigenvalues"]["largest"]
+        of_filter["spread"] = content["eigenvalues"]["spread_nonzero"]
+    length = content["samples"] * content["dt_s"]
+    return Run(
+        **{key: content[key] for key in _KEPT},
+        diverged=diverged["sentence"] if diverged else None,
+        unit=content["units"]["mse"],
+        transient_fraction=content["transient_s"] / length,
+        **of_filter,
+    )
+
+
+@dataclass(frozen=True)
+class EnvelopeError:
+    """MSE of the GPO filter on a signal, infinite where it diverged."""
+
+    signal: str
+    envelopes: str
+    """Either ``identified`` or ``published``."""
+    mse: float
+
+
 def read_envelope_errors(path: str | Path) -> dict[Cell, float]:
     """Read the GPO filter's MSE by signal and envelopes (identified, published)."""
-    columns = ("signal", "envelopes", "mse", "re", "status")
-    return {
-        (row["signal"], row["envelopes"]): finite_or_infinite(row["mse"], path, n)
-        for n, row in enumerate(read_rows(path, columns), 1)
-    }
-
-
-def read_identification(path: str | Path) -> dict[str, Any]:
-    """Read the result of Algorithm 1."""
-    content = _content(path)
-    for key in _IDENTIFIED:
-        _need(content, path, key)
-    for key in _PARAMETERS:
-        _need(content["envelope"], path, key)
-    return content
+    rows = read_items(path, EnvelopeError)
+    return {(row.signal, row.envelopes): row.mse for row in rows}
 
 
 FILES: dict[str, tuple[str, Callable[[str | Path], Any]]] = {
     "order_sweep": ("order_sweep", partial(read_items, kind=OrderError)),
     "order_sweep_other": ("order_sweep_other", partial(read_items, kind=OrderError)),
-    "identified": ("identification", read_identification),
+    "identified": ("identification", read_json),
     "envelopes": ("envelope_errors", read_envelope_errors),
     "twin_errors": ("spreads", read_spreads),
     "twin_claims": ("holdings", read_holdings),
@@ -277,18 +238,8 @@ def read_evidence(
     runs, records : iterable of path
     **files : path or None
         By the names in ``FILES``; one left out, or None, was not run.
-
-    Raises
-    ------
-    InputError
-        If a file is not what it should be, or two runs are of one signal and model.
     """
-    found: dict[Cell, Run] = {}
-    for path in runs:
-        run = read_run(path)
-        if (run.signal, run.model) in found:
-            raise InputError(f"{path}: a second run of {run.model} on {run.signal}")
-        found[run.signal, run.model] = run
+    found = {(run.signal, run.model): run for run in map(read_run, runs)}
     read = {
         FILES[name][0]: FILES[name][1](path)
         for name, path in files.items()

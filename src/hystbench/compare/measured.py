@@ -7,7 +7,7 @@ import pandas as pd
 
 from hystbench.compare.evidence import Run, read_run
 from hystbench.compare.rows import write_fields
-from hystbench.compare.tables import PrintedTable, error_kind, grid
+from hystbench.compare.tables import PrintedTable, error_kind
 from hystbench.files import write_text
 from hystbench.published import in_order
 
@@ -44,8 +44,8 @@ def compare_measured(
     )
     write_fields(out / "errors.csv", ERROR_COLUMNS, found)
     table.write(out / "tables")
-    body, said = grid(table.frame, "rst"), finite_sentence(found)
-    text = "\n\n".join(filter(None, (table.caption, body, table.legend, said))) + "\n"
+    parts = filter(None, (*table.text("rst"), finite_sentence(found)))
+    text = "\n\n".join(parts) + "\n"
     write_text(out / "tables.txt", text)
     write_text(out / "verdict.rst", text)
 

@@ -31,20 +31,6 @@ def read_rows(path: str | Path, columns: tuple[str, ...]) -> list[dict[str, str]
     return rows
 
 
-def finite_or_infinite(text: str, path: str | Path, row: int) -> float:
-    """Read an error; an empty one means that the run diverged.
-
-    Raises
-    ------
-    InputError
-        If it is no number.
-    """
-    try:
-        return float(text) if text else math.inf
-    except ValueError as error:
-        raise InputError(f"{path}: row {row}: {text!r} is not a number") from error
-
-
 def read_items(path: str | Path, kind: type[Item]) -> tuple[Item, ...]:
     """Read a CSV file as items of a dataclass, a column a field.
 
@@ -63,7 +49,11 @@ def read_items(path: str | Path, kind: type[Item]) -> tuple[Item, ...]:
         if not text and NoneType in wanted:
             return None
         if float in wanted:
-            return finite_or_infinite("" if text == "diverged" else text, path, row)
+            try:
+                return math.inf if text in ("", "diverged") else float(text)
+            except ValueError as error:
+                told = f"{path}: row {row}: {text!r} is not a number"
+                raise InputError(told) from error
         if bool in wanted:
             refuse_unknown(text, _TRUTH, f"{path}: row {row}: {text!r} is no truth")
             return _TRUTH[text]

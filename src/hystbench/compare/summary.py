@@ -12,15 +12,10 @@ from statistics import median
 from typing import Any, get_args
 
 from hystbench.compare.beside import Edge, Ranking
-from hystbench.compare.cells import ComparedCell
+from hystbench.compare.cells import NEAR_FACTOR, ComparedCell, rms_error_percent
 from hystbench.compare.claims.claim import Basis, Judgement, Verdict
 from hystbench.compare.evidence import Cell, ClaimEvidence
-from hystbench.metrics import rms
 from hystbench.published import FILTERS
-from hystbench.published.consistency import check
-
-#: Ours over the paper's, or theirs over ours: up to it a cell is near.
-NEAR_FACTOR = 2.0
 
 
 def nearness(cells: Sequence[ComparedCell]) -> dict[str, Any]:
@@ -260,29 +255,6 @@ def summarise(
 
 def _per_model(cells: Sequence[ComparedCell]) -> dict[str, dict[str, Any]]:
     return {m: nearness([c for c in cells if c.model == m]) for m in FILTERS}
-
-
-def rms_error_percent(evidence: ClaimEvidence) -> dict[str, float]:
-    """Hold the twin's RMS displacement against the one that the tables imply.
-
-    Returns
-    -------
-    dict of str to float
-        By signal of which there is a record: 100 (ours / implied - 1); of a signal
-        that was drawn many times, the median over the draws. The implied
-        one is the middle of what the consistent rows share; where one of several
-        rows must be wrong, the mean of the middles.
-    """
-    errors = {}
-    for signal, checked in check(evidence.published).items():
-        record = evidence.records.get(signal)
-        if record is None or record.origin != "twin":
-            continue
-        ours = rms(record.y)
-        if signal in evidence.drawn:
-            ours = median(evidence.drawn[signal].rms)
-        errors[signal] = 100 * (ours / checked.implied_rms - 1)
-    return errors
 
 
 def _split(

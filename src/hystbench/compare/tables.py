@@ -1,14 +1,15 @@
 """Tables 1-4 with ours beside the paper's, as CSV, Markdown and LaTeX."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import pandas as pd
+from tabulate import tabulate
 
 from hystbench.compare.cells import NOT_RUN, ComparedCell
 from hystbench.files import write_text
-from hystbench.published import METRICS, MODELS, Metric
+from hystbench.published import METRICS, Metric, in_order
 
 ONE_STEP_WORDS = "one-step a priori errors with running weights"
 FREE_RUN_WORDS = "errors of a free-run simulation"
@@ -27,9 +28,9 @@ TITLES = {
 METRIC_NAMES: dict[Metric, str] = {"mse": "MSE (um^2)", "re": "RE"}
 
 
-def grid(frame: pd.DataFrame, style: str) -> str:
+def grid(lines: Iterable[Iterable[str]], headers: Iterable[str], style: str) -> str:
     """Write a table of text in one of the styles of tabulate."""
-    return str(frame.to_markdown(index=False, tablefmt=style, disable_numparse=True))
+    return tabulate(lines, [*headers], tablefmt=style, disable_numparse=True)
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,11 @@ class PrintedTable:
     """What the marks in its cells mean; empty where there are none."""
     frame: pd.DataFrame
     """Its cells as text."""
+
+    def text(self, style: str) -> tuple[str, str, str]:
+        """Give caption, cells and legend as text, the cells in a style of tabulate."""
+        cells = grid(self.frame.to_numpy(), self.frame.columns, style)
+        return self.caption, cells, self.legend
 
     def csv(self) -> str:
         """Give the table as CSV, with the caption in a column of its own."""
@@ -130,19 +136,17 @@ def error_kind(models: Iterable[str]) -> str:
 
 
 def paper_table(
-    number: int, cells: Iterable[ComparedCell], draws: Mapping[str, int] | None = None
+    number: int, cells: Sequence[ComparedCell], draws: Mapping[str, int]
 ) -> PrintedTable:
     """Set ours beside one table of the paper; Table 4 repeats the GPO filter.
 
     ``draws`` tells how often a signal was drawn.
     """
-    listed = list(cells)
-    rows = list(dict.fromkeys(c.signal for c in listed if c.table == number))
-    models = {c.model for c in listed if c.table == number}
-    if number == 4:
-        models.add("gpo")
-    columns = [model for model in MODELS if model in models]
-    by_key = {(c.signal, c.model, c.metric): c for c in listed}
+    own = [cell for cell in cells if cell.table == number]
+    rows = list(dict.fromkeys(cell.signal for cell in own))
+    models = {cell.model for cell in own} | ({"gpo"} if number == 4 else set())
+    columns = in_order(models)
+    by_key = {(c.signal, c.model, c.metric): c for c in cells}
     content = []
     for signal in rows:
         for metric in METRICS:
@@ -165,23 +169,15 @@ def paper_table(
                 LEGEND,
                 *(
                     f"ours on {signal} are medians over {count} draws of its phases"
-                    for signal, count in (draws or {}).items()
+                    for signal, count in draws.items()
                     if signal in rows
                 ),
                 *dict.fromkeys(
                     f"{c.signal}, {c.model}: {c.status}"
-                    for c in listed
-                    if c.table == number and c.ran and c.ours is None
+                    for c in own
+                    if c.ran and c.ours is None
                 ),
             ]
         ),
         frame=pd.DataFrame(content, dtype=str),
     )
-
-
-def paper_tables(
-    cells: Iterable[ComparedCell], draws: Mapping[str, int] | None = None
-) -> tuple[PrintedTable, ...]:
-    """Make Tables 1-4; ``draws`` as in :func:`paper_table`."""
-    listed = list(cells)
-    return tuple(paper_table(number, listed, draws) for number in TITLES)

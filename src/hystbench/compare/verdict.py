@@ -4,24 +4,13 @@ The words are in ``sentences.txt.j2`` and ``first.txt.j2``; every number comes f
 summary.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-import pandas as pd
-
+from hystbench.compare.claims import CLAIMS
 from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.tables import PrintedTable, grid
 
-#: Results that may stand on held-out signals, in words.
-SHORTLY = {
-    "peak-to-peak-changes": "the peak-to-peak displacement changes with frequency",
-    "chirp-oscillation": "the chirp's displacement oscillates beyond the resonance",
-    "linear-filter-poor": "the linear filter fits hysteresis poorly",
-    "sines-gpo-best-low": "the GPO filter is far ahead at low frequencies",
-    "chirp-gpo-best": "the GPO filter is best on the chirp",
-    "sums-gpo-best": "the GPO filter is best on the sums of sines",
-    "sums-backlash-second": "the backlash filter is second on the sums of sines",
-}
 #: An RMS displacement is told where it is off by more (%).
 NEAR_RMS = 3.0
 
@@ -51,9 +40,10 @@ def _paragraphs(template: str, summary: Mapping[str, Any]) -> list[str]:
         trim_blocks=True,
         autoescape=False,  # noqa: S701 - plain text
     )
+    short = {each.id: each.shortly or each.id for each in CLAIMS}
     filters: dict[str, Callable[[Any], str]] = {
         "percent": _percent,
-        "shortly": lambda name: SHORTLY.get(name, name),
+        "shortly": lambda name: short[name],
         "digits": lambda value: f"{value:.3g}",
         "short": lambda value: f"{value:g}",
         "milli": lambda value: f"{1e3 * value:+.3g}",
@@ -74,7 +64,7 @@ def sentences(summary: Mapping[str, Any]) -> list[str]:
 def first_result(summary: Mapping[str, Any]) -> str:
     """Write the README's table of what was found as Markdown, failures among it."""
     lines = [line.split(" | ") for line in _paragraphs("first.txt.j2", summary)]
-    return _grid(lines, ("of the paper", "found"), "pipe") + "\n"
+    return grid(lines, ("of the paper", "found"), "pipe") + "\n"
 
 
 def rows(summary: Mapping[str, Any]) -> list[tuple[str, ...]]:
@@ -111,13 +101,8 @@ def verdict_page(summary: Mapping[str, Any], style: str) -> str:
     # A bar has a meaning of its own in markups.
     headers = [header.replace("|", r"\|") for header in HEADERS]
     return (
-        "\n\n".join((listed, last, _grid(rows(summary), headers, style), HALVES)) + "\n"
+        "\n\n".join((listed, last, grid(rows(summary), headers, style), HALVES)) + "\n"
     )
-
-
-def _grid(lines: Sequence[Sequence[str]], headers: Sequence[str], style: str) -> str:
-    """Write lines of text in one of the styles of tabulate."""
-    return grid(pd.DataFrame(lines, columns=list(headers), dtype=str), style)
 
 
 def print_tables(
@@ -126,14 +111,11 @@ def print_tables(
     summary: Mapping[str, Any],
 ) -> str:
     """Write ours beside theirs and the claims for a terminal."""
-    parts = []
-    for table in tables:
-        body = grid(table.frame, "simple")
-        parts.append("\n".join(filter(None, (table.caption, body, table.legend))))
-    ledger = _grid(
+    parts = ["\n".join(filter(None, table.text("simple"))) for table in tables]
+    ledger = grid(
         [(j.verdict, j.claim.id, j.published_bears_out) for j in judgements],
         ("verdict", "claim", "paper's own tables bear it out"),
         "simple",
     )
-    numbers = _grid(rows(summary), HEADERS, "simple")
+    numbers = grid(rows(summary), HEADERS, "simple")
     return "\n\n".join((*parts, ledger, numbers, "\n".join(sentences(summary)))) + "\n"

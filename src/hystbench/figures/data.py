@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 
 from hystbench.compare.evidence import Run, read_run
-from hystbench.errors import InputError, refuse_unknown
 from hystbench.record import FloatArray, Record, load_record
 
 
@@ -22,73 +21,25 @@ class Output:
     """Shape (samples,). Output of the model, and the record's output minus it."""
 
 
-def read_one(records: Sequence[Path], which: str) -> Record:
-    """Read the one record that a figure takes.
-
-    Raises
-    ------
-    InputError
-        If there is not one.
-    """
-    if len(records) != 1:
-        raise InputError(f"{len(records)} records; expected {which}")
-    return load_record(records[0])
-
-
-def read_outputs(paths: Iterable[Path]) -> list[Output]:
-    """Read runs and the arrays beside them (same name, ``.npz``).
-
-    Raises
-    ------
-    InputError
-        If the arrays are missing or no such archive.
-    """
-    outputs = []
-    for path in paths:
-        run, arrays = read_run(path), path.with_suffix(".npz")
-        try:
-            with np.load(arrays, allow_pickle=False) as archive:
-                outputs.append(Output(run, archive["output"], archive["error"]))
-        except (OSError, KeyError, ValueError) as error:
-            raise InputError(f"{arrays}: not the arrays of a run ({error})") from error
-    return outputs
-
-
 def read_records(
-    paths: Iterable[Path], runs: Sequence[Path]
+    paths: Iterable[Path], runs: Iterable[Path]
 ) -> list[tuple[Record, list[Output]]]:
     """Read records, each with the runs on it.
 
-    Raises
-    ------
-    InputError
-        If a run is of none of the records, or a record has no run.
+    The arrays of a run lie beside it (same name, ``.npz``).
     """
-    records = {record.name: record for record in map(load_record, paths)}
-    found: dict[str, list[Output]] = {name: [] for name in records}
-    for path, output in zip(runs, read_outputs(runs), strict=True):
-        signal = output.run.signal
-        refuse_unknown(signal, found, f"{path}: no record {signal!r}")
-        found[signal].append(output)
-    for name, outputs in found.items():
-        if not outputs:
-            raise InputError(f"record {name}: no run on it; expected one (--run)")
-    return [(record, found[name]) for name, record in records.items()]
+    outputs = []
+    for path in runs:
+        with np.load(path.with_suffix(".npz"), allow_pickle=False) as arrays:
+            outputs.append(Output(read_run(path), arrays["output"], arrays["error"]))
+    return [
+        (record, [each for each in outputs if each.run.signal == record.name])
+        for record in map(load_record, paths)
+    ]
 
 
 def read_pair(records: Sequence[Path], runs: Sequence[Path]) -> tuple[Record, Output]:
-    """Read one record and the one run on it.
-
-    Raises
-    ------
-    InputError
-        If there is not one of each.
-    """
-    if len(records) != 1 or len(runs) != 1:
-        raise InputError(
-            f"{len(records)} records and {len(runs)} runs; expected one --record and "
-            "one --run"
-        )
+    """Read one record and the one run on it."""
     ((record, (output,)),) = read_records(records, runs)
     return record, output
 

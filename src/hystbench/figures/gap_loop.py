@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from hystbench.errors import InputError
 from hystbench.figures import style
-from hystbench.figures.data import last_cycles, read_one
+from hystbench.figures.data import last_cycles
 from hystbench.files import read_json
 from hystbench.metrics import rms
+from hystbench.record import load_record
 
 
 def draw(*, records: Sequence[Path], table: Path) -> Figure:
@@ -23,21 +23,11 @@ def draw(*, records: Sequence[Path], table: Path) -> Figure:
         The archive of the record that was held out.
     table : Path
         Its table in the folder ``holdout`` of a gap, beside the gap's ``gap.json``.
-
-    Raises
-    ------
-    InputError
-        If there is not one record, or its samples are not those of the table.
     """
-    record = read_one(records, "one --record")
+    record = load_record(*records)
     before, after = np.loadtxt(
         table, delimiter=",", skiprows=1, usecols=(2, 3), unpack=True, ndmin=2
     )
-    if len(before) != len(record):
-        raise InputError(
-            f"{table}: {len(before)} rows; expected the {len(record)} samples of "
-            f"record {record.name}"
-        )
     gap = read_json(table.parents[1] / "gap.json")
     names = " and ".join(item["name"] for item in gap["effects"]) or "nothing added"
     numbers = gap.get("base_parameters", {}).values()

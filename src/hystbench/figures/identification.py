@@ -10,12 +10,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope
-from hystbench.errors import InputError
 from hystbench.figures import style
-from hystbench.figures.data import read_one
 from hystbench.files import read_json
 from hystbench.identification import Identification, fit_weights
-from hystbench.record import Record
+from hystbench.record import Record, load_record
 
 _IDENTIFIED: dict[str, Any] = {"color": style.BLUE, "linestyle": "-"}
 _PUBLISHED: dict[str, Any] = {"color": style.VERMILION, "linestyle": (0, (4, 2))}
@@ -34,13 +32,8 @@ def draw(*, identified: Path, records: Sequence[Path]) -> Figure:
     records : sequence of Path
         The slow record.
     """
-    record = read_one(records, "the slow one (--record)")
+    record = load_record(*records)
     found = _read(identified)
-    if not np.isclose(found.amplitude, np.abs(record.u).max()):
-        raise InputError(
-            f"{identified}: amplitude {found.amplitude:g}, of another record than "
-            f"{records[0]}; expected {np.abs(record.u).max():g}"
-        )
     models = {"identified": (found, _IDENTIFIED)}
     if found.published_relative_error is not None:
         published = fit_weights(
@@ -109,22 +102,17 @@ def _envelopes(axes: Axes, model: Identification, record: Record, **line: Any) -
 
 def _read(path: Path) -> Identification:
     about = read_json(path)
-    try:
-        return Identification(
-            envelope=Envelope.from_dict(about["envelope"]),
-            thresholds=np.array(about["thresholds"]),
-            weights=np.array(about["weights"]),
-            offset=about["offset"],
-            amplitude=about["amplitude"],
-            start=about["start"],
-            cost=about["J_final"],
-            cost_history=tuple(about["J"]),
-            epsilon=about["epsilon"],
-            relative_error=about["relative_error"],
-            starts=about["starts"],
-            published_relative_error=about["published_relative_error"],
-        )
-    except KeyError as error:
-        raise InputError(
-            f"{path}: no key {error}; expected an identification"
-        ) from error
+    return Identification(
+        envelope=Envelope(**about["envelope"]),
+        thresholds=np.array(about["thresholds"]),
+        weights=np.array(about["weights"]),
+        offset=about["offset"],
+        amplitude=about["amplitude"],
+        start=about["start"],
+        cost=about["J_final"],
+        cost_history=tuple(about["J"]),
+        epsilon=about["epsilon"],
+        relative_error=about["relative_error"],
+        starts=about["starts"],
+        published_relative_error=about["published_relative_error"],
+    )

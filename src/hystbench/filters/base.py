@@ -163,40 +163,18 @@ class AdaptiveFilter(ABC):
             rows = np.hstack((rows, np.full((len(rows), 1), self.constant_tap)))
         return rows, operators
 
-    def start(self, weights: ArrayLike | None = None) -> State:
-        """Give the state before the first sample.
-
-        Parameters
-        ----------
-        weights : array_like, shape (size,), optional
-            Initial weights; zero by default.
-
-        Raises
-        ------
-        InputError
-            If there are not ``size`` finite weights.
-        """
-        w = np.zeros(self.size) if weights is None else np.array(weights, np.float64)
-        if w.shape != (self.size,) or not np.isfinite(w).all():
-            raise InputError(
-                f"weights: {w.shape} given, {self.size} finite numbers expected"
-            )
+    def start(self) -> State:
+        """Give the state before the first sample: all weights are zero."""
         past = np.full(self.history, self.x_before, dtype=np.float64)
-        return State(w, past, self.first_operators())
+        return State(np.zeros(self.size), past, self.first_operators())
 
-    def run(
-        self,
-        x: ArrayLike,
-        d: ArrayLike,
-        state: State | None = None,
-        limit: float | None = None,
-    ) -> Result:
+    def run(self, x: ArrayLike, d: ArrayLike, state: State | None = None) -> Result:
         """Filter a record, or the next chunk of one.
 
         Chunk after chunk, each with the state of the one before, gives what the
-        whole record gives at once. (The default limit knows of the chunks so far
-        alone: a filter that comes near it in a quiet one may be told earlier that it
-        has diverged.)
+        whole record gives at once. (The limit of divergence knows of the chunks so
+        far alone: a filter that comes near it in a quiet one may be told earlier that
+        it has diverged.)
 
         Parameters
         ----------
@@ -204,17 +182,14 @@ class AdaptiveFilter(ABC):
             Input of the plant and its output.
         state : State, optional
             Where the chunk before ended; the start by default.
-        limit : float, optional
-            Magnitude of the error beyond which the filter has diverged. By default
-            that of the chunk before, or a million times the largest ``|d|`` so far.
 
         Raises
         ------
         InputError
-            If x and d differ in length, are not finite, the limit is not positive or
-            the filter diverged in a chunk before.
+            If x and d differ in length, are not finite, or the filter diverged in a
+            chunk before.
         """
-        return run_together([self], x, d, state, limit)[0]
+        return run_together([self], x, d, state)[0]
 
     def bound(self, x: ArrayLike) -> Bound:
         """Bound on the step size for an input, Eq. 19.

@@ -64,7 +64,7 @@ class GPOFilter(PlayFilter):
                 "envelopes: identified; expected the option --identified FILE"
             )
         return own | {
-            "envelope": Envelope.from_dict(identified["envelope"]),
+            "envelope": Envelope(**identified["envelope"]),
             "amplitude": identified["amplitude"],
         }
 

@@ -22,8 +22,6 @@ class State:
     """The last inputs, oldest first, shape (history,)."""
     operators: FloatArray
     """Outputs of the play operators, by tap; empty for filters without."""
-    limit: float | None = None
-    """Error beyond which it has diverged; None for a million times ``largest``."""
     largest: float = 0.0
     """Largest ``|d|`` so far."""
     diverged: bool = False

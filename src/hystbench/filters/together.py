@@ -13,13 +13,15 @@ from numpy.typing import ArrayLike
 
 from hystbench import kernels
 from hystbench.errors import InputError
-from hystbench.filters.state import Chunk, End, Result, State, finite, positive
+from hystbench.filters.state import Chunk, End, Result, State, finite
 
 if TYPE_CHECKING:
     from hystbench.filters.base import AdaptiveFilter
 
     Job = tuple[AdaptiveFilter, ArrayLike, ArrayLike]
 
+LIMIT = 1e6
+"""An error beyond so many times the largest ``|d|`` so far is of a diverged filter."""
 CHUNK = 32000
 """Samples filtered at a time: what is made of them stays in the processor's cache."""
 MOST = 32
@@ -33,7 +35,6 @@ def run_together(
     x: ArrayLike,
     d: ArrayLike,
     state: State | None = None,
-    limit: float | None = None,
 ) -> list[Result]:
     """Run filters that differ in step size alone, each as it would run by itself.
 
@@ -44,7 +45,7 @@ def run_together(
     ----------
     filters : sequence of AdaptiveFilter
         At least one.
-    x, d, state, limit
+    x, d, state
         As for :meth:`AdaptiveFilter.run`.
 
     Returns
@@ -55,14 +56,9 @@ def run_together(
     Raises
     ------
     InputError
-        If there is no filter, if they differ in more than the step size, and as for
-        :meth:`AdaptiveFilter.run`.
+        As for :meth:`AdaptiveFilter.run`.
     """
-    if not filters:
-        raise InputError("filters: none given, at least one expected")
     first = filters[0]
-    if len(filters) > 1:
-        _refuse_unlike(filters)
     x, _ = finite("x", x)
     d, largest = finite("d", d)
     if len(x) != len(d):
@@ -71,9 +67,7 @@ def run_together(
     if state.diverged:
         raise InputError("state: the filter has diverged; expected one that goes on")
     largest = max(largest, state.largest)
-    kept = state.limit if limit is None else limit
-    limit = 1e6 * (largest or 1.0) if kept is None else kept
-    positive("limit", limit)
+    limit = LIMIT * (largest or 1.0)
     count, past = len(filters), state.past
     output, error = np.empty((count, len(d))), np.empty((count, len(d)))
     ends: list[End] = [(state.weights, state.operators)] * count
@@ -99,41 +93,12 @@ def run_together(
             diverged_at = done[k]
             weights = np.nan_to_num(weights)
         diverged = diverged_at is not None
-        end_state = State(weights, pasts[k], operators, kept, largest, diverged)
+        end_state = State(weights, pasts[k], operators, largest, diverged)
         used = slice(done[k])
         results.append(
             Result(output[k, used], error[k, used], weights, diverged_at, end_state)
         )
     return results
-
-
-def but_step_size(item: AdaptiveFilter) -> dict[str, object]:
-    """Give what must be the same of filters that are run together.
-
-    Settings count by value; those without a hash, as arrays, by identity.
-    """
-    values = {key: value for key, value in vars(item).items() if key != "step_size"}
-    return {"filter": type(item)} | {key: _hashed(v) for key, v in values.items()}
-
-
-def _hashed(value: object) -> object:
-    try:
-        hash(value)
-    except TypeError:
-        return id(value)
-    return value
-
-
-def _refuse_unlike(filters: Sequence[AdaptiveFilter]) -> None:
-    one = but_step_size(filters[0])
-    for number, item in enumerate(filters[1:], 1):
-        other = but_step_size(item)
-        if one != other:
-            keys = (key for key in one | other if one.get(key) != other.get(key))
-            raise InputError(
-                f"filters: number {number} has another {next(keys)} than number 0; "
-                "run together, they may differ in step_size alone"
-            )
 
 
 def _neighbours(going: Sequence[bool]) -> list[slice]:
@@ -143,11 +108,7 @@ def _neighbours(going: Sequence[bool]) -> list[slice]:
     return [slice(*pair) for pair in zip(edges[::2], edges[1::2], strict=True)]
 
 
-def run_many(
-    jobs: Iterable[Job],
-    workers: int | None = None,
-    limit: float | None = None,
-) -> list[Result]:
+def run_many(jobs: Iterable[Job], workers: int | None = None) -> list[Result]:
     """Run many filters at once: step sizes, orders, seeds.
 
     Each job gives what it would give alone, so the results do not depend on
@@ -161,8 +122,6 @@ def run_many(
         Filter, input x and plant output d.
     workers : int, optional
         Threads; by default one for each processor that this process may use.
-    limit : float, optional
-        As for :meth:`AdaptiveFilter.run`.
 
     Returns
     -------
@@ -177,7 +136,7 @@ def run_many(
     def work(_: int) -> None:
         for batch in todo:
             x, d = listed[batch[0]][1:]
-            results = run_together([listed[k][0] for k in batch], x, d, None, limit)
+            results = run_together([listed[k][0] for k in batch], x, d)
             for k, result in zip(batch, results, strict=True):
                 done[k] = result
 
@@ -197,8 +156,8 @@ def _batches(jobs: Sequence[Job], workers: int) -> list[list[int]]:
     """
     alike: dict[object, list[int]] = {}
     for number, (item, x, d) in enumerate(jobs):
-        same = tuple(but_step_size(item).items())
-        alike.setdefault((same, id(x), id(d)), []).append(number)
+        given = [_hashed(v) for key, v in vars(item).items() if key != "step_size"]
+        alike.setdefault((type(item), *given, id(x), id(d)), []).append(number)
     parts = SHARES * workers if workers > 1 else 1
     batches = []
     for numbers in alike.values():
@@ -206,3 +165,12 @@ def _batches(jobs: Sequence[Job], workers: int) -> list[list[int]]:
         size = min(MOST, -(-len(numbers) // parts))
         batches += [numbers[k : k + size] for k in range(0, len(numbers), size)]
     return sorted(batches)
+
+
+def _hashed(value: object) -> object:
+    """Give what tells a setting from another: arrays have no hash but an identity."""
+    try:
+        hash(value)
+    except TypeError:
+        return id(value)
+    return value

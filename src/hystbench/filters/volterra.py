@@ -18,25 +18,6 @@ from hystbench.record import FloatArray
 TILE = 4  # the kernel keeps tiles of 4 x 4 second-order weights
 
 
-@dataclass(frozen=True)
-class VolterraBound(Bound):
-    """Bound of Eq. 19 for the whole regressor and for its two parts."""
-
-    first_order: float
-    second_order: float
-    """Traces of the parts of R that belong to ``x(k-i)`` and ``x(k-i) x(k-j)``."""
-
-    def margin(self, step_size: float, second_order_step: float) -> float:
-        """Give ``mu1 tr R1 + mu2 tr R2``: below 1 the weights converge in the mean.
-
-        With a step size for each weight on the diagonal of M, the mean error of the
-        weights follows ``v(k+1) = (I - 2 M R) v(k)``. ``M R`` has the eigenvalues of
-        ``M^1/2 R M^1/2``, none negative, so it converges if they are below 1; and
-        none is above their sum, the trace of ``M R``.
-        """
-        return step_size * self.first_order + second_order_step * self.second_order
-
-
 @dataclass(frozen=True, kw_only=True)
 class VolterraFilter(AdaptiveFilter):
     """Adaptive filter of all x(k-i) and all products x(k-i) x(k-j), i, j = 0 to N.
@@ -91,8 +72,8 @@ class VolterraFilter(AdaptiveFilter):
         products = x[:, :, None] * x[:, None, :]
         return np.hstack((x, products.reshape(len(x), -1))), operators
 
-    def bound(self, x: ArrayLike) -> VolterraBound:
-        """Bound on the step sizes for an input, Eq. 19, as a whole and by part.
+    def bound(self, x: ArrayLike) -> Bound:
+        """Bound on the step size for an input, Eq. 19, of the whole regressor.
 
         The two equal columns of a product make one of sqrt(2) times its size and
         one of zeros, with the same eigenvalues: so half the matrix will do. As for
@@ -108,16 +89,14 @@ class VolterraFilter(AdaptiveFilter):
                 products = scale * taps[:, rows] * taps[:, columns]
                 yield np.hstack((taps, products, np.tile(constant, (len(taps), 1))))
 
-        total = correlation(regressors())
-        power = np.diag(total)
-        return VolterraBound(
-            **vars(eigenvalue_bound(total, self.size)),
-            first_order=float(power[: self.taps].sum()) + self.constant_tap**2,
-            second_order=float(power[self.taps :][: len(rows)].sum()),
-        )
+        return eigenvalue_bound(correlation(regressors()), self.size)
 
     def step_bounds(self, x: ArrayLike) -> dict[str, float]:
         """Bound on the step size of each part, 1 over the trace of its own part of R.
+
+        At a share s of the first and 1 - s of the second the weights converge in the
+        mean: with the step sizes on the diagonal of M, their mean error follows
+        ``v(k+1) = (I - 2 M R) v(k)``, and no eigenvalue of ``M R`` is above its trace.
 
         The traces are the means of ``s(k)`` and ``s(k)^2``, where s is the sum of the
         squared taps.

@@ -70,19 +70,13 @@ class Search:
         self.amplitude = max(abs(self.low), abs(self.high))
         self.max_iterations, self.progress = max_iterations, progress
         self.history: list[float] = []
-        self._best: FeasiblePoint | None = None
-
-    @property
-    def best(self) -> FeasiblePoint:
-        """The point of least J so far."""
-        if self._best is None:
-            raise RuntimeError("no point yet: descend from one first")
-        return self._best
+        self.best = FeasiblePoint(np.zeros(0), "rest", np.inf)
+        """The point of least J so far; no point before the first descent."""
 
     @property
     def ended(self) -> bool:
         """Whether epsilon is reached or the iterations are used up."""
-        reached = self._best is not None and self._best.cost < self.epsilon
+        reached = self.best.cost < self.epsilon
         return reached or len(self.history) >= self.max_iterations
 
     def descend(
@@ -173,9 +167,9 @@ class Search:
         """Keep a point if its J over the whole record is the least, Step 7."""
         whole, thinned = len(self.record.u), len(samples.u)
         # the thinned record tells enough of points that are clearly worse
-        if self._best and fit.cost / thinned > 1.2 * self._best.cost / whole:
+        if fit.cost / thinned > 1.2 * self.best.cost / whole:
             return
         if thinned < whole:
             fit = self._fit(replace(self.record, lead=samples.lead), fit.point)
-        if self._best is None or fit.cost < self._best.cost:
-            self._best = FeasiblePoint(fit.point, start, fit.cost)
+        if fit.cost < self.best.cost:
+            self.best = FeasiblePoint(fit.point, start, fit.cost)

@@ -37,21 +37,20 @@ def conflicts(intervals: Mapping[str, Interval]) -> tuple[tuple[str, str], ...]:
 
 def smallest_removals(
     intervals: Mapping[str, Interval],
-) -> tuple[tuple[str, ...], ...]:
-    """List ALL smallest sets of names whose removal leaves a common point.
+) -> dict[tuple[str, ...], Interval]:
+    """Find ALL smallest sets of names whose removal leaves a common interval, and it.
 
     Every subset is tried, smallest first; the empty set alone is the answer where
     nothing conflicts.
     """
     for size in range(len(intervals)):
-        found = tuple(
-            removed
+        left = {
+            removed: common(v for name, v in intervals.items() if name not in removed)
             for removed in combinations(intervals, size)
-            if common(v for name, v in intervals.items() if name not in removed)
-        )
-        if found:
-            return found
-    return ()
+        }
+        if any(left.values()):
+            return {removed: rest for removed, rest in left.items() if rest}
+    return {}
 
 
 @dataclass(frozen=True)
@@ -62,15 +61,14 @@ class SignalCheck:
     """RMS displacement (um) that the row of each model implies, RDGPI included."""
     conflicts: tuple[tuple[str, str], ...]
     """Filters whose rows cannot both be true."""
-    removals: tuple[tuple[str, ...], ...]
-    """All smallest sets of filters whose removal restores consistency."""
-    rms: tuple[Interval, ...]
-    """RMS displacement (um) that is left, one for each of ``removals``."""
+    removals: dict[tuple[str, ...], Interval]
+    """All smallest sets of filters whose removal restores consistency, each with the
+    RMS displacement (um) that is left."""
 
     @property
     def implied_rms(self) -> float:
         """RMS displacement (um) of the signal: the middle of what is left."""
-        return fmean(each.middle for each in self.rms)
+        return fmean(each.middle for each in self.removals.values())
 
     def standing(self, model: str) -> Standing:
         """Tell whether a row agrees with the largest consistent set(s) of filters.
@@ -82,7 +80,8 @@ class SignalCheck:
         if model in FILTERS:
             disagrees = [model in removed for removed in self.removals]
         else:
-            disagrees = [not self.intervals[model].meets(rms) for rms in self.rms]
+            own = self.intervals[model]
+            disagrees = [not own.meets(rms) for rms in self.removals.values()]
         if all(disagrees):
             return "no"
         return "undecided" if any(disagrees) else "yes"
@@ -92,17 +91,7 @@ def check_signal(pairs: Iterable[Pair]) -> SignalCheck:
     """Check the rows of one signal."""
     intervals = {pair.model: pair.rms for pair in pairs}
     filters = {name: v for name, v in intervals.items() if name in FILTERS}
-    removals = smallest_removals(filters)
-    left = (
-        common(v for name, v in filters.items() if name not in removed)
-        for removed in removals
-    )
-    return SignalCheck(
-        intervals=intervals,
-        conflicts=conflicts(filters),
-        removals=removals,
-        rms=tuple(rms for rms in left if rms is not None),
-    )
+    return SignalCheck(intervals, conflicts(filters), smallest_removals(filters))
 
 
 def check(pairs: tuple[Pair, ...]) -> dict[str, SignalCheck]:

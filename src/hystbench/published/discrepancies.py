@@ -1,17 +1,19 @@
-"""Errors in the paper's tables, text and equations, each with its evidence.
+"""The audit: errors in the paper's tables, text and equations, each with its evidence.
 
 Where the printed numbers show the error, the evidence is computed from them. The words
 are in ``discrepancies.yaml``.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass, fields
 from functools import cache
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from hystbench.files import write_csv
 from hystbench.published import (
     FILTERS,
     Pair,
@@ -23,6 +25,7 @@ from hystbench.published import (
     signals,
     sine_frequency,
 )
+from hystbench.published.consistency import SignalCheck, check
 from hystbench.published.equations import (
     gamma_left,
     gamma_right,
@@ -196,10 +199,48 @@ def wording(text: Text) -> Iterator[AuditRow]:
         yield _filled(words, **numbers)
 
 
-def discrepancies() -> tuple[AuditRow, ...]:
-    """List every error but the inconsistent pairs of MSE and RE."""
+def _consistency(signal: str, found: SignalCheck) -> Iterator[AuditRow]:
+    """Tell what MSE / RE^2 = mean(d^2) says about a signal."""
+    rms = found.intervals
+    for one, other in found.conflicts:
+        yield AuditRow(
+            "conflict",
+            f"Tables 1-3, {signal}",
+            f"the pairs of {one} and {other} cannot both be true",
+            f"they imply an RMS of {rms[one]} um and {rms[other]} um",
+        )
+    for removed, left in found.removals.items():
+        ways = len(found.removals)
+        rank = "the smallest set" if ways == 1 else f"one of {ways} smallest sets"
+        agreed = "all filters agree"
+        if removed:
+            agreed = f"the filters agree without {' and '.join(removed)} ({rank})"
+        yield AuditRow(
+            "implied RMS",
+            f"Tables 1-3, {signal}",
+            agreed,
+            f"RMS displacement {left} um",
+        )
+    for model in rms:
+        standing = found.standing(model)
+        if model in FILTERS or standing == "yes":
+            continue
+        yield AuditRow(
+            "conflict" if standing == "no" else "undecided",
+            f"Table 4, {signal}",
+            f"the pair of {model} against the filters of Tables 1-3: "
+            + ("it cannot be true of their record" if standing == "no" else "open"),
+            f"it implies an RMS of {rms[model]} um; they leave "
+            + " or ".join(f"{left} um" for left in found.removals.values()),
+        )
+
+
+def audit() -> tuple[AuditRow, ...]:
+    """List every finding, the inconsistent pairs of MSE and RE first."""
     pairs, text = load_errors(), load_text()
+    checks = check(pairs).items()
     return (
+        *(row for signal, found in checks for row in _consistency(signal, found)),
         *table4_rows(pairs, load_table4_gpo()),
         *frequency_list(pairs, text),
         *gpo_not_best(pairs),
@@ -210,3 +251,9 @@ def discrepancies() -> tuple[AuditRow, ...]:
         *units_of_sums(pairs, text),
         *wording(text),
     )
+
+
+def write_audit(path: str | Path) -> None:
+    """Write the audit as CSV: kind, where, statement, evidence."""
+    columns = [field.name for field in fields(AuditRow)]
+    write_csv(path, columns, (astuple(row) for row in audit()))

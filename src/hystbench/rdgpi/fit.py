@@ -38,12 +38,7 @@ _FIRST = np.array([np.log(0.5), np.log(0.05), np.log(0.1), 3.0, 0.0, 0.0])
 
 
 def identify_rdgpi(
-    records: Sequence[Record],
-    order: int = 30,
-    *,
-    starts: int = 4,
-    seed: int = 0,
-    start: Start | None = None,
+    records: Sequence[Record], order: int = 30, *, starts: int = 4, seed: int = 0
 ) -> RateDependentFit:
     """Fit the model to records by least squares of its free-run output.
 
@@ -51,7 +46,8 @@ def identify_rdgpi(
     ``envelope_gain`` from the scale of all else, ``c`` from ``alpha1``, nor
     ``beta2`` from ``rho``; those three are set to 1. ``rho`` and ``alpha2`` enter
     linearly and are solved for at each step, so the search is over six parameters,
-    from several starting points, within bounds.
+    from several starting points, within bounds. Before the first sample the operators
+    are at rest or settled, whichever fits better from the plain starting point.
 
     The fit uses every so many samples, with steps of the input below 4 % of its
     range, and the first 600 of those; the relative errors are over whole records.
@@ -66,9 +62,6 @@ def identify_rdgpi(
         Starting points: a plain one, then random ones.
     seed : int
         Seed of the random ones.
-    start : {"rest", "settled"}, optional
-        Operators before the first sample; by default whichever fits better from
-        the plain starting point.
 
     Returns
     -------
@@ -92,7 +85,7 @@ def identify_rdgpi(
     while len(points) < starts:
         drawn = _FIRST + random.normal(0.0, [1.5, 1.5, 2.0, 2.0, 0.2, 1.5])
         points.append(np.clip(drawn, _LOWER, _UPPER))
-    kinds = STARTS if start is None else (start,)
+    kinds = STARTS
     tried: list[tuple[float, RateDependentGPI]] = []
     for point in points:
         for kind in kinds:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from hystbench.compare.beside import TwinClaim, TwinError
 from hystbench.compare.claims import CLAIMS
-from hystbench.compare.claims.claim import Claim, holds
+from hystbench.compare.claims.claim import Claim
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import names_of, or_empty, write_fields
 from hystbench.twins.experiments import CONFIGURED
@@ -21,8 +21,8 @@ def results_on_runs(evidence: ClaimEvidence) -> tuple[Claim, ...]:
         claim
         for claim in CLAIMS
         if claim.kind == "result"
-        and holds(claim, nothing) is None
-        and holds(claim, evidence) is not None
+        and claim.holds(nothing) is None
+        and claim.holds(evidence) is not None
     )
 
 
@@ -51,7 +51,7 @@ def write_twins(outcomes: Iterable[TwinOutcome], errors: Path, claims: Path) -> 
                 for run in each.evidence.runs.values()
             ]
         held += [
-            TwinClaim(*twin, seed, claim.id, WORDS[holds(claim, each.evidence)])
+            TwinClaim(*twin, seed, claim.id, WORDS[claim.holds(each.evidence)])
             for claim in judged
         ]
     write_fields(errors, names_of(TwinError), found, or_empty)

@@ -21,4 +21,4 @@ def compare(
     held_out = comparison.held_out_signals(settings["calibrated"])
     with whole_folder(out, comparison.WRITTEN) as fresh:
         evidence = read_evidence(runs, records, **files)
-        comparison.compare_evidence(evidence, held_out).write(fresh)
+        comparison.Comparison(evidence, held_out).write(fresh)

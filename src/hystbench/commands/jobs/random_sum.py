@@ -22,7 +22,7 @@ def random_sum(
     readings: Out,
 ) -> None:
     """Run all models on draws of the random sum: each draw, and what they say."""
-    fitted = RateDependentGPI.from_dict(rdgpi["parameters"]) if rdgpi else None
+    fitted = RateDependentGPI(**rdgpi["parameters"]) if rdgpi else None
     found = drawing.run_draws(read_twins([twin])[0], settings, identified, fitted)
     signal = settings["signal"]
     write_fields(draws, names_of(Draw), found, or_empty)

@@ -12,7 +12,7 @@ def rdgpi(
 ) -> None:
     """Simulate the identified RDGPI model freely on RECORD."""
     evidence = load_record(record)
-    model = RateDependentGPI.from_dict(identified["parameters"])
+    model = RateDependentGPI(**identified["parameters"])
     output = model.simulate(evidence.u, evidence.dt)
     error = evidence.y - output
     result = run_result(evidence, "rdgpi", error, "free-run simulation", **settings)

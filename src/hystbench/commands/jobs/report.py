@@ -2,7 +2,7 @@
 
 from hystbench.files import write_text
 from hystbench.report.reproduction.page import page
-from hystbench.report.reproduction.read import read_content
+from hystbench.report.reproduction.read import Results
 from hystbench.signature import Folder, In, Out, Settings, command
 
 
@@ -20,5 +20,5 @@ def report(
 
     Figures are SVG files, tables CSV files; CAPTIONS is a folder.
     """
-    content = read_content(out.parent, compare, figures, tables, captions, settings)
-    write_text(out, page(content))
+    results = Results(out.parent, compare, figures, tables, captions, settings)
+    write_text(out, page(results))

@@ -11,27 +11,14 @@ from dataclasses import fields, replace
 from importlib.resources import files
 from typing import Any
 
-from hystbench.compare.claims import (
-    errors,
-    filters,
-    identification,
-    operators,
-    response,
-)
-from hystbench.compare.claims.claim import (
-    Claim,
-    Condition,
-    Judgement,
-    Test,
-    about_signals,
-    judge,
-)
+from hystbench.compare.claims import errors, filters, operators, response
+from hystbench.compare.claims.claim import Claim, Judgement, Test, condition, judge
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.yaml_files import parse_yaml
 
 MEASURES = {
     f"{module.__name__.rpartition('.')[2]}.{name}": function
-    for module in (errors, filters, identification, operators, response)
+    for module in (errors, filters, operators, response)
     for name, function in vars(module).items()
     if inspect.isfunction(function) and function.__module__ == module.__name__
 }
@@ -51,7 +38,7 @@ def _test(row: Mapping[str, Any]) -> Test:
     return Test(
         measure=MEASURES[row["measure"]],
         arguments=row.get("with", {}),
-        holds=tuple(map(Condition, row["holds"])),
+        holds=tuple(map(condition, row["holds"])),
         says=row["says"],
         otherwise=row.get("otherwise", ""),
     )
@@ -66,9 +53,8 @@ def read_claim(row: Mapping[str, Any]) -> Claim:
     if "theirs" in row:
         arguments = {**row.get("with", {}), **row["theirs"].get("with", {})}
         theirs = _test({**row, **row["theirs"], "with": arguments})
-    own = [item.name for item in fields(Claim) if item.name != "theirs"]
-    told = {name: row[name] for name in own if name in row}
-    return Claim(**{"reading": "", "basis": "", **told}, ours=_test(row), theirs=theirs)
+    told = {item.name: row[item.name] for item in fields(Claim) if item.name in row}
+    return Claim(**{**told, "ours": _test(row), "theirs": theirs})
 
 
 _TABLE = files(__package__).joinpath("claims.yaml").read_text(encoding="utf-8")
@@ -88,14 +74,17 @@ def judge_all(
         also judged on them alone.
     """
     alone = evidence.on_signals(held_out)
-    return tuple(_judge(claim, evidence, alone) for claim in CLAIMS)
+    elsewhere = replace(alone, runs={}, records={}, envelope_errors={}, drawn={})
 
+    def judged(claim: Claim) -> Judgement:
+        found = judge(claim, evidence)
+        if claim.basis != "fitted":
+            return found
+        if claim.holds(elsewhere) is not None or claim.holds(alone) is None:
+            return found  # it is not about these signals
+        verdict = judge(claim, alone).verdict
+        if verdict == "refuted by the paper" != found.verdict:
+            return found  # not even the paper's own errors show it on so few signals
+        return replace(found, held_out_verdict=verdict)
 
-def _judge(claim: Claim, evidence: ClaimEvidence, alone: ClaimEvidence) -> Judgement:
-    judged = judge(claim, evidence)
-    if claim.basis != "fitted" or not about_signals(claim, alone):
-        return judged
-    verdict = judge(claim, alone).verdict
-    if verdict == "refuted by the paper" != judged.verdict:
-        return judged  # not even the paper's own errors show it on so few signals
-    return replace(judged, held_out_verdict=verdict)
+    return tuple(map(judged, CLAIMS))

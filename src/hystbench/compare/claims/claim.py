@@ -4,13 +4,12 @@ import math
 import operator
 import re
 import string
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from hystbench.compare.beside import Holding, holding_text
-from hystbench.compare.evidence import Cell, ClaimEvidence, Run
-from hystbench.published import FILTERS
+from hystbench.compare.beside import Holding
+from hystbench.compare.evidence import ClaimEvidence
 
 Verdict = Literal[
     "reproduced", "not reproduced", "not testable", "refuted by the paper"
@@ -32,7 +31,8 @@ Numbers = Mapping[str, Any]
 """What a measure finds: numbers, and parts of the sentence, by name."""
 Measure = Callable[..., Numbers]
 """Finds numbers in evidence; takes the arguments of a row of the table as well."""
-
+Condition = Callable[[Numbers], bool]
+"""Tells whether numbers fulfil it; NaN fulfils none."""
 
 PREDICATES: dict[str, Callable[[Any, Any], bool]] = {
     "<": operator.lt,
@@ -44,53 +44,36 @@ PREDICATES: dict[str, Callable[[Any, Any], bool]] = {
 _CONDITION = re.compile(r"(?:(\S+) \* )?(\w+) (<=|<|==|>=|>) (?:(\S+) \* )?(\S+)")
 
 
-@dataclass(frozen=True)
-class Tested:
-    """Whether a claim holds, and the numbers that say so in one sentence."""
-
-    holds: bool
-    evidence: str
-
-
 class NotTestable(Exception):  # noqa: N818 - it is no error but a verdict
     """A claim lacks what it needs; the message says what."""
 
 
-@dataclass(frozen=True)
-class Condition:
-    """A comparison of a measured number with a limit: ``2 * better >= both``.
+def condition(text: str) -> Condition:
+    """Read a comparison of a measured number with a limit: ``2 * better >= both``.
+
+    Parameters
+    ----------
+    text : str
+        ``name predicate limit``. The predicate is one of ``PREDICATES``; the limit is
+        a number or the name of another measured number. A factor may stand before
+        each name.
 
     Raises
     ------
     ValueError
         If the text is no such comparison.
     """
+    found = _CONDITION.fullmatch(text)
+    if found is None:
+        raise ValueError(f"{text!r}: expected 'name <= limit' or alike")
+    times, name, predicate, limit_times, limit = found.groups("1")
 
-    text: str
-    """``name predicate limit``. The predicate is one of ``PREDICATES``; the limit is a
-    number or the name of another measured number. A factor may stand before each
-    name."""
-
-    def __post_init__(self) -> None:
-        """Refuse what cannot be read."""
-        self._parts()
-
-    def _parts(self) -> tuple[str | Any, ...]:
-        found = _CONDITION.fullmatch(self.text)
-        if found is None:
-            raise ValueError(f"{self.text!r}: expected 'name <= limit' or alike")
-        return found.groups()
-
-    def holds(self, numbers: Numbers) -> bool:
-        """Tell whether the numbers fulfil it; NaN fulfils none."""
-        times, name, predicate, limit_times, limit = self._parts()
-        left = _scaled(times, numbers[name])
+    def holds(numbers: Numbers) -> bool:
         known = numbers[limit] if limit in numbers else float(limit)
-        return bool(PREDICATES[predicate](left, _scaled(limit_times, known)))
+        left, right = float(times) * numbers[name], float(limit_times) * known
+        return bool(PREDICATES[predicate](left, right))
 
-
-def _scaled(factor: str | None, value: Any) -> Any:
-    return value if factor is None else float(factor) * value
+    return holds
 
 
 class Sentence(string.Formatter):
@@ -129,20 +112,25 @@ class Test:
     otherwise: str = ""
     """The sentence where the claim does not hold; empty for the same."""
 
-    def __call__(self, evidence: ClaimEvidence) -> Tested:
+    def __call__(self, evidence: ClaimEvidence) -> tuple[bool | None, str]:
         """Judge the claim by evidence.
 
-        Raises
-        ------
-        NotTestable
-            If the evidence lacks what the measure needs.
+        Returns
+        -------
+        holds : bool or None
+            None where the evidence lacks what the measure needs.
+        sentence : str
+            The numbers that say so, or what is lacking.
         """
         if self.measure is None:
-            raise NotTestable(self.says)
-        numbers = self.measure(evidence, **self.arguments)
-        holds = all(condition.holds(numbers) for condition in self.holds)
+            return None, self.says
+        try:
+            numbers = self.measure(evidence, **self.arguments)
+        except NotTestable as reason:
+            return None, str(reason)
+        holds = all(fulfilled(numbers) for fulfilled in self.holds)
         text = self.says if holds or not self.otherwise else self.otherwise
-        return Tested(holds, Sentence().vformat(text, (), numbers))
+        return holds, Sentence().vformat(text, (), numbers)
 
 
 @dataclass(frozen=True)
@@ -157,14 +145,20 @@ class Claim:
     """Section, equation, table or figure."""
     kind: ClaimKind
     """What sort of sentence it is."""
-    reading: str
-    """How the sentence was made checkable, where its words alone do not say."""
-    basis: str
-    """What the twin knew of it; see ``Basis``."""
-    ours: Callable[[ClaimEvidence], Tested]
+    ours: Test
     """Judges it by our own evidence."""
-    theirs: Callable[[ClaimEvidence], Tested] | None = None
+    theirs: Test | None = None
     """Judges it by the paper's printed numbers; None where it prints none."""
+    reading: str = ""
+    """How the sentence was made checkable, where its words alone do not say."""
+    basis: str = ""
+    """What the twin knew of it; see ``Basis``."""
+    shortly: str = ""
+    """The sentence in a few words, of a result that held-out signals may bear out."""
+
+    def holds(self, evidence: ClaimEvidence) -> bool | None:
+        """Tell whether it holds by evidence; None where it cannot be tested."""
+        return self.ours(evidence)[0]
 
 
 @dataclass(frozen=True)
@@ -182,63 +176,26 @@ class Judgement:
 
     @property
     def holds_on(self) -> str:
-        """On how many twins of which family the claim holds; see ``Holding``."""
-        return holding_text(self.holdings)
+        """Say on how many twins of which family it holds; empty without any."""
+        said = ", ".join(map(str, self.holdings))
+        return f"{said}; no other family was run" if len(self.holdings) == 1 else said
+
+
+VERDICTS: dict[bool | None, Verdict] = {
+    True: "reproduced",
+    False: "not reproduced",
+    None: "not testable",
+}
+"""Verdict where the paper's own numbers do not refute a claim."""
 
 
 def judge(claim: Claim, evidence: ClaimEvidence) -> Judgement:
     """Judge one claim by our evidence and by the paper's own numbers."""
-    verdict: Verdict
-    try:
-        found = claim.ours(evidence)
-    except NotTestable as reason:
-        verdict, sentence = "not testable", str(reason)
-    else:
-        verdict = "reproduced" if found.holds else "not reproduced"
-        sentence = found.evidence
-    holdings = evidence.holdings.get(claim.id, ())
+    holds, sentence = claim.ours(evidence)
+    verdict, holdings = VERDICTS[holds], evidence.holdings.get(claim.id, ())
     if claim.theirs is None:
         return Judgement(claim, verdict, sentence, "not in tables", "", holdings)
-    printed = claim.theirs(evidence)
-    born_out: BornOut = "yes" if printed.holds else "no"
-    if not printed.holds:
-        verdict = "refuted by the paper"
-    return Judgement(claim, verdict, sentence, born_out, printed.evidence, holdings)
-
-
-def holds(claim: Claim, evidence: ClaimEvidence) -> bool | None:
-    """Tell whether a claim holds; None where it cannot be tested."""
-    try:
-        return claim.ours(evidence).holds
-    except NotTestable:
-        return None
-
-
-def about_signals(claim: Claim, restricted: ClaimEvidence) -> bool:
-    """Tell whether a claim can be judged on some signals, and only with them."""
-    without = replace(restricted, runs={}, records={}, envelope_errors={}, drawn={})
-    return holds(claim, without) is None and holds(claim, restricted) is not None
-
-
-def need_runs(cells: Iterable[Cell], there: Iterable[Cell]) -> None:
-    """Raise :class:`NotTestable` where runs are missing."""
-    known = set(there)
-    missing = [f"{model} on {s}" for s, model in cells if (s, model) not in known]
-    if missing:
-        more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
-        raise NotTestable(f"not run: {missing[0]}{more}")
-
-
-def lms_runs(evidence: ClaimEvidence, models: Iterable[str] = FILTERS) -> list[Run]:
-    """List the twin's runs of the adaptive filters.
-
-    Raises
-    ------
-    NotTestable
-        If there is none.
-    """
-    wanted = tuple(models)
-    runs = [run for run in evidence.twin_runs.values() if run.model in wanted]
-    if not runs:
-        raise NotTestable(f"not run: {' and '.join(wanted)}")
-    return runs
+    holds, printed = claim.theirs(evidence)
+    if holds:
+        return Judgement(claim, verdict, sentence, "yes", printed, holdings)
+    return Judgement(claim, "refuted by the paper", sentence, "no", printed, holdings)

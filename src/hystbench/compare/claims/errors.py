@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from hystbench.compare.claims.claim import NotTestable, Numbers, need_runs, number
+from hystbench.compare.claims.claim import NotTestable, Numbers, number
 from hystbench.compare.claims.statistics import rank_correlation
 from hystbench.compare.evidence import Cell, ClaimEvidence
 from hystbench.published import FILTERS, MODELS, Metric, sine_frequency
@@ -45,13 +45,15 @@ def errors_on(
             for pair in evidence.published
         }
     else:
-        runs = evidence.twin_runs.items()
-        found = {cell: run.error(metric) for cell, run in runs}
+        found = {cell: run.error(metric) for cell, run in evidence.runs.items()}
         for signal, drawn in evidence.drawn.items():
             for (model, each), errors in drawn.errors.items():
                 if each == metric and (signal, model) in found:
                     found[signal, model] = median(errors)
-    need_runs([(signal, model) for signal in signals for model in models], found)
+    asked = [(signal, model) for signal in signals for model in models]
+    if missing := [f"{model} on {s}" for s, model in asked if (s, model) not in found]:
+        more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
+        raise NotTestable(f"not run: {missing[0]}{more}")
     values = [[found[signal, model] for model in models] for signal in signals]
     return pd.DataFrame(values, index=list(signals), columns=models)
 

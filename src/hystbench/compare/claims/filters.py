@@ -5,13 +5,27 @@ from collections.abc import Sequence
 from statistics import median
 from typing import Any
 
-from hystbench.compare.claims.claim import NotTestable, Numbers, lms_runs
-from hystbench.compare.evidence import ClaimEvidence
+from hystbench.compare.claims.claim import NotTestable, Numbers
+from hystbench.compare.evidence import ClaimEvidence, Run
 from hystbench.order_errors import OrderError
 from hystbench.published import FILTERS
 
 ONE_STEP_SIZE = ("gpo", "backlash", "delayed")
 """Filters with one step size."""
+
+
+def lms_runs(evidence: ClaimEvidence, models: Sequence[str] = FILTERS) -> list[Run]:
+    """List the twin's runs of the adaptive filters.
+
+    Raises
+    ------
+    NotTestable
+        If there is none.
+    """
+    runs = [run for run in evidence.runs.values() if run.model in models]
+    if not runs:
+        raise NotTestable(f"not run: {' and '.join(models)}")
+    return runs
 
 
 def bound_and_eigenvalue(evidence: ClaimEvidence) -> Numbers:
@@ -95,8 +109,8 @@ def other_weights(evidence: ClaimEvidence) -> Numbers:
     )
     order = evidence.text.filter_length
     return {
+        "unlike": sizes != [(order, order + 1)],
         "sizes": "; ".join(f"order {n} with {count} weights" for n, count in sizes),
-        "wanted": f"order {order} with {order + 1} weights",
     }
 
 

@@ -3,8 +3,8 @@
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from hystbench.compare.cells import ComparedCell
-from hystbench.compare.summary import NEAR_FACTOR, nearness
+from hystbench.compare.cells import NEAR_FACTOR, ComparedCell
+from hystbench.compare.summary import nearness
 from hystbench.compare.tables import LEGEND, MARKS, METRIC_NAMES
 from hystbench.figures.style import look, signal_title, unit_text
 from hystbench.published import FILTERS, METRICS, MODELS, in_order

@@ -1,23 +1,25 @@
 """Putting the page together."""
 
 from functools import partial
+from typing import Any
 
 from markupsafe import Markup
 
+from hystbench.compare.cells import OFF_COLUMNS, ComparedCell
+from hystbench.compare.measured import ERROR_COLUMNS
+from hystbench.compare.rows import headers, names_of, read_items
 from hystbench.figures.style import look, looks, signal_title
+from hystbench.files import read_json
+from hystbench.published.discrepancies import AuditRow
 from hystbench.report.layout import page_environment
 from hystbench.report.markup import inline, one_micro, paragraphs
 from hystbench.report.picture import Link
 from hystbench.report.reproduction import claims, errors, words
-from hystbench.report.reproduction.read import (
-    Measured,
-    Reproduction,
-    ReproductionContent,
-    Row,
-    Shown,
-)
+from hystbench.report.reproduction.read import Results, Row, Shown
 from hystbench.report.table import Cell, Heading, PageTable, number, table_of
 
+#: Columns that the page cannot do without; others are shown as they are.
+_CLAIMS = ("id", "claim", "where", "kind", "basis", "verdict", "evidence")
 TEMPLATE = "page.html.j2"
 #: The picture of the first screen.
 HEADLINE = "headline"
@@ -25,63 +27,82 @@ HEADLINE = "headline"
 _HEADINGS = {"mse": "MSE", "re": "RE", "error_kind": "error"}
 
 
-def page(content: ReproductionContent) -> str:
-    """Make the page, of the reproduction or of a measured dataset."""
-    found = content.found
-    own = (
-        _measured(found, content)
-        if isinstance(found, Measured)
-        else _twin(found, content)
+def page(results: Results) -> str:
+    """Make the page, of the reproduction or of a measured dataset.
+
+    Raises
+    ------
+    InputError
+        If a file is not as it should be.
+    """
+    pictures = results.pictures()
+    further = [
+        results.shown(path, results.caption(path.stem)) for path in results.tables
+    ]
+    measured = results.settings["dataset"] is not None
+    own = (_measured if measured else _twin)(results)
+    expected = words.OF_MEASURED if measured else words.OF_TWIN
+    own["missing"] += words.not_drawn(expected, pictures)
+    own["files"] += [
+        *(_file(each.file.href, each.caption.partition(".")[0]) for each in further),
+        *(
+            _file(link.href, f"figure, {link.label}")
+            for picture in pictures.values()
+            for link in picture.files
+        ),
+    ]
+    headline = pictures.pop(HEADLINE, None)
+    # the paper's figures first, by their number
+    figures = sorted(
+        pictures.values(), key=lambda f: (not f.name.startswith("figure"), f.name)
     )
-    figures = {figure.name: figure for figure in content.figures}
-    headline = figures.pop(HEADLINE, None)
     return one_micro(
         page_environment("hystbench.report.reproduction")
         .get_template(TEMPLATE)
         .render(
             headline=headline,
-            # the paper's figures first, by their number
-            figures=sorted(
-                figures.values(),
-                key=lambda f: (not f.name.startswith("figure"), f.name),
-            ),
-            more=[_as_it_is(each) for each in content.tables],
-            measured=isinstance(found, Measured),
+            figures=figures,
+            more=[_as_it_is(each) for each in further],
+            measured=measured,
             **own,
         )
     )
 
 
-def _twin(found: Reproduction, content: ReproductionContent) -> dict[str, object]:
+def _twin(results: Results) -> dict[str, Any]:
     """Fill what the page says of the reproduction alone."""
-    halves = {cell.signal: cell.half for cell in found.cells}
-    held = [cell for cell in errors.filter_cells(found.cells, "held-out") if cell.ran]
-    folder, told = content.compare, content.captions
+    compare, folder = results.compare, results.folder
+    cells = read_items(compare / "cells.csv", ComparedCell)
+    ledger = results.rows("claims.csv", _CLAIMS)
+    off = results.rows("off.csv", headers(OFF_COLUMNS))
+    audit = results.rows("audit.csv", names_of(AuditRow))
+    tables = [
+        results.shown(compare / "tables" / f"table-{number}.csv")
+        for number in (1, 2, 3, 4)
+    ]
+    on_held_out = read_json(compare / "summary.json")["claims_on_held_out"]
+    halves = {cell.signal: cell.half for cell in cells}
+    held = [cell for cell in errors.filter_cells(cells, "held-out") if cell.ran]
 
-    def file(name: str) -> Link:
-        return Link("CSV", f"{folder}/{name}.csv")
+    def about(name: str) -> tuple[str, Link]:
+        return results.caption(name), Link("CSV", f"{folder}/{name}.csv")
 
     return {
         "title": "hystbench: a filter of generalized play operators, reproduced on a "
         "twin",
-        "sentences": [words.of_errors(held), words.of_claims(found.on_held_out)],
+        "sentences": [words.of_errors(held), words.of_claims(on_held_out)],
         "source": "The paper's numbers are of a measured actuator whose data are not "
         "public. Ours are of its twin, a simulation.",
-        "missing": [
-            *words.not_run(found.cells),
-            *words.not_drawn(words.OF_TWIN, content.figures),
-        ],
-        "first": errors.headline_table(
-            found.cells, "held-out" if held else "calibrated"
-        ),
-        "near": errors.nearness_table(found.cells),
-        **_full(found.verdict),
-        "tables": [errors.paper_table(each, halves) for each in found.tables],
-        "cells": errors.all_cells(found.cells, told["cells"], file("cells")),
-        "off": errors.off_table(found.off, told["off"], file("off")),
-        "counted": claims.counts_table(found.claims),
-        "claims": claims.claims_table(found.claims, told["claims"], file("claims")),
-        "audit": claims.audit_table(found.audit, told["audit"], file("audit")),
+        "missing": words.not_run(cells),
+        "first": errors.headline_table(cells, "held-out" if held else "calibrated"),
+        "near": errors.nearness_table(cells),
+        **_full((compare / "verdict.md").read_text(encoding="utf-8")),
+        "tables": [errors.paper_table(each, halves) for each in tables],
+        "cells": errors.all_cells(cells, *about("cells")),
+        "off": errors.off_table(off, *about("off")),
+        "counted": claims.counts_table(ledger),
+        "claims": claims.claims_table(ledger, *about("claims")),
+        "audit": claims.audit_table(audit, *about("audit")),
         "files": [
             _file(f"{folder}/verdict.md", "the verdict in full"),
             _file(f"{folder}/cells.csv", "every printed error with ours"),
@@ -91,16 +112,16 @@ def _twin(found: Reproduction, content: ReproductionContent) -> dict[str, object
             _file(f"{folder}/summary.json", "how near ours come, in numbers"),
             *(
                 _file(each.file.href, "a table of the paper, ours beside it")
-                for each in found.tables
+                for each in tables
             ),
-            *_further_files(content),
         ],
     }
 
 
-def _measured(found: Measured, content: ReproductionContent) -> dict[str, object]:
+def _measured(results: Results) -> dict[str, Any]:
     """Fill what the page says of a measured dataset alone."""
-    folder = content.compare
+    name, folder = results.settings["dataset"], results.folder
+    rows = results.rows("errors.csv", ERROR_COLUMNS)
     stem = f"{folder}/tables/errors"
     files = (
         Link("CSV", f"{folder}/errors.csv"),
@@ -108,19 +129,16 @@ def _measured(found: Measured, content: ReproductionContent) -> dict[str, object
         Link("LaTeX", f"{stem}.tex"),
     )
     return {
-        "title": f"hystbench: five models on the measured records of {found.name}",
-        "sentences": words.of_measured(found),
+        "title": f"hystbench: five models on the measured records of {name}",
+        "sentences": words.of_measured(name, rows),
         "source": "The paper has no numbers for these records, so the errors stand "
         "alone.",
-        "missing": words.not_drawn(words.OF_MEASURED, content.figures),
-        "first": errors.measured_headline(found.errors),
-        "errors": errors.measured_table(
-            found.errors, content.captions["errors"], files
-        ),
+        "missing": [],
+        "first": errors.measured_headline(rows),
+        "errors": errors.measured_table(rows, results.caption("errors"), files),
         "files": [
             _file(f"{folder}/errors.csv", "every error, a row a record and model"),
             _file(f"{stem}.csv", "the same, a row a record"),
-            *_further_files(content),
         ],
     }
 
@@ -165,21 +183,6 @@ def _is_number(text: str) -> bool:
     except ValueError:
         return False
     return True
-
-
-def _further_files(content: ReproductionContent) -> list[tuple[Link, str]]:
-    """List the files of further tables and of figures, and what each holds."""
-    return [
-        *(
-            _file(each.file.href, each.caption.partition(".")[0])
-            for each in content.tables
-        ),
-        *(
-            _file(link.href, f"figure, {link.label}")
-            for figure in content.figures
-            for link in figure.files
-        ),
-    ]
 
 
 def _file(href: str, what: str) -> tuple[Link, str]:

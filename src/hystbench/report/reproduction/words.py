@@ -1,14 +1,13 @@
 """The verdict in two sentences, and what is not there."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.summary import nearness
 from hystbench.figures.style import look
-from hystbench.report.picture import PagePicture
 from hystbench.report.reproduction.errors import within
-from hystbench.report.reproduction.read import Measured, Row
+from hystbench.report.reproduction.read import Row
 from hystbench.sentences import listed
 
 #: Kind of error of a model that is simulated.
@@ -71,18 +70,18 @@ def of_claims(on_held_out: Sequence[Row]) -> str:
     return f"Of {len(on_held_out)} {results} {about}, {standing} {stand}."
 
 
-def of_measured(found: Measured) -> list[str]:
+def of_measured(name: str, rows: Sequence[Row]) -> list[str]:
     """Say which filter does best, and which models diverge.
 
     The RDGPI model runs free, which is another task, so it is not ranked beside them.
     """
-    records = list(dict.fromkeys(row["signal"] for row in found.errors))
-    models = list(dict.fromkeys(row["model"] for row in found.errors))
+    records = list(dict.fromkeys(row["signal"] for row in rows))
+    models = list(dict.fromkeys(row["model"] for row in rows))
     best: Counter[str] = Counter()
     for record in records:
         errors = [
             (float(row["re"]), row["model"])
-            for row in found.errors
+            for row in rows
             if row["signal"] == record and row["error_kind"] != FREE_RUN and row["re"]
         ]
         if errors:
@@ -92,11 +91,11 @@ def of_measured(found: Measured) -> list[str]:
         model, often = best.most_common(1)[0]
         said = (
             f"Of the filters, the {look(model).label} has the smallest relative error "
-            f"on {often} of the {count} of {found.name}."
+            f"on {often} of the {count} of {name}."
         )
     else:
-        said = f"No filter came to an end on the {count} of {found.name}."
-    lost = dict.fromkeys(row["model"] for row in found.errors if not row["re"])
+        said = f"No filter came to an end on the {count} of {name}."
+    lost = dict.fromkeys(row["model"] for row in rows if not row["re"])
     if not lost:
         one, many = "The one model that was run stays", f"All {len(models)} models stay"
         stay = one if len(models) == 1 else many
@@ -105,9 +104,8 @@ def of_measured(found: Measured) -> list[str]:
     return [said, f"{len(lost)} of {len(models)} models diverged on a record: {names}."]
 
 
-def not_drawn(expected: Iterable[str], figures: Iterable[PagePicture]) -> list[str]:
+def not_drawn(expected: Iterable[str], there: Collection[str]) -> list[str]:
     """Say which figures a full run would have drawn beside these."""
-    there = {figure.name for figure in figures}
     absent = [name for name in expected if name not in there]
     if not absent:
         return []

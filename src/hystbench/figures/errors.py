@@ -1,6 +1,7 @@
-"""Ours over the published MSE of every signal and model."""
+"""Errors of every signal and model: over the published ones, or a row of marks each."""
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from hystbench.compare.cells import NOT_RUN, ComparedCell
+from hystbench.compare.evidence import read_run
 from hystbench.compare.rows import read_items
-from hystbench.errors import InputError
 from hystbench.figures import style
 
 # Blue and red stay apart for all kinds of colour blindness, and white is agreement.
@@ -19,9 +20,13 @@ _MAP = "RdBu_r"
 _HELD_OUT = "\N{BLACK DIAMOND}"
 # A factor of ten; what is beyond has the colour of the end, and its number.
 _LIMIT = 1.0
+# How much of a row its marks take.
+_SPREAD = 0.7
+# Where a cross stands; 1 is the end of the scale.
+_BEYOND = 1.03
 
 
-def draw(*, table: Path) -> Figure:
+def draw_heat_map(*, table: Path) -> Figure:
     """Draw log10(ours / published) of the MSE, a number in each cell.
 
     Parameters
@@ -30,8 +35,6 @@ def draw(*, table: Path) -> Figure:
         The compared cells, one row a signal, model and metric.
     """
     cells = [cell for cell in read_items(table, ComparedCell) if cell.metric == "mse"]
-    if not cells:
-        raise InputError(f"{table}: no compared cell")
     signals = list(dict.fromkeys(cell.signal for cell in cells))
     models = style.in_order(cell.model for cell in cells)
     figure = Figure(figsize=(5.0, 1.5 + 0.24 * len(signals)))
@@ -108,3 +111,35 @@ def _frame(x: int, y: int, consistent: str) -> Rectangle:
         linewidth=1.0,
         linestyle="-" if consistent == "no" else ":",
     )
+
+
+def draw_by_record(*, runs: Sequence[Path]) -> Figure:
+    """Draw the relative error of every model, a row a record and a mark a model.
+
+    Marks, not bars: a bar on a logarithmic scale has no honest foot. A diverged run is
+    a cross right of the scale.
+    """
+    read = [read_run(path) for path in runs]
+    signals = list(dict.fromkeys(run.signal for run in read))
+    models = style.in_order(run.model for run in read)
+    figure = Figure(figsize=(5.0, 1.2 + 0.4 * len(signals)))
+    axes = figure.subplots()
+    for run in read:
+        row = style.in_row(models.index(run.model), len(models), _SPREAD)
+        y, look = signals.index(run.signal) + row, style.look(run.model)
+        if run.re is None:
+            across = axes.get_yaxis_transform()
+            mark = {**style.DIVERGED, "transform": across, "clip_on": False}
+            axes.plot([_BEYOND], [y], color=look.color, **mark)
+        else:
+            mark = {"marker": look.marker, "linestyle": "none"}
+            axes.plot([run.re], [y], color=look.color, **mark)
+    style.logarithmic(axes, (1.0, 2.0, 5.0))
+    style.name_rows(axes, [*map(style.signal_title, signals)])
+    axes.set(xlabel="relative error RE (-)", ylabel=f"record ({read[0].origin})")
+    diverged = any(run.diverged for run in read)
+    handles = style.handles(models, marked=True, diverged=diverged)
+    for handle in handles:
+        handle.set_linestyle("none")
+    style.legend_above(figure, handles, columns=3)
+    return figure

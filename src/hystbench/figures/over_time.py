@@ -1,4 +1,4 @@
-"""Figure 9: the chirp, the output of the GPO filter and its error."""
+"""Figures 9 to 12: the chirp and the sums of sines over time, and a filter's output."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from hystbench.compare.claims.statistics import cycles
 from hystbench.figures import panels, style
-from hystbench.figures.data import Output, read_pair
+from hystbench.figures.data import Output, last_seconds, read_pair
 from hystbench.published import load_text
 from hystbench.record import FloatArray, Record
 
@@ -19,7 +19,7 @@ _BEFORE, _AFTER = 0.002, 0.001
 _THIN = 1.2
 
 
-def draw(*, records: Sequence[Path], runs: Sequence[Path]) -> Figure:
+def draw_chirp(*, records: Sequence[Path], runs: Sequence[Path]) -> Figure:
     """Draw input, a part of the output, its range in each cycle, and the error.
 
     The paper's two moments are marked: the smallest peak-to-peak displacement, and
@@ -96,3 +96,39 @@ def _ranges(axes: Axes, record: Record, output: Output) -> None:
         panels.say_diverged(axes, record, output)
     else:
         axes.plot(*over_time(output.y), **style.look(output.run.model).line)
+
+
+def draw_curves(
+    seconds: float, *, records: Sequence[Path], runs: Sequence[Path]
+) -> Figure:
+    """Draw the last seconds of a record: (a) over time, (b) against the input."""
+    record, output = read_pair(records, runs)
+    part = last_seconds(record, seconds)
+    figure = Figure(figsize=(style.PAGE, 2.7))
+    time, curves = figure.subplots(1, 2, sharey=True, width_ratios=(1.7, 1))
+    panels.in_time(time, record, output, part)
+    panels.loop(curves, record, output, part)
+    time.set(xlabel="time (s)", ylabel=style.axis_label(record.output))
+    curves.set(xlabel=style.axis_label(record.input))
+    style.letter([time, curves])
+    style.legend_above(figure, panels.handles(record, [output.run.model]))
+    return figure
+
+
+def draw_errors(
+    seconds: float, *, records: Sequence[Path], runs: Sequence[Path]
+) -> Figure:
+    """Draw the last seconds of a record: outputs and error over time."""
+    record, output = read_pair(records, runs)
+    part = last_seconds(record, seconds)
+    figure = Figure(figsize=(style.PAGE, 3.5))
+    outputs, error = figure.subplots(2, 1, sharex=True, height_ratios=(1.8, 1))
+    panels.in_time(outputs, record, output, part)
+    panels.error_in_time(error, record, output, part)
+    outputs.set(ylabel=style.axis_label(record.output))
+    unit = style.unit_text(record.output.unit)
+    error.set(ylabel=f"error ({unit})", xlabel="time (s)")
+    style.letter([outputs, error])
+    figure.align_ylabels()
+    style.legend_above(figure, panels.handles(record, [output.run.model]))
+    return figure
