@@ -2,9 +2,9 @@
 
 import pytest
 
-from hystbench.challenge.contest.frames import frame
 from hystbench.challenge.contest.never_seen import left_out
 from hystbench.challenge.contest.score import judge
+from hystbench.challenge.contest.tables import frame
 from hystbench.gap.schema import SCHEMA
 
 from .made import effect, gap, named, truth

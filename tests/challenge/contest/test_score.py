@@ -3,10 +3,9 @@ import dataclasses
 import pandas as pd
 import pytest
 
-from hystbench.challenge.contest.frames import frame, read_rows, write_frame
 from hystbench.challenge.contest.score import judge, write_rows
-from hystbench.challenge.contest.tables import confusion
-from hystbench.challenge.contest.view_hit import share_held, where_hit
+from hystbench.challenge.contest.tables import confusion, frame, read_rows, write_frame
+from hystbench.challenge.where import share_held, where_hit
 from hystbench.errors import InputError
 from hystbench.gap.schema import SCHEMA
 

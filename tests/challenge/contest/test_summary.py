@@ -8,16 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.challenge.contest import tables
-from hystbench.challenge.contest.frames import frame
 from hystbench.challenge.contest.score import judge
 from hystbench.challenge.contest.summary import (
     carried_over,
     figures,
     reach,
     summary,
+    write_score,
 )
-from hystbench.challenge.contest.tables import wilson
-from hystbench.challenge.contest.writing import write_score
+from hystbench.challenge.contest.tables import frame, wilson
 from hystbench.gap.schema import SCHEMA
 
 from .made import answer, effect, gap, named, truth, view
