@@ -3,7 +3,7 @@
 from hystbench.files import write_json
 from hystbench.signature import In, Out, Settings, command
 from hystbench.twins.fits import fit
-from hystbench.twins.read import read_twins
+from hystbench.twins.runs import read_twins
 
 
 @command
