@@ -7,7 +7,7 @@ import pytest
 
 from hystbench.blocks.step import Sampling
 from hystbench.errors import InputError
-from hystbench.export import python
+from hystbench.export.code import loaded
 from hystbench.export.inverse import describe_inverse
 from tests.blocks.examples import EXAMPLES
 from tests.conftest import run_hystbench
@@ -192,7 +192,7 @@ def test_what_is_out_of_reach_stands_at_the_limits(tmp_path):
 def test_python_is_the_c(name, undo):
     model, inverse, run = undo(name)
     wanted = model.simulate(INPUT, DT)[:300]
-    made = python.loaded(inverse).simulate(wanted)
+    made = loaded(inverse).simulate(wanted)
     np.testing.assert_allclose(made, run(wanted), rtol=0, atol=1e-9)
 
 

@@ -10,7 +10,7 @@ from hystbench import options
 from hystbench.blocks.step import Sampling
 from hystbench.dataset import read_input
 from hystbench.errors import InputError
-from hystbench.export import python
+from hystbench.export.code import loaded
 from hystbench.export.inverse import describe_inverse
 from hystbench.files import write_columns, write_csv
 from hystbench.inverse.bandwidth import HOLDS, Invert, bandwidth, holds_to
@@ -127,7 +127,7 @@ def _by_code(system: Model, model: Path, dt: float, limits: InputRange) -> Inver
         described = describe_inverse(system, Sampling(dt), limits)
 
     def invert(reference: FloatArray) -> FloatArray:
-        u: FloatArray = python.loaded(described).simulate(reference)
+        u: FloatArray = loaded(described).simulate(reference)
         return u
 
     return invert

@@ -1,13 +1,8 @@
-"""Names that code may bear: of a model, of its channels and of its states.
-
-And what is the same in the code of all models, but for such words.
-"""
+"""Names that code may bear: of a model, of its channels and of its states."""
 
 import keyword
 import re
 import sys
-from functools import cache
-from typing import Any
 
 #: Keywords of C and C++ that a model may be called, and the standard headers.
 C_WORDS = """
@@ -30,28 +25,6 @@ TAKEN = (
     | {name.lower() for name in sys.stdlib_module_names}
     | DEVICES
 )
-
-
-def filled(file: str, **words: Any) -> str:
-    """Fill a template beside this module: ``@name@`` is an expression of Jinja."""
-    text: str = _templates().get_template(file).render(words)
-    return text
-
-
-@cache
-def _templates() -> Any:
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    return Environment(
-        loader=PackageLoader(__package__, ""),
-        undefined=StrictUndefined,
-        variable_start_string="@",
-        variable_end_string="@",
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        autoescape=False,  # noqa: S701 - it makes code
-    )
 
 
 def identifier(name: str) -> str:

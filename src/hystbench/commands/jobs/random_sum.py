@@ -1,7 +1,7 @@
-"""``hystbench job random-sum``: one draw of its phases is a lottery.
+"""``hystbench job random-sum``: the random sum drawn many times.
 
-The random sum is drawn many times, each time with its own phases and its own noise.
-Beside the reading of config.yaml other numbers of sines are run, so that what a reading
+One draw of its phases is a lottery: each has its own phases and its own noise. Beside
+the reading of config.yaml other numbers of sines are run, so that what a reading
 changes can be seen.
 """
 

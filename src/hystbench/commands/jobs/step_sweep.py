@@ -1,8 +1,8 @@
-"""``hystbench job step-sweep``: how far each step size can go, beside Eq. 19's bound.
+"""``hystbench job step-sweep``: how far each step size can go.
 
-All step sizes of a filter are raised together from a tenth of the configured ones. The
-edge is the least at which the filter is of no use: its error is as large as the
-displacement, or it diverges.
+The measured edge stands beside Eq. 19's bound. All step sizes of a filter are raised
+together from a tenth of the configured ones. The edge is the least at which the filter
+is of no use: its error is as large as the displacement, or it diverges.
 """
 
 import math
