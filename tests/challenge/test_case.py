@@ -11,12 +11,11 @@ from hypothesis import strategies as st
 
 from hystbench.challenge.campaigns import CAMPAIGNS, PERIOD_SAMPLES
 from hystbench.challenge.case import make_case
-from hystbench.challenge.left_out_groups import GROUPS
 from hystbench.challenge.plant.actuator import Actuator, KnownMode
 from hystbench.challenge.plant.effects import APART, IN_ACTUATOR, UNLISTED, VOCABULARY
 from hystbench.challenge.plant.hysteresis import draw as draw_loop
 from hystbench.challenge.plant.kind import Range, draw
-from hystbench.challenge.spec import ACTUATORS, CaseSpec, draw_spec
+from hystbench.challenge.spec import ACTUATORS, GROUPS, CaseSpec, draw_spec
 from hystbench.challenge.where import held, shortest
 from hystbench.errors import InputError
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from hystbench.challenge.case import make_case
+from hystbench.challenge.make import write_folder
 from hystbench.challenge.spec import CaseSpec
-from hystbench.challenge.writing import write_folder
 from hystbench.entrants import naive, random_namer
 from hystbench.entrants.task import Answer, read, write
 from hystbench.files import read_json

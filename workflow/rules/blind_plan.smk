@@ -4,7 +4,7 @@
 import math
 
 from hystbench.challenge.contest.plan import numbers, plan
-from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP
+from hystbench.challenge.spec import LEFT_OUT_GROUP
 from hystbench.commands.rival import RIVALS
 from hystbench.errors import nearest
 

@@ -15,11 +15,16 @@ from hystbench.challenge.contest.plan import (
     sizes,
     strata,
 )
-from hystbench.challenge.left_out_groups import GROUPS, LEFT_OUT_GROUP
 from hystbench.challenge.make import make
 from hystbench.challenge.plant.effects import IN_ACTUATOR, VOCABULARY
 from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES
-from hystbench.challenge.spec import ACTUATORS, CaseSpec, effects_of
+from hystbench.challenge.spec import (
+    ACTUATORS,
+    GROUPS,
+    LEFT_OUT_GROUP,
+    CaseSpec,
+    effects_of,
+)
 from hystbench.errors import InputError
 from tests.conftest import ROOT
 

@@ -17,8 +17,7 @@ from hystbench.challenge.contest.tables import (
     sure,
     wilson,
 )
-from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP, group_of
-from hystbench.challenge.spec import NAMELESS
+from hystbench.challenge.spec import LEFT_OUT_GROUP, NAMELESS, group_of
 
 COLUMNS = ("left_out", "cases", "no_name", "low", "high", "confident", "called")
 """Columns of the table of what is left out."""

@@ -6,15 +6,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from hystbench.challenge.contest import table
-from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP, group_of
 from hystbench.challenge.plant.effects import IN_ACTUATOR
 from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES
 from hystbench.challenge.spec import (
     CASE_KINDS,
     FAMILIES,
+    LEFT_OUT_GROUP,
     CaseSpec,
     draw_spec,
     effects_of,
+    group_of,
 )
 from hystbench.errors import InputError, refuse_unknown
 

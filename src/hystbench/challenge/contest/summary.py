@@ -21,8 +21,8 @@ from hystbench.challenge.contest.tables import (
     shares,
     write_frame,
 )
-from hystbench.challenge.left_out_groups import GROUPS
 from hystbench.challenge.plant.inside import MACHINES
+from hystbench.challenge.spec import GROUPS
 from hystbench.files import write_csv, write_json
 
 #: Families of plants by one word.

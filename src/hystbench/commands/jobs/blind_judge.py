@@ -11,9 +11,8 @@ from typing import Any
 from hystbench.challenge.case import Case
 from hystbench.challenge.contest.plan import Entry, chunks, plan
 from hystbench.challenge.contest.score import Row, judge, write_rows
-from hystbench.challenge.make import make
+from hystbench.challenge.make import make, write_folder
 from hystbench.challenge.plant.inside import MACHINES
-from hystbench.challenge.writing import write_folder
 from hystbench.errors import InputError
 from hystbench.files import digest
 from hystbench.gap.schema import SCHEMA
