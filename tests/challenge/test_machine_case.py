@@ -7,16 +7,13 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.challenge.machine import draw_machine
 from hystbench.challenge.make import make, write_folder
 from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES
-from hystbench.challenge.spec import GROUPS, CaseSpec, draw_spec, effects_of
+from hystbench.challenge.spec import GROUPS, CaseSpec, draw_spec, effects_of, kind_of
 from hystbench.dataset import load_dataset
 from hystbench.errors import InputError
 
 
 def case_of(family, *effects, seed=7, **more):
-    kind = {0: "none", 1: "single", 2: "pair"}[len(effects)]
-    if not all(IN_MACHINE[name].listed for name in effects):
-        kind = "unlisted"
-    return make(CaseSpec(seed, kind, effects, family, 20.0, **more))
+    return make(CaseSpec(seed, kind_of(effects), effects, family, 20.0, **more))
 
 
 def rms(values):

@@ -12,8 +12,8 @@ from functools import partial
 
 import numpy as np
 
+from hystbench.challenge.plant.actuator import cubic
 from hystbench.challenge.plant.hysteresis import LARGEST_CURRENT
-from hystbench.challenge.plant.interpolation import cubic
 from hystbench.record import FloatArray, Use
 
 Function = Callable[[FloatArray], FloatArray]

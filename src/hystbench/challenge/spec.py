@@ -14,7 +14,7 @@ import numpy as np
 
 from hystbench.challenge.campaigns import CAMPAIGNS
 from hystbench.challenge.plant import inside
-from hystbench.challenge.plant.effects import APART, UNLISTED, VOCABULARY
+from hystbench.challenge.plant.effects import APART, IN_ACTUATOR
 from hystbench.challenge.plant.hysteresis import DRAWS
 from hystbench.challenge.plant.kind import EffectKind
 from hystbench.errors import InputError, refuse_unknown
@@ -29,11 +29,29 @@ FAMILIES = (*ACTUATORS, *inside.MACHINES)
 #: Known to the plant of plays alone: beside another family the base's loop is wrong
 #: in any case.
 GPI_ONLY = ("hysteresis-shape",)
-#: Effects of actuators and machines that the vocabulary has no word for.
-NAMELESS = (
-    *UNLISTED,
-    *(name for name, kind in inside.IN_MACHINE.items() if not kind.listed),
-)
+#: What can be hidden in each family, by name.
+EFFECTS_OF: dict[str, dict[str, EffectKind]] = {
+    family: {
+        name: kind
+        for name, kind in IN_ACTUATOR.items()
+        if name not in GPI_ONLY or family == "gpi"
+    }
+    for family in ACTUATORS
+} | {
+    family: {
+        name: kind
+        for name, kind in inside.IN_MACHINE.items()
+        if family in kind.families
+    }
+    for family in inside.MACHINES
+}
+#: Effects that the vocabulary has no word for.
+NAMELESS = {
+    name
+    for known in EFFECTS_OF.values()
+    for name, kind in known.items()
+    if not kind.listed
+}
 #: Of a case, in dB.
 RATIO_LIMITS = (-20.0, 60.0)
 #: Streams of random numbers: a case draws what is named here from a stream of its own.
@@ -184,17 +202,9 @@ def effects_of(
     of_group : bool
         Whether it is those alone instead.
     """
-    if family in inside.MACHINES:
-        listed = kind != "unlisted"
-        names = [
-            name
-            for name, about in inside.IN_MACHINE.items()
-            if family in about.families and about.listed == listed
-        ]
-    elif kind == "unlisted":
-        names = list(UNLISTED)
-    else:
-        names = [name for name in VOCABULARY if name not in GPI_ONLY or family == "gpi"]
+    listed = kind != "unlisted"
+    known = EFFECTS_OF[family].items()
+    names = [name for name, about in known if about.listed == listed]
     if kind == "unlisted" and group is not None:
         left_out = group_of(group).unlisted
         names = [name for name in names if (name in left_out) == of_group]
@@ -212,10 +222,9 @@ def kind_of(effects: tuple[str, ...]) -> str:
     """Tell the kind of case from the effects' names."""
     if any(name in NAMELESS for name in effects):
         return "unlisted"
-    kinds = {count: kind for kind, count in COUNTS.items() if kind != "unlisted"}
-    if len(effects) not in kinds:
+    if len(effects) > COUNTS["triple"]:
         raise InputError(f"effect: {len(effects)} given, expected at most 3")
-    return kinds[len(effects)]
+    return ("none", "single", "pair", "triple")[len(effects)]
 
 
 def draw_spec(
@@ -243,6 +252,7 @@ def draw_spec(
         As :class:`CaseSpec`.
     """
     refuse_unknown(kind, CASE_KINDS, f"kind: {kind!r}")
+    refuse_unknown(family, FAMILIES, f"family: {family!r}")
     names = effects_of(kind, family, group, of_group)
     if len(names) < COUNTS[kind]:
         raise InputError(
