@@ -63,6 +63,9 @@ class PlantRun:
     """Source of what is new in every record: a phase, a path."""
 
 
+NO_RUN = PlantRun(np.zeros(0), np.zeros(0), 1.0, np.random.default_rng(0))
+
+
 def log_uniform(random: np.random.Generator, low: float, high: float) -> float:
     """Draw a number between two, evenly in its logarithm."""
     return float(np.exp(random.uniform(np.log(low), np.log(high))))
@@ -255,7 +258,8 @@ def read_kinds(
     A form names the functions of these modules that it calls (``act``, ``curve``,
     ``told``); ``also`` are words that are told beside its parameters, and ``numbers``
     products such as ``share * machine.stiffness / machine.position^2``, whose factors
-    are its parameters and those of :class:`Reach`.
+    are its parameters and those of :class:`Reach`. A ``curve`` that is an actuator's
+    too stands with such products for the parameters that it has there.
     """
     kinds = load_yaml(Path(__file__).with_name(table))
     apart = [set(pair) for pair in kinds.pop("apart")]
@@ -285,13 +289,27 @@ def _form(
     **about: Any,
 ) -> Form:
     for key in ("act", "curve", "told"):
-        if key in about:
+        if isinstance(about.get(key), dict):
+            ((name, products),) = about[key].items()
+            about[key] = partial(_as_in_actuator, known[name], products)
+        elif key in about:
             about[key] = known[about[key]]
     if numbers:
         about["numbers"] = partial(_numbers, numbers)
     if also:
         about["told"] = partial(_with, also)
     return Form(ranges={name: Range(**item) for name, item in ranges.items()}, **about)
+
+
+def _as_in_actuator(
+    act: Act,
+    products: Mapping[str, str],
+    signal: FloatArray,
+    p: Parameters,
+    reach: Reach,
+) -> FloatArray:
+    """Bend a signal of a machine as in an actuator, where no run is looked at."""
+    return act(signal, NO_RUN, _numbers(products, p, reach))
 
 
 def _with(words: Mapping[str, str], parameters: Parameters) -> dict[str, Any]:
