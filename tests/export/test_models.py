@@ -13,8 +13,7 @@ import pytest
 
 from hystbench.blocks.step import Sampling
 from hystbench.export import code
-from hystbench.export.described import describe
-from hystbench.export.names import identifier
+from hystbench.export.described import describe, identifier
 from hystbench.model import Model, load_model
 from tests.conftest import ROOT, run_hystbench
 

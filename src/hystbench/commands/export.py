@@ -17,8 +17,8 @@ from hystbench.export.inverse import describe_inverse
 from hystbench.export.on_record import begun, begun_inverse, off
 from hystbench.files import atomic_path, whole_folder, write_text
 from hystbench.model import Model, load_model
+from hystbench.options import In, InputHigh, InputLow, OutFolder, command
 from hystbench.record import Channel, FloatArray, column_name
-from hystbench.signature import In, InputHigh, InputLow, OutFolder, command
 
 
 class Delay(click.ParamType[int | None]):

@@ -8,7 +8,7 @@ from hystbench.challenge.make import make, write_folder
 from hystbench.challenge.spec import CaseSpec, draw_spec, kind_of
 from hystbench.errors import InputError
 from hystbench.files import whole_folder, write_json
-from hystbench.signature import OutFolder, command
+from hystbench.options import OutFolder, command
 
 
 @command

@@ -18,8 +18,8 @@ from hystbench.files import write_columns, write_csv
 from hystbench.inverse.feedforward import BAND_SHARE, InputRange, feedforward
 from hystbench.metrics import rms
 from hystbench.model import Model, load_model
+from hystbench.options import In, InputHigh, InputLow, Out, command
 from hystbench.record import FloatArray, column_name
-from hystbench.signature import In, InputHigh, InputLow, Out, command
 
 PERIODS = 4
 """Of each sine; the first two may still show how it began."""

@@ -7,7 +7,7 @@ from typing import Annotated
 from hystbench import options
 from hystbench.entrants.task import read, write
 from hystbench.errors import refuse_unknown
-from hystbench.signature import DatasetFile, OutFolder, command
+from hystbench.options import DatasetFile, OutFolder, command
 from hystbench.written import writes
 
 #: Modules of hystbench.entrants by the rivals' names.

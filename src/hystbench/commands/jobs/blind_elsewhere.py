@@ -10,7 +10,7 @@ from hystbench.challenge.contest.summary import figures
 from hystbench.challenge.contest.tables import frame, read_rows, sure
 from hystbench.files import atomic_path, read_json
 from hystbench.gap.schema import SCHEMA
-from hystbench.signature import DatasetFile, In, Out, command
+from hystbench.options import DatasetFile, In, Out, command
 from hystbench.yaml_files import load_yaml
 
 OURS = {"gain-error": "calibration-error", "offset": "calibration-error"}

@@ -16,9 +16,9 @@ from hystbench.challenge.plant.inside import MACHINES
 from hystbench.errors import InputError
 from hystbench.files import digest
 from hystbench.gap.schema import SCHEMA
+from hystbench.options import Json, Out, Settings, command
 from hystbench.plain_fits import within_noise
 from hystbench.scratch import scratch_folder
-from hystbench.signature import Json, Out, Settings, command
 
 
 @command

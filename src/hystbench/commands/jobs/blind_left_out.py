@@ -3,7 +3,7 @@
 from hystbench.challenge.contest.never_seen import left_out
 from hystbench.challenge.contest.tables import read_rows
 from hystbench.files import atomic_path
-from hystbench.signature import In, Out, command
+from hystbench.options import In, Out, command
 
 
 @command

@@ -10,7 +10,7 @@ import click
 from hystbench.challenge.contest.never_seen import ALL_NAMES
 from hystbench.errors import InputError
 from hystbench.files import read_json
-from hystbench.signature import Folder, command
+from hystbench.options import Folder, command
 
 Table = Annotated[
     Path, click.Path(dir_okay=False, path_type=Path), "Table to add rows to."

@@ -4,7 +4,7 @@ from hystbench.challenge.contest.plan import DEVELOPMENT_SEEDS, RETIRED_SEEDS, p
 from hystbench.challenge.contest.summary import WRITTEN, write_score
 from hystbench.challenge.contest.tables import read_rows
 from hystbench.files import whole_folder
-from hystbench.signature import In, OutFolder, Settings, command
+from hystbench.options import In, OutFolder, Settings, command
 
 
 @command

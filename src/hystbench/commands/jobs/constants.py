@@ -15,8 +15,8 @@ from hystbench.compare.beside import Ranking
 from hystbench.compare.evidence import Cell
 from hystbench.compare.rows import four_digits, names_of, write_fields
 from hystbench.compare.summary import pairs_in_order
+from hystbench.options import In, Json, Out, Settings, command
 from hystbench.published import FILTERS, load_errors
-from hystbench.signature import In, Json, Out, Settings, command
 from hystbench.twins.runs import (
     Twin,
     draw_signals,

@@ -13,10 +13,10 @@ from hystbench.compare.beside import Draw
 from hystbench.compare.rows import names_of, or_empty, write_fields
 from hystbench.files import write_csv
 from hystbench.metrics import rms
+from hystbench.options import In, Json, Out, Settings, command
 from hystbench.published import load_errors
 from hystbench.published.consistency import check
 from hystbench.rdgpi import RateDependentGPI
-from hystbench.signature import In, Json, Out, Settings, command
 from hystbench.twins.fits import run_rdgpi
 from hystbench.twins.runs import (
     Twin,

@@ -20,8 +20,8 @@ from hystbench.metrics import (
     relative_error,
     smoothed_squared_error,
 )
+from hystbench.options import In, Json, Out, Settings, command
 from hystbench.record import FloatArray, Record, load_record
-from hystbench.signature import In, Json, Out, Settings, command
 from hystbench.twins.runs import filter_jobs
 
 BATCH = 32

@@ -1,7 +1,7 @@
 """``hystbench job twin-runs``: one filter on several twins."""
 
 from hystbench.files import write_json
-from hystbench.signature import In, Json, Out, Settings, command
+from hystbench.options import In, Json, Out, Settings, command
 from hystbench.twins.parts import run
 from hystbench.twins.runs import read_twins
 

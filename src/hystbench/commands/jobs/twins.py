@@ -8,7 +8,7 @@ from hystbench.compare.claims import CLAIMS
 from hystbench.compare.claims.claim import Claim, holds
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import names_of, or_empty, write_fields
-from hystbench.signature import In, Json, Out, Settings, command
+from hystbench.options import In, Json, Out, Settings, command
 from hystbench.twins.parts import CONFIGURED, TwinOutcome, join
 from hystbench.twins.runs import read_twins
 
