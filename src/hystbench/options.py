@@ -109,13 +109,15 @@ FILE = GuardedPath(held_safe, exists=True, dir_okay=False)
 DATASET = GuardedPath(held_safe)
 NEW_FILE = GuardedPath(written.writes)
 NEW_FOLDER = GuardedPath(written.check_writable)
-JSON_FILE = JsonFile(held_safe, exists=True, dir_okay=False)
-FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
 Settings = Annotated[dict[str, Any], SettingsType(), "Settings of the job."]
 In = Annotated[Path, FILE, "File to read."]
-Json = Annotated[Any, JSON_FILE, "JSON file to read."]
+Json = Annotated[
+    Any, JsonFile(held_safe, exists=True, dir_okay=False), "JSON file to read."
+]
 DatasetFile = Annotated[Path, DATASET, "Dataset to read."]
-Folder = Annotated[Path, FOLDER, "Folder to read."]
+Folder = Annotated[
+    Path, click.Path(exists=True, file_okay=False, path_type=Path), "Folder to read."
+]
 Out = Annotated[Path, NEW_FILE, "File to write, whole or not at all."]
 OutFolder = Annotated[Path, NEW_FOLDER, "Folder to write."]
 

@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from hystbench.challenge.base import OUTPUT
-from hystbench.challenge.case import Case, make_case
+from hystbench.challenge.case import OUTPUT, Case, make_case
 from hystbench.challenge.machine_case import make_machine_case
 from hystbench.challenge.plant.inside import MACHINES
 from hystbench.challenge.spec import CaseSpec
