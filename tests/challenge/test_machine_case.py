@@ -6,7 +6,7 @@ import pytest
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.challenge.machine import draw_machine
 from hystbench.challenge.make import make, write_folder
-from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES
+from hystbench.challenge.plant.effects import IN_MACHINE, MACHINES
 from hystbench.challenge.spec import GROUPS, CaseSpec, draw_spec, effects_of, kind_of
 from hystbench.dataset import load_dataset
 from hystbench.errors import InputError

@@ -8,7 +8,7 @@ import yaml
 
 from hystbench.challenge.case import OUTPUT, Case, make_case
 from hystbench.challenge.machine_case import make_machine_case
-from hystbench.challenge.plant.inside import MACHINES
+from hystbench.challenge.plant.effects import MACHINES
 from hystbench.challenge.spec import CaseSpec
 from hystbench.files import write_text
 from hystbench.record import Record, column_name

@@ -13,8 +13,13 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from hystbench.challenge.campaigns import CAMPAIGNS
-from hystbench.challenge.plant import inside
-from hystbench.challenge.plant.effects import APART, IN_ACTUATOR
+from hystbench.challenge.plant.effects import (
+    APART,
+    APART_IN_MACHINE,
+    IN_ACTUATOR,
+    IN_MACHINE,
+    MACHINES,
+)
 from hystbench.challenge.plant.hysteresis import DRAWS
 from hystbench.challenge.plant.kind import EffectKind
 from hystbench.errors import InputError, refuse_unknown
@@ -25,7 +30,7 @@ CASE_KINDS: tuple[str, ...] = get_args(CaseKind)
 #: How many effects a case of a kind hides.
 COUNTS = {"single": 1, "pair": 2, "triple": 3, "none": 0, "unlisted": 1}
 ACTUATORS = tuple(DRAWS)
-FAMILIES = (*ACTUATORS, *inside.MACHINES)
+FAMILIES = (*ACTUATORS, *MACHINES)
 #: Known to the plant of plays alone: beside another family the base's loop is wrong
 #: in any case.
 GPI_ONLY = ("hysteresis-shape",)
@@ -38,12 +43,8 @@ EFFECTS_OF: dict[str, dict[str, EffectKind]] = {
     }
     for family in ACTUATORS
 } | {
-    family: {
-        name: kind
-        for name, kind in inside.IN_MACHINE.items()
-        if family in kind.families
-    }
-    for family in inside.MACHINES
+    family: {name: kind for name, kind in IN_MACHINE.items() if family in kind.families}
+    for family in MACHINES
 }
 #: Effects that the vocabulary has no word for.
 NAMELESS = {
@@ -143,7 +144,7 @@ class CaseSpec:
         for key, known_words in words.items():
             word = getattr(self, key)
             refuse_unknown(word, known_words, f"{key}: {word!r}")
-        if self.family in inside.MACHINES and self.campaign != "standard":
+        if self.family in MACHINES and self.campaign != "standard":
             raise InputError(
                 f"campaign: {self.campaign!r} of the family {self.family!r}; expected "
                 "'standard', as machines have one set of records"
@@ -213,7 +214,7 @@ def effects_of(
 
 def _may_meet(names: tuple[str, ...], family: str) -> bool:
     """Tell whether effects may be hidden together in a family."""
-    pairs = inside.APART if family in inside.MACHINES else APART
+    pairs = APART_IN_MACHINE if family in MACHINES else APART
     chosen = set(names)
     return len(chosen) == len(names) and not any(pair <= chosen for pair in pairs)
 

@@ -16,8 +16,7 @@ from hystbench.challenge.contest.plan import (
     strata,
 )
 from hystbench.challenge.make import make
-from hystbench.challenge.plant.effects import IN_ACTUATOR
-from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES
+from hystbench.challenge.plant.effects import IN_ACTUATOR, IN_MACHINE, MACHINES
 from hystbench.challenge.spec import (
     ACTUATORS,
     GROUPS,

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hystbench.challenge.contest import table
-from hystbench.challenge.plant.effects import IN_ACTUATOR
-from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES
+from hystbench.challenge.plant.effects import IN_ACTUATOR, IN_MACHINE, MACHINES
 from hystbench.challenge.spec import (
     CASE_KINDS,
     FAMILIES,

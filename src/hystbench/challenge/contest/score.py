@@ -11,7 +11,7 @@ from statistics import NormalDist, median
 from typing import Any
 
 from hystbench.challenge.contest import table
-from hystbench.challenge.plant.inside import MACHINES
+from hystbench.challenge.plant.effects import MACHINES
 from hystbench.challenge.where import where_hit
 from hystbench.errors import InputError
 from hystbench.files import write_csv

@@ -21,7 +21,7 @@ from hystbench.challenge.contest.tables import (
     shares,
     write_frame,
 )
-from hystbench.challenge.plant.inside import MACHINES
+from hystbench.challenge.plant.effects import MACHINES
 from hystbench.challenge.spec import GROUPS
 from hystbench.files import write_csv, write_json
 

@@ -1,15 +1,9 @@
-"""What can be hidden in a machine: forces inside, and what stands before and behind it.
-
-The effects and their forces stand in ``inside.yaml``.
-"""
-
-import sys
+"""What stands before and behind a machine, where no actuator has it."""
 
 import numpy as np
 
 from hystbench.challenge import kernels
-from hystbench.challenge.plant import drive, material, sensor
-from hystbench.challenge.plant.kind import Parameters, Reach, read_kinds
+from hystbench.challenge.plant.kind import Parameters, Reach
 from hystbench.challenge.plant.machine import FINE
 from hystbench.record import FloatArray
 
@@ -42,12 +36,3 @@ def flood_wave(u: FloatArray, p: Parameters, r: Reach) -> FloatArray:
     step = np.arange(len(u), dtype=np.float64)
     arrival = np.maximum.accumulate(step + late)
     return np.asarray(np.interp(step, arrival, u))
-
-
-IN_MACHINE, APART = read_kinds(
-    "inside.yaml", sys.modules[__name__], drive, material, sensor
-)
-MACHINES = (
-    *("mass-spring", "free-mass", "pendulum", "impedance"),
-    *("tank", "coupled-tanks"),
-)

@@ -12,7 +12,7 @@ from hystbench.challenge.case import Case
 from hystbench.challenge.contest.plan import Entry, chunks, plan
 from hystbench.challenge.contest.score import Row, judge, write_rows
 from hystbench.challenge.make import make, write_folder
-from hystbench.challenge.plant.inside import MACHINES
+from hystbench.challenge.plant.effects import MACHINES
 from hystbench.errors import InputError
 from hystbench.files import digest
 from hystbench.gap.schema import SCHEMA

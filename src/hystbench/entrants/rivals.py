@@ -1,11 +1,13 @@
-"""The naive ranker: every effect by plain least squares, an information criterion.
+"""The rivals of the gap's solver: what a careful beginner would do, and what luck does.
 
-For each effect a bounded fit on the fit records; the least of squared error over the
-noise's power plus ``k log(n)`` is named. What it explains is taken off the records, and
-the same is done with what is left, as long as the criterion falls. The base is never
-reshaped and every sample counts: what a careful beginner would do.
+The naive ranker tries every effect by plain least squares. For each a bounded fit on
+the fit records; the least of squared error over the noise's power plus ``k log(n)`` is
+named. What it explains is taken off the records, and the same is done with what is
+left, as long as the criterion falls. The base is never reshaped, and all samples count.
 """
 
+import hashlib
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +20,7 @@ MOST_EFFECTS = 4
 """Effects that are named, at most."""
 
 
-def answer(given: Given) -> Answer:
+def naive(given: Given) -> Answer:
     """Name effects of the least criterion, one after the other, while it falls."""
     task, noise = Task(given.model, given.fit), noise_rms(given)
     taken: list[tuple[NamedEffect, EffectFit]] = []
@@ -73,3 +75,23 @@ def criterion(found: EffectFit, task: Task, noise: float) -> float:
     return samples * found.mean_square / noise**2 + found.freedom * float(
         np.log(samples)
     )
+
+
+def any_name(given: Given) -> Answer:
+    """Draw a name, or no-gap, from the bytes of the model file: the same each time.
+
+    What luck alone scores.
+    """
+    content = given.model_file.read_bytes()
+    seed = int.from_bytes(hashlib.sha256(content).digest()[:8], "big")
+    random = np.random.default_rng(seed)
+    names = [*effects(), None]
+    chosen = names[int(random.integers(len(names)))]
+    if chosen is None:
+        return Answer(given.base, "no-gap", "Drawn.")
+    named = [NamedEffect(chosen, 1.0 / len(names))]
+    return Answer(given.base, "named", "Drawn.", named)
+
+
+RIVALS: dict[str, Callable[[Given], Answer]] = {"naive": naive, "random": any_name}
+"""What each rival answers, by its name."""
