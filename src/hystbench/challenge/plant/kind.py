@@ -19,17 +19,6 @@ import numpy as np
 from hystbench.record import FloatArray
 from hystbench.yaml_files import load_yaml
 
-View = Literal[
-    "frequency",
-    "amplitude",
-    "rate",
-    "branch",
-    "slow-time",
-    "delay",
-    "unexplained",
-    "record",
-]
-
 #: Where in the chain an effect acts, in the order of the signal's way.
 Stage = Literal[
     "command",  # on time: when the drive sees the command
@@ -121,18 +110,13 @@ Inside = Callable[[Parameters, Reach], Numbers]
 Curve = Callable[[FloatArray, Parameters, Reach], FloatArray]
 
 
-def nothing(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
-    """Leave the signal: the hysteresis itself is another, or a machine is."""
-    return z
-
-
 @dataclass(frozen=True)
 class Form:
     """One way in which an effect may be written."""
 
-    act: Act = nothing
+    act: Act | None = None
     """In an actuator: takes the signal, the run and the parameters and gives the
-    signal."""
+    signal. None where the hysteresis itself is another, and in a machine."""
     ranges: Mapping[str, Range] = field(default_factory=dict)
     """By parameter."""
     size: str = ""
@@ -160,8 +144,8 @@ class EffectKind:
     ``before``, ``inside`` or ``behind``."""
     stage: Stage = "mechanics"
     """Where in the chain of an actuator it acts."""
-    views: tuple[View, ...] = ()
-    """Where in an actuator it shows."""
+    views: tuple[str, ...] = ()
+    """Where in an actuator it shows: views as gap.json has them."""
     forms: Mapping[str, Form] = field(default_factory=dict)
     listed: bool = True
     """Whether the vocabulary has a word for it."""
@@ -189,7 +173,8 @@ class HiddenEffect:
 
     def act(self, signal: FloatArray, run: PlantRun) -> FloatArray:
         """Compute what the effect makes of a signal."""
-        return self.law.act(signal, run, self.parameters)
+        act = self.law.act
+        return act(signal, run, self.parameters) if act else signal
 
     def scaled(self, factor: float) -> HiddenEffect:
         """Make its difference about so many times as large, as far as it may be."""
