@@ -252,17 +252,8 @@ def test_what_hysteresis_cannot_be_undone_is_one_line(block, why):
 def test_the_command_writes_it_with_its_limits(tmp_path):
     file = tmp_path / "rig.yaml"
     model_of("rig", chain_of(GPI, GAIN)).save(file)
-    asked = [
-        "export",
-        file,
-        "--inverse",
-        "--to",
-        "c",
-        "--dt",
-        DT,
-        "--out",
-        tmp_path / "c",
-    ]
+    asked = ("export", file, "--inverse", "--to", "c", "--dt", DT)
+    asked += ("--out", tmp_path / "c")
     done = run_hystbench(*asked)
     assert done.returncode == 2
     assert "--limit-low: expected it beside --inverse" in done.stderr
