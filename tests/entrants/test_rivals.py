@@ -8,7 +8,7 @@ from hystbench.challenge.case import make_case
 from hystbench.challenge.make import write_folder
 from hystbench.challenge.spec import CaseSpec
 from hystbench.entrants import rivals
-from hystbench.entrants.task import Answer, read, write
+from hystbench.entrants.rivals import Answer, read, write
 from hystbench.files import read_json
 from hystbench.gap.schema import SCHEMA
 from hystbench.plain_fits import Task, effects, fit, within_noise

@@ -4,8 +4,7 @@ from pathlib import Path
 from typing import Annotated
 
 from hystbench import options
-from hystbench.entrants.rivals import RIVALS
-from hystbench.entrants.task import read, write
+from hystbench.entrants.rivals import RIVALS, read, write
 from hystbench.errors import refuse_unknown
 from hystbench.options import DatasetFile, OutFolder, command
 from hystbench.written import writes
