@@ -22,7 +22,7 @@ from hystbench.signals import make_signal
 from hystbench.twin_record import record_of_twin
 from hystbench.twins.fits import fit
 from hystbench.twins.parts import run
-from hystbench.twins.read import read_twins
+from hystbench.twins.runs import read_twins
 from hystbench.yaml_files import load_yaml
 
 

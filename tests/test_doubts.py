@@ -19,7 +19,7 @@ OTHER_Y = 5 * OTHER + 0.02 * RNG.standard_normal(1200)
 
 
 def shared(one, two):
-    return common_piece(Written(one), Written(two))
+    return common_piece(Written.of(one), Written.of(two))
 
 
 def printed(values, form):

@@ -1,6 +1,5 @@
 """Whether a record is a copy of another: all of it or a piece, as it is or rounded."""
 
-from functools import cached_property
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -9,7 +8,7 @@ from numpy.typing import NDArray
 from hystbench.record import FloatArray, Record
 
 DIGITS = 12
-"""Digits behind which numbers count as not rounded."""
+"""Written behind which numbers count as not rounded."""
 PROBED = 2000
 """Samples of a record from which its last digit is read."""
 FINE = 0.05
@@ -38,26 +37,23 @@ class CommonPiece(NamedTuple):
         return self._replace(first=self.other_first, other_first=self.first)
 
 
-class Written:
-    """A record and the digits to which it is written, which are read once.
+class Written(NamedTuple):
+    """Samples of a record, and to which digit each is written."""
 
-    Parameters
-    ----------
-    record : Record
-    """
+    dt: float
+    rows: Rows
+    steps: Rows
+    """Step of the last digit of each value."""
 
-    def __init__(self, record: Record) -> None:
-        self.dt = record.dt
-        self.rows: Rows = np.stack([record.u, record.y])
+    @classmethod
+    def of(cls, record: Record) -> Self:
+        """Read the digits of a record."""
+        rows = np.stack([record.u, record.y])
+        return cls(record.dt, rows, np.stack([_last_digit(row) for row in rows]))
 
-    @cached_property
-    def steps(self) -> Rows:
-        """Step of the last digit of each value."""
-        return np.stack([_last_digit(row) for row in self.rows])
-
-    def every(self, step: int, start: int = 0) -> tuple[Rows, Rows]:
-        """Give every so manyth sample, and the steps of their last digits."""
-        return self.rows[:, start::step], self.steps[:, start::step]
+    def at(self, places: slice | NDArray[np.intp]) -> Self:
+        """Give some of the samples."""
+        return self._replace(rows=self.rows[:, places], steps=self.steps[:, places])
 
 
 def common_piece(one: Written, two: Written) -> CommonPiece | None:
@@ -72,49 +68,42 @@ def common_piece(one: Written, two: Written) -> CommonPiece | None:
     CommonPiece or None
         As seen from the first record.
     """
-    ratio = one.dt / two.dt
-    for coarse, other, step in (
-        (one, two, round(ratio)),
-        (two, one, round(1 / ratio) if ratio > 0 else 1),
-    ):
-        for every in {1, step} if 1 < step <= MOST_RATIO else {1}:
-            if every == 1 and other is one:
-                continue  # the first pair has compared them as they are
-            for start in range(every):
-                ours, theirs = coarse.every(1), other.every(every, start)
-                found = _shared(ours[0], theirs[0], ours[1], theirs[1])
-                if found is not None:
-                    inside = start + every * found.other_first
-                    piece = found._replace(other_first=inside)
-                    return piece if coarse is one else piece.turned()
+    found = _shared(one, two) or _in_finer(one, two)
+    if found is None and (other := _in_finer(two, one)) is not None:
+        found = other.turned()
+    return found
+
+
+def _in_finer(coarse: Written, fine: Written) -> CommonPiece | None:
+    """Look among every so manyth sample of a record that is sampled more finely."""
+    every = round(coarse.dt / fine.dt)
+    for start in range(every) if 1 < every <= MOST_RATIO else ():
+        found = _shared(coarse, fine.at(slice(start, None, every)))
+        if found is not None:
+            return found._replace(other_first=start + every * found.other_first)
     return None
 
 
-def _shared(one: Rows, two: Rows, one_step: Rows, two_step: Rows) -> CommonPiece | None:
+def _shared(one: Written, two: Written) -> CommonPiece | None:
     """Find half or more of the shorter of two runs of samples in the other."""
-    if one.shape[1] > two.shape[1]:
-        found = _shared(two, one, two_step, one_step)
+    count, longer = one.rows.shape[1], two.rows.shape[1]
+    if count > longer:
+        found = _shared(two, one)
         return None if found is None else found.turned()
-    count = one.shape[1]
-    least = count // 2 + count % 2
     if count < 4:
         return None
     # A run of half the samples holds the second quarter of them or the third.
     quarter = count // 4
     for first in (quarter, count // 2):
-        block = slice(first, first + quarter)
-        for place in _places(one[:, block], two, one_step[:, block], two_step):
+        for place in _places(one.at(slice(first, first + quarter)), two):
             away = place - first
-            low, high = max(0, -away), min(count, two.shape[1] - away)
+            low, high = max(0, -away), min(count, longer - away)
             ours, theirs = slice(low, high), slice(low + away, high + away)
-            alike = _equal(
-                one[:, ours], two[:, theirs], one_step[:, ours], two_step[:, theirs]
-            )
-            start, stop = _run_around(alike, first - low)
-            if stop - start >= least:
+            start, stop = _run_around(_equal(one.at(ours), two.at(theirs)), first - low)
+            if stop - start >= count - count // 2:
                 start, stop = start + low, stop + low
                 exact = np.array_equal(
-                    one[:, start:stop], two[:, start + away : stop + away]
+                    one.rows[:, start:stop], two.rows[:, start + away : stop + away]
                 )
                 return CommonPiece(stop - start, start, start + away, exact)
     return None
@@ -146,9 +135,9 @@ def _whole(values: FloatArray) -> bool:
     return bool(np.all(np.abs(values - np.rint(values)) < 1e-3))
 
 
-def _equal(a: Rows, b: Rows, a_step: Rows, b_step: Rows) -> NDArray[np.bool_]:
+def _equal(a: Written, b: Written) -> NDArray[np.bool_]:
     """Tell sample by sample whether both rows agree up to the coarser last digit."""
-    near = np.abs(a - b) <= 0.51 * np.maximum(a_step, b_step)
+    near = np.abs(a.rows - b.rows) <= 0.51 * np.maximum(a.steps, b.steps)
     return np.asarray(near.all(axis=0))
 
 
@@ -165,20 +154,19 @@ def _near(block: FloatArray, row: FloatArray) -> NDArray[np.intp]:
     return np.flatnonzero(apart <= length * FINE**2 * squares[-1] / count)
 
 
-def _places(block: Rows, rows: Rows, block_step: Rows, step: Rows) -> list[int]:
+def _places(block: Written, whole: Written) -> list[int]:
     """Give places where a block may stand: by a few samples, then by all of the input.
 
     Few samples leave next to none where nothing is copied.
     """
-    found = np.arange(rows.shape[1] - block.shape[1] + 1)
-    for k in np.linspace(0, block.shape[1] - 1, 32).astype(int):
-        own, there = [k], found + k
-        found = found[
-            _equal(block[:, own], rows[:, there], block_step[:, own], step[:, there])
-        ]
+    length = block.rows.shape[1]
+    found = np.arange(whole.rows.shape[1] - length + 1)
+    for k in np.linspace(0, length - 1, 32).astype(int):
+        found = found[_equal(block.at(slice(k, k + 1)), whole.at(found + k))]
         if not len(found):
             return []
-    found = found[np.isin(found, _near(block[0], rows[0]), assume_unique=True)]
+    near = _near(block.rows[0], whole.rows[0])
+    found = found[np.isin(found, near, assume_unique=True)]
     return [int(place) for place in found[:MOST_PLACES]]
 
 

@@ -60,7 +60,7 @@ def doubts(
     """
     concerned = [item for item in records if about in (None, item.name)]
     found = [*_other_columns(dataset), *_strange_time(dataset, concerned)]
-    written = [Written(record) for record in records]
+    written = [Written.of(record) for record in records]
     for (one, its), (two, others) in combinations(
         zip(records, written, strict=True), 2
     ):

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 
 from hystbench import files
-from hystbench.challenge.left_out_groups import GROUPS
-from hystbench.challenge.plant.effects import IN_ACTUATOR
-from hystbench.challenge.plant.inside import IN_MACHINE
+from hystbench.challenge.plant.effects import IN_ACTUATOR, IN_MACHINE
 from hystbench.challenge.plant.kind import Range
+from hystbench.challenge.spec import GROUPS
 
 COLUMNS = (
     *("effect", "place", "form", "parameter"),

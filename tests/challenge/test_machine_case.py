@@ -4,21 +4,16 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.challenge.left_out_groups import GROUPS
 from hystbench.challenge.machine import draw_machine
-from hystbench.challenge.make import make
-from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES
-from hystbench.challenge.spec import CaseSpec, draw_spec, effects_of
-from hystbench.challenge.writing import write_case
+from hystbench.challenge.make import make, write_folder
+from hystbench.challenge.plant.effects import IN_MACHINE, MACHINES
+from hystbench.challenge.spec import GROUPS, CaseSpec, draw_spec, effects_of, kind_of
 from hystbench.dataset import load_dataset
 from hystbench.errors import InputError
 
 
 def case_of(family, *effects, seed=7, **more):
-    kind = {0: "none", 1: "single", 2: "pair"}[len(effects)]
-    if not all(IN_MACHINE[name].listed for name in effects):
-        kind = "unlisted"
-    return make(CaseSpec(seed, kind, effects, family, 20.0, **more))
+    return make(CaseSpec(seed, kind_of(effects), effects, family, 20.0, **more))
 
 
 def rms(values):
@@ -127,7 +122,7 @@ def test_all_four_quantities_are_measured_and_loops_are_open_and_closed():
 )
 def test_units_tell_the_causality(family, causality, tmp_path):
     case = case_of(family, seed=2)
-    write_case(case, tmp_path / "case", tmp_path / "truth.json")
+    write_folder(case, tmp_path / "case")
     dataset = load_dataset(tmp_path / "case" / "dataset")
     assert dataset.quantities.causality == causality
     read = dataset.read(next(iter(dataset.record_files)))

@@ -14,7 +14,6 @@ from click.testing import CliRunner
 from hystbench.challenge.case import make_case
 from hystbench.challenge.plant.effects import IN_ACTUATOR
 from hystbench.challenge.spec import CaseSpec
-from hystbench.challenge.writing import write_case
 from hystbench.commands.hide import hide
 from hystbench.dataset import load_dataset
 from hystbench.errors import InputError
@@ -31,11 +30,19 @@ def case():
     return make_case(SPEC)
 
 
-@pytest.fixture(scope="module")
-def written(case, tmp_path_factory):
-    place = tmp_path_factory.mktemp("case")
-    write_case(case, place / "case", place / "truth" / "case.json")
+def asked(place, *words, truth="truth.json"):
+    places = ["--out", str(place / "case"), "--truth", str(place / truth)]
+    return CliRunner().invoke(hide, [*words, *places])
+
+
+def hidden(place):
+    assert asked(place, "--effect", "thermal-drift", "--seed", "11").exit_code == 0
     return place
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    return hidden(tmp_path_factory.mktemp("case"))
 
 
 def digest(folder):
@@ -47,8 +54,7 @@ def digest(folder):
 
 
 def test_the_same_spec_writes_the_same_bytes(written, tmp_path):
-    write_case(make_case(SPEC), tmp_path / "case", tmp_path / "truth" / "case.json")
-    assert digest(tmp_path) == digest(written)
+    assert digest(hidden(tmp_path)) == digest(written)
 
 
 def test_the_folder_is_a_dataset_and_a_model(written, case):
@@ -73,7 +79,7 @@ def test_the_folder_is_a_dataset_and_a_model(written, case):
 
 
 def test_the_truth_is_never_in_the_folder(written):
-    truth = json.loads((written / "truth" / "case.json").read_text())
+    truth = json.loads((written / "truth.json").read_text())
     assert truth["effects"][0]["name"] == "thermal-drift"
     files = [
         file
@@ -94,24 +100,20 @@ def test_the_truth_is_never_in_the_folder(written):
         assert set(told) <= {"resonance"}, file
 
 
-def test_the_truth_may_not_be_put_into_the_folder(case, tmp_path):
-    with pytest.raises(InputError, match="outside the folder"):
-        write_case(case, tmp_path / "a", tmp_path / "b" / ".." / "a" / "truth.json")
-    assert not (tmp_path / "a").exists()
+def test_the_truth_may_not_be_put_into_the_folder(tmp_path):
+    words = ("--effect", "creep", "--seed", "2")
+    done = asked(tmp_path, *words, truth="b/../case/truth.json")
+    assert "outside the folder" in str(done.exception)
+    assert not (tmp_path / "case").exists()
 
 
-def test_a_folder_in_use_is_left_alone(case, tmp_path):
-    (tmp_path / "a").mkdir()
-    (tmp_path / "a" / "mine.txt").write_text("mine")
-    with pytest.raises(InputError, match="a new or an empty folder"):
-        write_case(case, tmp_path / "a", tmp_path / "truth.json")
-    assert [file.name for file in (tmp_path / "a").iterdir()] == ["mine.txt"]
+def test_a_folder_in_use_is_left_alone(tmp_path):
+    (tmp_path / "case").mkdir()
+    (tmp_path / "case" / "mine.txt").write_text("mine")
+    done = asked(tmp_path, "--effect", "creep", "--seed", "2")
+    assert "a new or an empty folder" in str(done.exception)
+    assert [file.name for file in (tmp_path / "case").iterdir()] == ["mine.txt"]
     assert not (tmp_path / "truth.json").exists()
-
-
-def asked(tmp_path, *words):
-    places = ["--out", str(tmp_path / "out"), "--truth", str(tmp_path / "truth.json")]
-    return CliRunner().invoke(hide, [*words, *places])
 
 
 def test_the_command_hides_nothing_when_asked(tmp_path):

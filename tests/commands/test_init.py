@@ -104,12 +104,15 @@ def test_flags_say_what_files_do_not(run, tmp_path):
     assert "say --input; expected one of b, c" in said
     assert not Path("dataset.yaml").exists()
     flags = ("--input", "b", "--input-unit", "A", "--output-unit", "um")
-    assert run("init", *files, *flags, "--hold-out", "sine-10", "--name", "rig")[0] == 0
+    flags += ("--hold-out", "sine-10", "--name", "rig", "--device", "piezoelectric")
+    assert run("init", *files, *flags)[0] == 0
     about = written()
     assert (about["name"], about["time"]["column"]) == ("rig", "a")
     assert (about["input"]["column"], about["output"]["column"]) == ("b", "c")
     held = [each["file"] for each in about["records"] if each["use"] == "hold-out"]
     assert held == ["sine-10.csv"]
+    assert about["device"] == {"kind": "piezoelectric"}
+    assert load_dataset("dataset.yaml").device_kind == "piezoelectric"
 
 
 def test_a_terminal_is_asked(run, tmp_path, monkeypatch):
@@ -295,9 +298,15 @@ def test_a_sampling_frequency_is_finite_and_above_0(run, tmp_path, monkeypatch, 
     assert "expected a finite number of Hz above 0" in said
 
 
-def test_a_name_that_no_command_takes_is_not_written(run, tmp_path):
-    said = refused("init", *records(tmp_path), "--name", "bad/name")
-    assert "name: 'bad/name'" in said
+@pytest.mark.parametrize(
+    ("flag", "value", "expected"),
+    [
+        ("--name", "bad/name", "name: 'bad/name'"),
+        ("--device", "piezo", "piezoelectric"),
+    ],
+)
+def test_what_no_command_takes_is_not_written(run, tmp_path, flag, value, expected):
+    assert expected in refused("init", *records(tmp_path), flag, value)
     assert not Path("dataset.yaml").exists()
 
 
@@ -404,16 +413,3 @@ def test_times_that_count_from_a_date(run, tmp_path, first, per_second, unit, rt
     assert "from 2024-02-29 12:00:00.000 on (--time-unit)" in said
     assert written()["time"]["unit"] == unit
     assert load_dataset(".").read("run-1").dt == pytest.approx(DT, rel=rtol)
-
-
-def test_the_kind_of_device_is_written(run, tmp_path):
-    status, _, _ = run("init", *records(tmp_path), "--device", "piezoelectric")
-    assert status == 0
-    assert written()["device"] == {"kind": "piezoelectric"}
-    assert load_dataset("dataset.yaml").device_kind == "piezoelectric"
-
-
-def test_a_kind_that_is_none_is_refused_in_a_line(run, tmp_path):
-    said = refused("init", *records(tmp_path), "--device", "piezo")
-    assert "piezoelectric" in said
-    assert not Path("dataset.yaml").exists()

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from hystbench.challenge.case import make_case
+from hystbench.challenge.make import write_folder
 from hystbench.challenge.spec import CaseSpec
-from hystbench.challenge.writing import write_folder
-from hystbench.entrants import naive, random_namer
-from hystbench.entrants.task import Answer, read, write
+from hystbench.entrants import rivals
+from hystbench.entrants.rivals import Answer, read, write
 from hystbench.files import read_json
 from hystbench.gap.schema import SCHEMA
 from hystbench.plain_fits import Task, effects, fit, within_noise
@@ -31,9 +31,9 @@ def folder(case, tmp_path_factory):
     return place
 
 
-def solved(module, folder, out):
+def solved(name, folder, out):
     given = read(folder / "dataset", folder / "model.yaml")
-    write(given, module.answer(given), out)
+    write(given, rivals.RIVALS[name](given), out)
     gap = read_json(out / "gap.json")
     check_against_schema(gap, SCHEMA, "gap.json")
     return gap
@@ -44,12 +44,12 @@ def few_effects(monkeypatch):
     """Fit a handful of effects alone: all of them take a minute."""
     few = ("thermal-drift", "drive-lag", "saturation", "calibration-error", "drift")
     assert set(few) < set(effects())
-    monkeypatch.setattr(naive, "effects", lambda: few)
+    monkeypatch.setattr(rivals, "effects", lambda: few)
 
 
 @pytest.mark.usefixtures("few_effects")
 def test_the_naive_ranker_names_a_strong_effect(folder, tmp_path):
-    gap = solved(naive, folder, tmp_path)
+    gap = solved("naive", folder, tmp_path)
     assert gap["verdict"] == "named"
     assert gap["effects"][0]["name"] == "thermal-drift"
     assert gap["gap"]["after"] < 0.5 * gap["gap"]["before"]
@@ -60,10 +60,10 @@ def test_the_naive_ranker_goes_on_with_what_is_left(tmp_path):
     hidden = ("drive-lag", "drift")
     spec = CaseSpec(150_005, "pair", hidden, "gpi", 20.0, **LEFT_OUT)
     write_folder(make_case(spec), tmp_path)
-    gap = solved(naive, tmp_path, tmp_path / "out")
+    gap = solved("naive", tmp_path, tmp_path / "out")
     names = [item["name"] for item in gap["effects"]]
     assert set(hidden) <= set(names)
-    assert len(set(names)) == len(names) <= naive.MOST_EFFECTS
+    assert len(set(names)) == len(names) <= rivals.MOST_EFFECTS
     # the drift of a record that was not fitted is not known: what the lag did is gone
     assert gap["gap"]["after"] < gap["gap"]["before"]
 
@@ -73,7 +73,7 @@ def test_what_an_effect_explains_is_taken_off(folder):
     task = Task(given.model, given.fit)
     for name in ("calibration-error", "drift", "hysteresis-shape"):
         found = fit(task, name)
-        left = naive.without(task, found)
+        left = rivals.without(task, found)
         error = found.output - task.measured
         np.testing.assert_allclose(left.base - left.measured, error, atol=1e-9)
         assert found.mean_square == pytest.approx(np.mean(error**2))
@@ -81,8 +81,8 @@ def test_what_an_effect_explains_is_taken_off(folder):
 
 
 def test_the_random_namer_says_the_same_each_time(folder, tmp_path):
-    first = solved(random_namer, folder, tmp_path / "a")
-    assert solved(random_namer, folder, tmp_path / "b") == first
+    first = solved("random", folder, tmp_path / "a")
+    assert solved("random", folder, tmp_path / "b") == first
     assert first["gap"]["after"] == first["gap"]["before"]
 
 

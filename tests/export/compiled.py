@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hystbench.export import c
+from hystbench.export import code
 
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror"]
 
@@ -43,9 +43,9 @@ class Compiled:
         assert len(set(names)) == len(names)
         text = "\n\n".join(
             [
-                c.library(models),
-                *(c.header(model) for model in models),
-                *(c.body(model) for model in models),
+                code.library(models),
+                *(code.header(model) for model in models),
+                *(code.body(model) for model in models),
                 MAIN % "\n    ".join(f"RUN({name})" for name in names),
             ]
         )

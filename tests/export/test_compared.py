@@ -5,8 +5,8 @@ import pytest
 
 from hystbench.blocks.step import Sampling
 from hystbench.errors import InputError
-from hystbench.export.compared import off
 from hystbench.export.described import describe
+from hystbench.export.on_record import off
 from hystbench.record import Channel, Record
 from tests.conftest import run_hystbench
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from hystbench.blocks.step import Sampling
+from hystbench.export.code import write_fmu
 from hystbench.export.described import describe
-from hystbench.export.fmu import write_fmu
 from hystbench.model import Model, load_model
 
 from .test_gap_models import FOLDER, WRITTEN
@@ -34,7 +34,7 @@ UNSEEN_BY_FMPY = {"same file twice"}
 def broken(what, path):
     """Write the twin's unit with one mistake in its description."""
     right, wrong = BROKEN[what]
-    write_fmu(describe(load_model(PLANTS / "gma.yaml"), Sampling(DT)), path, 2)
+    write_fmu(describe(load_model(PLANTS / "gma.yaml"), Sampling(DT)), path, "2")
     with zipfile.ZipFile(path) as archive:
         files = {name: archive.read(name) for name in archive.namelist()}
     text = files["modelDescription.xml"].decode()
@@ -94,7 +94,7 @@ def checked_models():
 
 @pytest.mark.parametrize("name", ["plant", "late", "clash", *WRITTEN])
 def test_vdmcheck_accepts_units_of_fmi_2(name, tmp_path, vdmcheck):
-    write_fmu(describe(*checked_models()[name]), tmp_path / "unit.fmu", 2)
+    write_fmu(describe(*checked_models()[name]), tmp_path / "unit.fmu", "2")
     done = vdmcheck(tmp_path / "unit.fmu")
     assert done.returncode == 0, done.stdout + done.stderr
     # of the model's description, and of how it is built

@@ -13,7 +13,7 @@ import pytest
 
 from hystbench.blocks.step import Sampling
 from hystbench.export.described import describe, exact_delay
-from hystbench.export.past import begun
+from hystbench.export.on_record import begun
 from hystbench.model import Model, load_model
 from tests.blocks.examples import EXAMPLES
 

@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.step import Sampling
-from hystbench.export import c, python
-from hystbench.export.described import describe
-from hystbench.export.names import identifier
+from hystbench.export import code
+from hystbench.export.described import describe, identifier
 from hystbench.model import Model, load_model
 from tests.conftest import ROOT, run_hystbench
 
@@ -206,13 +205,13 @@ def nasty(text):
 def test_no_name_gets_into_the_python_code(text, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     model = replace(nasty(text), name="nasty")
-    tree = ast.parse(python.module(model))
-    plain = ast.parse(python.module(replace(nasty("plain"), name="nasty")))
+    tree = ast.parse(code.module(model))
+    plain = ast.parse(code.module(replace(nasty("plain"), name="nasty")))
     assert [ast.dump(item) for item in tree.body[1:]] == [
         ast.dump(item) for item in plain.body[1:]
     ]
     assert " ".join(ast.get_docstring(tree).split()).startswith(model.title)
-    assert python.loaded(model).step(0.1) != 0.0
+    assert code.loaded(model).step(0.1) != 0.0
     assert list(tmp_path.iterdir()) == []
 
 
@@ -220,8 +219,8 @@ def test_no_name_gets_into_the_python_code(text, tmp_path, monkeypatch):
 def test_no_name_gets_into_the_c_code(tmp_path):
     models = [replace(nasty(text), name=f"nasty_{k}") for k, text in enumerate(NASTY)]
     for model in models:
-        (tmp_path / f"{model.name}.h").write_text(c.header(model))
-        assert "injected" in c.header(model) or "injected" not in model.title
+        (tmp_path / f"{model.name}.h").write_text(code.header(model))
+        assert "injected" in code.header(model) or "injected" not in model.title
     given = "\n".join(f'#include "{model.name}.h"' for model in models)
     command = ["cc", "-std=c99", "-E", "-P", "-"]
     seen = subprocess.run(

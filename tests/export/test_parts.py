@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.step import Sampling
+from hystbench.commands.export import part_of
 from hystbench.errors import InputError
-from hystbench.export import python
+from hystbench.export.code import loaded
 from hystbench.export.described import describe
-from hystbench.export.parts import part_of
 from tests.blocks.examples import EXAMPLES, twice
 from tests.conftest import run_hystbench
 
@@ -19,7 +19,7 @@ LIMIT = ("drive-saturation", EXAMPLES["drive-saturation"])
 
 
 def code_of(model, part):
-    return python.loaded(describe(part_of(model, part), Sampling(DT)))
+    return loaded(describe(part_of(model, part), Sampling(DT)))
 
 
 def test_the_simulator_between_its_parts_is_the_whole_model():

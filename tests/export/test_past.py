@@ -9,10 +9,10 @@ import pytest
 
 from hystbench.blocks.step import Sampling
 from hystbench.errors import InputError
-from hystbench.export import python
+from hystbench.export.code import loaded
 from hystbench.export.described import describe
 from hystbench.export.inverse import describe_inverse
-from hystbench.export.past import begun, begun_inverse
+from hystbench.export.on_record import begun, begun_inverse
 from tests.blocks.examples import EXAMPLES
 from tests.conftest import run_hystbench
 
@@ -65,7 +65,7 @@ def test_code_starts_as_the_simulation_of_the_record(name, tmp_path):
     wanted = model.simulate(RECORD, DT)
     y = Compiled([code], tmp_path).outputs(RECORD)["begun"]
     assert np.abs(y - wanted).max() <= 1e-9 * np.ptp(wanted)
-    few = python.loaded(code).simulate(RECORD[:200])
+    few = loaded(code).simulate(RECORD[:200])
     assert np.abs(few - wanted[:200]).max() <= 1e-9 * np.ptp(wanted)
     # Without the record it is another start, or the record would be worth nothing.
     without = Compiled([plain], tmp_path).outputs(RECORD)["begun"]
@@ -115,7 +115,7 @@ def test_an_inverse_begins_with_the_plays_that_the_record_leaves(tmp_path):
 
 def test_a_machine_that_is_reset_begins_so_again():
     model = model_of("begun", chain_of(GPI))
-    code = python.loaded(begun(describe(model, Sampling(DT)), model, RECORD))
+    code = loaded(begun(describe(model, Sampling(DT)), model, RECORD))
     first = code.simulate(RECORD[:50])
     code.reset()
     np.testing.assert_array_equal(code.simulate(RECORD[:50]), first)

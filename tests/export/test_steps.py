@@ -13,7 +13,7 @@ from hystbench.blocks.step import Sampling
 from hystbench.blocks.superposed import BesideBlock
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.errors import InputError
-from hystbench.export.c import header, source
+from hystbench.export.code import header, source
 from hystbench.export.described import describe
 from hystbench.model import Model
 from hystbench.record import Channel

@@ -11,8 +11,8 @@ from functools import cache
 import pytest
 
 from hystbench.challenge.case import make_case
-from hystbench.challenge.plant.effects import VOCABULARY
-from hystbench.challenge.spec import CaseSpec
+from hystbench.challenge.plant.effects import IN_ACTUATOR
+from hystbench.challenge.spec import CaseSpec, kind_of
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state
@@ -34,10 +34,8 @@ SEED, GROUP = 1, 1
 @cache
 def hidden(names, family):
     """Fit records, cut in half, and the base model of a case."""
-    kind = {0: "none", 1: "single", 2: "pair"}[len(names)]
-    if any(item not in VOCABULARY for item in names):
-        kind = "unlisted"
-    case = make_case(CaseSpec(SEED, kind, names, family, 20.0, group=GROUP))
+    spec = CaseSpec(SEED, kind_of(names), names, family, 20.0, group=GROUP)
+    case = make_case(spec)
     return first_halves(case), case.model
 
 
@@ -62,7 +60,11 @@ def of_its_place(name):
 #: As the generator lists them: an effect that is taken out is missed here too. A few
 #: are named among all, a simple and two strange ones; the others among their like.
 SINGLES = [
-    *((name, "gpi", of_its_place(name)) for name in VOCABULARY),
+    *(
+        (name, "gpi", of_its_place(name))
+        for name, kind in IN_ACTUATOR.items()
+        if kind.listed
+    ),
     ("drive-lag", "gpi", None),
     ("creep", "preisach", None),
     ("resonance", "jiles-atherton", None),

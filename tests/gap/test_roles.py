@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from hystbench.challenge.case import make_case
+from hystbench.challenge.make import write_folder
 from hystbench.challenge.spec import CaseSpec
-from hystbench.challenge.writing import write_case
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.model import load_model
 from hystbench.written import ENTRIES
@@ -38,7 +38,7 @@ def folder(tmp_path_factory):
     there = tmp_path_factory.mktemp("roles")
     case = make_case(CaseSpec(1, "single", ("creep",), "gpi", 20.0))
     case = replace(case, records=tuple(map(short, case.records)))
-    write_case(case, there / "case", there / "truth.json")
+    write_folder(case, there / "case")
     return there
 
 

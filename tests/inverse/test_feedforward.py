@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from hystbench.blocks import registry
+from hystbench.commands.invert import bandwidth, holds_to
 from hystbench.errors import InputError
-from hystbench.inverse.bandwidth import bandwidth, holds_to
 from hystbench.inverse.feedforward import InputRange, feedforward
 from hystbench.inverse.response import best_linear, without
 from hystbench.model import Model, load_model

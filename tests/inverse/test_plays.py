@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.blocks import registry
-from hystbench.inverse.plays import Plays
+from hystbench.inverse.feedforward import Plays
 from hystbench.operators import play
 from tests.blocks.examples import EXAMPLES
 

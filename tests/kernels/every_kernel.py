@@ -44,7 +44,7 @@ from hystbench.blocks.stiffness_hardening import StiffnessHardening  # noqa: E40
 from hystbench.blocks.store import Store  # noqa: E402
 from hystbench.envelope import Envelope  # noqa: E402
 from hystbench.filters import FILTERS, run_many  # noqa: E402
-from hystbench.inverse.plays import Plays  # noqa: E402
+from hystbench.inverse.feedforward import Plays  # noqa: E402
 
 DT = 1e-4
 SAMPLES = 33_000  # more than the filters take at a time

@@ -4,12 +4,11 @@ from types import SimpleNamespace
 
 import pytest
 
+from hystbench.commands.jobs.twins import results_on_runs, write_twins
 from hystbench.compare.beside import read_holdings, read_spreads
 from hystbench.compare.claims import CLAIMS
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.twins.experiments import CONFIGURED, TwinExperiment
-from hystbench.twins.judge import results_on_runs, write_twins
-from hystbench.twins.parts import TwinOutcome
+from hystbench.twins.parts import CONFIGURED, TwinExperiment, TwinOutcome
 from tests.compare.made import published_runs
 
 BY_ID = {claim.id: claim for claim in CLAIMS}

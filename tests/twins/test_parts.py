@@ -12,11 +12,9 @@ from hystbench.commands.jobs.twin_runs import twin_runs
 from hystbench.commands.jobs.twins import twins
 from hystbench.compare.beside import read_holdings, read_spreads
 from hystbench.errors import InputError
-from hystbench.twins.experiments import experiments, within_margin
 from hystbench.twins.fits import fit
-from hystbench.twins.parts import join, run
-from hystbench.twins.read import read_twins
-from hystbench.twins.runs import draw_signals, measure_twin
+from hystbench.twins.parts import experiments, join, run, within_margin
+from hystbench.twins.runs import draw_signals, measure_twin, read_twins
 from tests.conftest import table
 
 from .conftest import SIGNALS, call, small_settings

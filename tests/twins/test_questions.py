@@ -11,8 +11,7 @@ from hystbench.commands.jobs.step_sweep import step_sweep
 from hystbench.compare.beside import Edge, Ranking, read_draws
 from hystbench.compare.rows import read_items
 from hystbench.compare.summary import pairs_in_order
-from hystbench.twins.read import read_twins
-from hystbench.twins.runs import draw_signals, measure_twin
+from hystbench.twins.runs import draw_signals, measure_twin, read_twins
 from tests.conftest import table
 
 from .conftest import SIGNALS, call

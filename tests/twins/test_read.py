@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from hystbench.errors import InputError
-from hystbench.twins.read import read_twins
+from hystbench.twins.runs import read_twins
 
 from .conftest import TWIN, write_twin
 

@@ -4,8 +4,7 @@
 import math
 
 from hystbench.challenge.contest.plan import numbers, plan
-from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP
-from hystbench.commands.rival import RIVALS
+from hystbench.challenge.spec import LEFT_OUT_GROUP
 from hystbench.errors import nearest
 
 CONTEST = config["blind"]
@@ -126,11 +125,8 @@ def blind_solver_code(wildcards):
         called = f"hystbench.commands.{command[1].replace('-', '_')}"
         modules += [called] if called in GRAPH.modules else []
         if command[1] == "gap":
-            # Effects are found by name, so that no import tells of them; so are rivals.
+            # Effects are found by name, so that no import tells of them.
             modules += sorted(GRAPH.find_descendants("hystbench.gap"))
-        if command[1] == "rival":
-            named = [RIVALS[word] for word in command if word in RIVALS]
-            modules += [f"hystbench.entrants.{name}" for name in named]
     return code(*modules)
 
 

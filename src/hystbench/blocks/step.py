@@ -2,7 +2,7 @@
 
 A block of the vocabulary says its step as the name of a function and what that
 function takes: constants, and states that are all zero at the start, unless
-:mod:`hystbench.export.past` gives others. The functions are in C, in
+:mod:`hystbench.export.on_record` gives others. The functions are in C, in
 :mod:`hystbench.export`.
 """
 

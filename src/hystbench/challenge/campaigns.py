@@ -2,17 +2,18 @@
 
 Every command starts at zero and without a jump, and holds nothing near half the
 sampling rate: what the plant saw between two samples is the band-limited curve through
-them.
+them. The nominal rate of machines is 4 kHz: one that is sampled at another rate sees
+the same samples.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
+from hystbench.challenge.plant.actuator import cubic
 from hystbench.challenge.plant.hysteresis import LARGEST_CURRENT
-from hystbench.challenge.plant.interpolation import cubic
 from hystbench.record import FloatArray, Use
 
 Function = Callable[[FloatArray], FloatArray]
@@ -28,6 +29,10 @@ TABLE_POINTS = 32
 #: Length of a switch-on and of the edge of a step: at least so long, in seconds and
 #: in samples.
 EDGE_S, EDGE_SAMPLES = 0.02, 12
+#: Of machines: samples of a record to fit, of one held out, and of a multisine's
+#: period, and how many times shorter that is than the others'.
+FIT, HELD_OUT, PERIOD = 1500, 1000, 500
+FASTER = PERIOD_SAMPLES / PERIOD
 
 
 @dataclass(frozen=True)
@@ -238,3 +243,57 @@ def other(random: np.random.Generator) -> tuple[RecordCommand, ...]:
 
 
 CAMPAIGNS = {"standard": standard, "other": other}
+
+
+def _tones(
+    random: np.random.Generator, low: float, high: float, peak: float
+) -> Function:
+    """Multisine whose period is five hundred samples."""
+    function = multisine(random, low / FASTER, high / FASTER, peak)
+    return lambda t: function(FASTER * t)
+
+
+def _steps(
+    random: np.random.Generator, count: int, seconds: float, edge: float
+) -> Function:
+    levels = random.uniform(0.3, 1.0, count) * (-1.0) ** np.arange(count)
+    levels *= 0.9 / np.abs(levels).max()
+    return staircase([float(level) for level in levels], seconds, edge)
+
+
+def machine_records(
+    random: np.random.Generator, middle: float
+) -> tuple[RecordCommand, ...]:
+    """Four records to fit and two held out, of levels up to about one.
+
+    Parameters
+    ----------
+    random : numpy.random.Generator
+    middle : float
+        Frequency in Hz, at 4 kHz, about which the machine is to be moved.
+    """
+    low, high = middle / 6.0, 2.5 * middle
+    edge = 0.2 / middle
+    two = add(sine(0.37 * middle, 0.5), sine(1.1 * middle, 0.35))
+    return (
+        fit("multisine-low", FAST_HZ, FIT, _tones(random, low, high, 0.35), PERIOD),
+        fit("multisine-high", FAST_HZ, FIT, _tones(random, low, high, 1.0), PERIOD),
+        fit("sweep", FAST_HZ, FIT, chirp(low, 2.0 * middle, 0.7, FIT / FAST_HZ)),
+        fit("steps", FAST_HZ, FIT, _steps(random, 10, FIT / FAST_HZ / 10, edge)),
+        held_out("multisine-other", FAST_HZ, HELD_OUT, _tones(random, low, high, 0.85)),
+        held_out("two-tones", FAST_HZ, HELD_OUT, two),
+    )
+
+
+def filling(random: np.random.Generator, middle: float) -> tuple[RecordCommand, ...]:
+    """Inflows of a tank, none of them below zero, in the same order."""
+
+    def raised(function: Function, most: float) -> Function:
+        return lambda t: np.asarray(most * (0.55 + 0.45 * function(t)))
+
+    levels = (0.6, 1.0, 0.9, 1.0, 0.95, 0.8)
+    records = machine_records(random, middle)
+    return tuple(
+        replace(item, function=raised(item.function, most))
+        for item, most in zip(records, levels, strict=True)
+    )

@@ -7,19 +7,28 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.challenge.base import INPUT, OUTPUT, base_model, quasi_static, slope
+from hystbench.blocks.base import Block
+from hystbench.blocks.gain import Gain
+from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
+from hystbench.blocks.resonance import Resonance
 from hystbench.challenge.campaigns import CAMPAIGNS, RecordCommand
 from hystbench.challenge.plant.actuator import Actuator, KnownMode
 from hystbench.challenge.plant.effects import IN_ACTUATOR
-from hystbench.challenge.plant.hysteresis import PlantLoop, draw
+from hystbench.challenge.plant.hysteresis import GeneralizedPlays, PlantLoop, draw
 from hystbench.challenge.plant.kind import HiddenEffect, log_uniform
 from hystbench.challenge.plant.kind import draw as draw_effect
 from hystbench.challenge.spec import COMMANDS, EFFECTS, NOISE, PLANT, CaseSpec
 from hystbench.challenge.where import where
+from hystbench.identification import identify
 from hystbench.metrics import rms
 from hystbench.model import Model
-from hystbench.record import FloatArray, Record, Use
+from hystbench.record import Channel, FloatArray, Record, Use
 
+INPUT, OUTPUT = Channel("current", "A"), Channel("displacement", "um")
+#: Order of an identified base, and what its search may cost.
+GPI_ORDER, GPI_ITERATIONS, GPI_STARTS = 20, 60, 2
+#: Records that a quasi-static GPI is identified from, in either campaign.
+QUASI_STATIC = ("slow-loop", "minor-loops", "triangle", "ringing", "biased-tones")
 #: An effect's difference is to be within these shares of the output's rms on the fit
 #: records; outside, its size is changed, within what physics allows. Where the base is
 #: of another family its own error is 1 or 2 % of the output: an effect is to be larger.
@@ -99,7 +108,7 @@ def make_case(spec: CaseSpec) -> Case:
     )
     fit_records = [record for record in records if record.use == "fit"]
     linear = "hysteresis" in spec.effects
-    model = base_model(plant.loop, plant.mode, commands, linear)
+    model = _base_model(plant.loop, plant.mode, commands, linear)
     noise_rms = float(np.hypot(noise, RESOLUTION_UM / np.sqrt(12.0)))
     outputs = [item.of("fit") for item in without]
     gap = full.minus(bare, "fit")
@@ -197,7 +206,7 @@ def _draw(
         if name == "hysteresis-shape":
             hidden = _other_loop(effect.form, loop, commands, random)
         if name == "hysteresis":
-            gain = slope(loop, quasi_static(commands))
+            gain = _slope(loop, _quasi_static(commands))
         effects.append(effect)
     plant = Plant(loop, hidden, gain, mode if has_mode else None, spec.seed)
     return plant, tuple(effects)
@@ -218,9 +227,70 @@ def _other_loop(
 ) -> PlantLoop:
     """Draw a loop of another shape and of the same mean gain."""
     other = draw("gpi" if form == "other-gpi" else form, random)
-    u = quasi_static(commands)
+    u = _quasi_static(commands)
     mine, others = loop.respond(u), other.respond(u)
     return other.scaled(float(mine @ others / (others @ others)))
+
+
+def _base_model(
+    loop: PlantLoop,
+    mode: KnownMode | None,
+    records: tuple[RecordCommand, ...],
+    linear: bool,
+) -> Model:
+    """Make the model that is handed over: the plant's own loop, or the best GPI.
+
+    Plays are handed over as they are; of another family the best quasi-static GPI is
+    identified from its slow loop and minor loops. A linear base has a gain instead.
+    """
+    u = _quasi_static(records)
+    chain: list[Block] = []
+    if linear:
+        chain.append(Gain(value=_slope(loop, u), offset=0.0))
+    else:
+        plays = loop if isinstance(loop, GeneralizedPlays) else _nearest(loop, u)
+        chain.append(
+            GeneralizedPrandtlIshlinskii(
+                envelope=plays.envelope,
+                thresholds=tuple(map(float, plays.thresholds)),
+                weights=tuple(map(float, plays.weights)),
+            )
+        )
+    if mode is not None:
+        chain.append(Resonance(hold="band-limited", **asdict(mode)))
+    return Model("base", INPUT, OUTPUT, tuple(chain))
+
+
+def _quasi_static(records: tuple[RecordCommand, ...]) -> FloatArray:
+    """Commands of the slow records, one after the other.
+
+    A loop does not depend on the rate, so the way from the last sample of one to the
+    first of the next needs no samples between.
+    """
+    chosen = [item.sampled() for item in records if item.name in QUASI_STATIC]
+    return np.concatenate(chosen)
+
+
+def _slope(loop: PlantLoop, u: FloatArray) -> float:
+    """Gain of the straight line nearest to a loop, in um/A."""
+    y = loop.respond(u)
+    return float(u @ y / (u @ u))
+
+
+def _nearest(loop: PlantLoop, u: FloatArray) -> GeneralizedPlays:
+    """Identify the plays that are nearest to a loop of another family."""
+    found = identify(
+        u,
+        loop.respond(u),
+        GPI_ORDER,
+        offset=False,
+        nonnegative=True,
+        start="rest",
+        starts=GPI_STARTS,
+        max_iterations=GPI_ITERATIONS,
+    )
+    envelope = tuple(found.envelope.to_dict().values())
+    return GeneralizedPlays(envelope, found.thresholds, found.weights)
 
 
 def _resized(

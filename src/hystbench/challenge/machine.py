@@ -6,8 +6,12 @@ from functools import lru_cache, partial
 
 import numpy as np
 
-from hystbench.challenge.campaigns import FAST_HZ, RecordCommand
-from hystbench.challenge.machine_records import filling, machine_records
+from hystbench.challenge.campaigns import (
+    FAST_HZ,
+    RecordCommand,
+    filling,
+    machine_records,
+)
 from hystbench.challenge.plant.kind import HiddenEffect, Reach, log_uniform
 from hystbench.challenge.plant.machine import (
     FINE,

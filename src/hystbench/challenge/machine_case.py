@@ -12,7 +12,7 @@ from hystbench.challenge.machine import (
     linear_parts,
     reach_of,
 )
-from hystbench.challenge.plant.inside import IN_MACHINE
+from hystbench.challenge.plant.effects import IN_MACHINE
 from hystbench.challenge.plant.kind import HiddenEffect, Reach, draw, log_uniform
 from hystbench.challenge.spec import BASE, EFFECTS, NOISE, PLANT, CaseSpec
 from hystbench.metrics import rms

@@ -1,36 +1,110 @@
-"""What a case is to be: its effects, its family, its noise; drawn from a seed."""
+"""What a case is to be: its effects, its family, its noise; drawn from a seed.
 
+Groups of families, forms and kinds of physics are left out in turn; they stand in
+``kept.yaml``. One of them is in no set but those of the score of what was left out, so
+that no solver is improved on it.
+"""
+
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, get_args
+from pathlib import Path
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from hystbench.challenge.campaigns import CAMPAIGNS
-from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP, group_of
-from hystbench.challenge.plant import inside
-from hystbench.challenge.plant.effects import APART, UNLISTED, VOCABULARY
+from hystbench.challenge.plant.effects import (
+    APART,
+    APART_IN_MACHINE,
+    IN_ACTUATOR,
+    IN_MACHINE,
+    MACHINES,
+)
 from hystbench.challenge.plant.hysteresis import DRAWS
 from hystbench.challenge.plant.kind import EffectKind
 from hystbench.errors import InputError, refuse_unknown
+from hystbench.yaml_files import load_yaml
 
 CaseKind = Literal["single", "pair", "triple", "none", "unlisted"]
 CASE_KINDS: tuple[str, ...] = get_args(CaseKind)
 #: How many effects a case of a kind hides.
 COUNTS = {"single": 1, "pair": 2, "triple": 3, "none": 0, "unlisted": 1}
 ACTUATORS = tuple(DRAWS)
-FAMILIES = (*ACTUATORS, *inside.MACHINES)
+FAMILIES = (*ACTUATORS, *MACHINES)
 #: Known to the plant of plays alone: beside another family the base's loop is wrong
 #: in any case.
 GPI_ONLY = ("hysteresis-shape",)
-#: Effects of actuators and machines that the vocabulary has no word for.
-NAMELESS = (
-    *UNLISTED,
-    *(name for name, kind in inside.IN_MACHINE.items() if not kind.listed),
-)
+#: What can be hidden in each family, by name.
+EFFECTS_OF: dict[str, dict[str, EffectKind]] = {
+    family: {
+        name: kind
+        for name, kind in IN_ACTUATOR.items()
+        if name not in GPI_ONLY or family == "gpi"
+    }
+    for family in ACTUATORS
+} | {
+    family: {name: kind for name, kind in IN_MACHINE.items() if family in kind.families}
+    for family in MACHINES
+}
+#: Effects that the vocabulary has no word for.
+NAMELESS = {
+    name
+    for known in EFFECTS_OF.values()
+    for name, kind in known.items()
+    if not kind.listed
+}
 #: Of a case, in dB.
 RATIO_LIMITS = (-20.0, 60.0)
 #: Streams of random numbers: a case draws what is named here from a stream of its own.
 PLANT, EFFECTS, COMMANDS, NOISE, BASE = 1, 2, 3, 4, 5
+
+
+@dataclass(frozen=True)
+class LeftOutGroup:
+    """What is left out together."""
+
+    families: tuple[str, ...]
+    """One of actuators, then one of machines."""
+    unlisted: tuple[str, ...]
+    """Effects that the vocabulary has no word for."""
+    forms: tuple[str, ...]
+    """``effect: form`` of effects that it has a word for."""
+
+    def allowed(self, effect: EffectKind, of_group: bool) -> tuple[str, ...]:
+        """Give the forms of an effect that a set draws from.
+
+        Parameters
+        ----------
+        effect : EffectKind
+        of_group : bool
+            Whether the set is of the group: then its own forms, if there are any.
+        """
+        own = [form for form in effect.forms if f"{effect.name}: {form}" in self.forms]
+        if of_group and own:
+            return tuple(own)
+        return tuple(form for form in effect.forms if form not in own)
+
+
+_TABLE: Mapping[str, Any] = load_yaml(Path(__file__).with_name("kept.yaml"))
+GROUPS = {
+    number: LeftOutGroup(**{key: tuple(names) for key, names in about.items()})
+    for number, about in _TABLE["groups"].items()
+}
+LEFT_OUT_GROUP: int = _TABLE["kept"]
+"""The group that is left out now."""
+
+
+def group_of(number: int) -> LeftOutGroup:
+    """Give a group.
+
+    Raises
+    ------
+    InputError
+        If there is none of this number.
+    """
+    if number not in GROUPS:
+        raise InputError(f"group: {number}; expected 1 to {len(GROUPS)}")
+    return GROUPS[number]
 
 
 @dataclass(frozen=True)
@@ -70,7 +144,7 @@ class CaseSpec:
         for key, known_words in words.items():
             word = getattr(self, key)
             refuse_unknown(word, known_words, f"{key}: {word!r}")
-        if self.family in inside.MACHINES and self.campaign != "standard":
+        if self.family in MACHINES and self.campaign != "standard":
             raise InputError(
                 f"campaign: {self.campaign!r} of the family {self.family!r}; expected "
                 "'standard', as machines have one set of records"
@@ -129,17 +203,9 @@ def effects_of(
     of_group : bool
         Whether it is those alone instead.
     """
-    if family in inside.MACHINES:
-        listed = kind != "unlisted"
-        names = [
-            name
-            for name, about in inside.IN_MACHINE.items()
-            if family in about.families and about.listed == listed
-        ]
-    elif kind == "unlisted":
-        names = list(UNLISTED)
-    else:
-        names = [name for name in VOCABULARY if name not in GPI_ONLY or family == "gpi"]
+    listed = kind != "unlisted"
+    known = EFFECTS_OF[family].items()
+    names = [name for name, about in known if about.listed == listed]
     if kind == "unlisted" and group is not None:
         left_out = group_of(group).unlisted
         names = [name for name in names if (name in left_out) == of_group]
@@ -148,7 +214,7 @@ def effects_of(
 
 def _may_meet(names: tuple[str, ...], family: str) -> bool:
     """Tell whether effects may be hidden together in a family."""
-    pairs = inside.APART if family in inside.MACHINES else APART
+    pairs = APART_IN_MACHINE if family in MACHINES else APART
     chosen = set(names)
     return len(chosen) == len(names) and not any(pair <= chosen for pair in pairs)
 
@@ -157,10 +223,9 @@ def kind_of(effects: tuple[str, ...]) -> str:
     """Tell the kind of case from the effects' names."""
     if any(name in NAMELESS for name in effects):
         return "unlisted"
-    kinds = {count: kind for kind, count in COUNTS.items() if kind != "unlisted"}
-    if len(effects) not in kinds:
+    if len(effects) > COUNTS["triple"]:
         raise InputError(f"effect: {len(effects)} given, expected at most 3")
-    return kinds[len(effects)]
+    return ("none", "single", "pair", "triple")[len(effects)]
 
 
 def draw_spec(
@@ -188,6 +253,7 @@ def draw_spec(
         As :class:`CaseSpec`.
     """
     refuse_unknown(kind, CASE_KINDS, f"kind: {kind!r}")
+    refuse_unknown(family, FAMILIES, f"family: {family!r}")
     names = effects_of(kind, family, group, of_group)
     if len(names) < COUNTS[kind]:
         raise InputError(

@@ -10,7 +10,7 @@ from hystbench.dataset import load_dataset
 from hystbench.files import write_text
 from hystbench.inspection import screen
 from hystbench.inspection.check import check as look
-from hystbench.signature import DatasetFile, command
+from hystbench.options import DatasetFile, command
 
 
 @command

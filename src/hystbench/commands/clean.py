@@ -2,7 +2,7 @@
 
 import click
 
-from hystbench.signature import Folder, command
+from hystbench.options import Folder, command
 from hystbench.written import remove_below
 
 #: Files that stay and are named; the others are counted.

@@ -13,7 +13,7 @@ import click
 from hystbench.errors import InputError
 from hystbench.files import whole_folder
 from hystbench.libraries import library
-from hystbench.signature import Folder, In, OutFolder, command
+from hystbench.options import Folder, In, OutFolder, command
 from hystbench.written import ENTRIES, LOGS, is_ours
 from hystbench.yaml_files import load_yaml
 

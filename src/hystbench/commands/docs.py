@@ -10,7 +10,7 @@ import click
 
 from hystbench.errors import InputError, refuse_unknown
 from hystbench.files import atomic_path, markdown_table, write_text
-from hystbench.signature import command
+from hystbench.options import command
 
 Page = Annotated[Path, click.Path(exists=True, dir_okay=False, path_type=Path)]
 

@@ -10,16 +10,15 @@ from hystbench import options
 from hystbench.blocks.held import Hold
 from hystbench.blocks.step import LARGEST_POINTS, Sampling
 from hystbench.errors import InputError, placed
-from hystbench.export import c, fmu, python
+from hystbench.export import code
 from hystbench.export.described import Described, describe, exact_delay
 from hystbench.export.inverse import describe_inverse
-from hystbench.export.parts import Part, check_alone, part_of
-from hystbench.export.past import begun, begun_inverse
+from hystbench.export.on_record import begun, begun_inverse, off
 from hystbench.files import atomic_path, whole_folder, write_text
 from hystbench.model import Model, load_model
-from hystbench.record import FloatArray, column_name
+from hystbench.options import In, InputHigh, InputLow, OutFolder, command
+from hystbench.record import Channel, FloatArray, column_name
 from hystbench.samples import read_input
-from hystbench.signature import In, InputHigh, InputLow, OutFolder, command
 
 
 class Delay(click.ParamType[int | None]):
@@ -44,6 +43,8 @@ class Delay(click.ParamType[int | None]):
 
 
 EXACT = "exact"
+Part = Literal["before", "behind"]
+"""What stands before or behind a simulator of somebody's own, which runs beside it."""
 
 
 @command
@@ -56,7 +57,7 @@ def export(
         "it, or a source FMU.",
     ],
     fmi: Annotated[
-        Literal["2", "3"] | None,
+        code.Version | None,
         "Version of FMI, with --to fmu: 3 unless you say 2, which more tools read.",
     ] = None,
     dt: Annotated[float, "Sampling interval in seconds."],
@@ -142,7 +143,7 @@ def export(
             exact = replace(sampling, delay=exact_delay(described))
             described = describe(system, exact)
     if part == "behind":
-        check_alone(described)
+        _check_alone(described)
     if past is not None:
         start = begun_inverse if inverse else begun
         described = start(described, system, _record(system, past, dt))
@@ -150,7 +151,7 @@ def export(
     if compare is not None:
         told.append(_compared(described, system, compare))
     unit = f"{described.name}.fmu"
-    files = {"c": c.files, "python": python.files}.get(to)
+    files = {"c": code.c_files, "python": code.python_files}.get(to)
     texts = files(described) if files else {}
     names = list(texts) or [unit]
     with whole_folder(out, names) as fresh:
@@ -158,20 +159,64 @@ def export(
             write_text(fresh / name, text)
         if to == "fmu":
             with atomic_path(fresh / unit) as archive:
-                fmu.write_fmu(described, archive, fmu.VERSIONS[fmi or "3"])
+                code.write_fmu(described, archive, fmi or "3")
     made = ", ".join(f"{out / file}" for file in names)
     click.echo(f"{made}: {described.about}")
     for line in told:
         click.echo(line)
 
 
-def _compared(code: Described, system: Model, file: Path) -> str:
-    """Say how far the code is from the simulation of a record."""
-    from hystbench.export.compared import off  # late: it runs
+def part_of(model: Model, part: Part) -> Model:
+    """Give what stands before a model's simulator, or behind it, as a model.
 
-    u = _record(system, file, code.sampling.dt)
+    What is before it takes the model's input and gives the simulator's, in its unit;
+    what is behind takes the simulator's output, in the unit of the model's.
+
+    Raises
+    ------
+    InputError
+        If the model has no simulator or several, or nothing stands there.
+    """
+    places = [place for place, block in enumerate(model.chain) if not block.seen]
+    if len(places) != 1:
+        raise InputError(
+            f"--part: {len(places)} simulators of somebody's own in the chain; "
+            "expected one, before or behind which the part stands"
+        )
+    (place,) = places
+    own = model.chain[place].name
+    before = part == "before"
+    chain = model.chain[:place] if before else model.chain[place + 1 :]
+    if not chain:
+        other = f"--part {'behind' if before else 'before'}"
+        expected = other if len(model.chain) > 1 else "another model: that is all of it"
+        raise InputError(
+            f"--part {part}: no block stands {part} {own}; expected {expected}"
+        )
+    if before:
+        sides = model.input, Channel(f"input of {own}", model.input.unit)
+    else:
+        sides = (
+            Channel(f"{model.output.name} of {own}", model.output.unit),
+            model.output,
+        )
+    return Model(f"{model.name} {part} {own}", *sides, chain)
+
+
+def _check_alone(part: Described) -> None:
+    """Refuse a part behind a simulator that looks at the input of the whole model."""
+    for piece in part.watching:
+        raise InputError(
+            f"--part behind: {piece.label}: looks at the model's input, which does not "
+            "enter there; expected blocks that take the simulator's output alone"
+        )
+
+
+def _compared(described: Described, system: Model, file: Path) -> str:
+    """Say how far the code is from the simulation of a record."""
+    u = _record(system, file, described.sampling.dt)
     with placed(f"--compare: {file}: "):
-        return f"{file}: {off(code, system, u).words}."
+        return f"{file}: {off(described, system, u).words}."
 
 
 def _record(system: Model, file: Path, wanted: float) -> FloatArray:

@@ -12,8 +12,7 @@ from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import will_write, write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary, in_words
 from hystbench.interface.gap import find_gap
-from hystbench.options import SearchOptions
-from hystbench.signature import DatasetFile, OutFolder, command, of_class
+from hystbench.options import DatasetFile, OutFolder, SearchOptions, command, of_class
 
 
 @partial(command, also=of_class(SearchOptions))

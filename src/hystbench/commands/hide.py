@@ -4,11 +4,11 @@ from pathlib import Path
 from typing import Annotated
 
 from hystbench import options
-from hystbench.challenge.make import make
+from hystbench.challenge.make import make, write_folder
 from hystbench.challenge.spec import CaseSpec, draw_spec, kind_of
-from hystbench.challenge.writing import check_places, write_case
 from hystbench.errors import InputError
-from hystbench.signature import OutFolder, command
+from hystbench.files import whole_folder, write_json
+from hystbench.options import OutFolder, command
 
 
 @command
@@ -41,5 +41,15 @@ def hide(
         raise InputError("--effect: none given; expected one, or --kind")
     else:
         spec = draw_spec(seed, kind, family, ratio_db, spread=spread, campaign=campaign)
-    check_places(out, truth)
-    write_case(make(spec), out, truth)
+    if truth.resolve().is_relative_to(out.resolve()):
+        raise InputError(
+            f"{truth}: truth inside {out}; expected a file outside the folder that the "
+            "solver gets"
+        )
+    if out.exists() and (not out.is_dir() or any(out.iterdir())):
+        raise InputError(f"{out}: expected a new or an empty folder")
+    case = make(spec)
+    # The folder comes last: next time it would be refused, as it would not be empty.
+    write_json(truth, case.truth)
+    with whole_folder(out, ()) as fresh:
+        write_folder(case, fresh)

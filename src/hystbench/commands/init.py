@@ -15,7 +15,7 @@ from hystbench.inspection.columns import Flags
 from hystbench.inspection.draft import Draft, draft
 from hystbench.inspection.entries import yaml_text
 from hystbench.inspection.input_summary import summary_of
-from hystbench.signature import In, command, of_class
+from hystbench.options import In, command, of_class
 from hystbench.written import writes
 
 PLACE = "dataset.yaml"

@@ -1,5 +1,7 @@
 """``hystbench invert``: the input that makes a model follow a reference."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -9,16 +11,36 @@ import numpy as np
 from hystbench import options
 from hystbench.blocks.step import Sampling
 from hystbench.errors import InputError
-from hystbench.export import python
+from hystbench.export.code import loaded
 from hystbench.export.inverse import describe_inverse
 from hystbench.files import write_columns, write_csv
-from hystbench.inverse.bandwidth import HOLDS, Invert, bandwidth, holds_to
 from hystbench.inverse.feedforward import BAND_SHARE, InputRange, feedforward
 from hystbench.metrics import rms
 from hystbench.model import Model, load_model
+from hystbench.options import In, InputHigh, InputLow, Out, command
 from hystbench.record import FloatArray, column_name
 from hystbench.samples import read_input
-from hystbench.signature import In, InputHigh, InputLow, Out, command
+
+PERIODS = 4
+"""Of each sine; the first two may still show how it began."""
+PER_DECADE = 6
+"""Frequencies of the table."""
+HOLDS = 0.01
+"""RMS error, as a share of the stroke, up to which the inverse is said to hold."""
+
+
+@dataclass(frozen=True)
+class FollowedSine:
+    """A sine: its frequency, and what is left of it, as a share of the stroke."""
+
+    frequency_hz: float
+    error: float | None
+    largest_input: float | None
+    said: str = ""
+
+
+Invert = Callable[[FloatArray], FloatArray]
+"""Gives the input for a reference."""
 
 
 @command
@@ -127,7 +149,7 @@ def _by_code(system: Model, model: Path, dt: float, limits: InputRange) -> Inver
         described = describe_inverse(system, Sampling(dt), limits)
 
     def invert(reference: FloatArray) -> FloatArray:
-        u: FloatArray = python.loaded(described).simulate(reference)
+        u: FloatArray = loaded(described).simulate(reference)
         return u
 
     return invert
@@ -159,3 +181,53 @@ def _table(
         if highest is not None
         else f"{out}: the inverse of the model holds at none of these within {share}"
     )
+
+
+def bandwidth(
+    model: Model, stroke: float, dt: float, band_hz: float, invert: Invert
+) -> list[FollowedSine]:
+    """Invert a model for sines of one stroke, from slow to the edge of the band.
+
+    Parameters
+    ----------
+    model : Model
+    stroke : float
+        Peak-to-peak of each sine, in the unit of the model's output.
+    dt : float
+        Sampling interval in seconds.
+    band_hz : float
+    invert : callable
+
+    Returns
+    -------
+    list of FollowedSine
+        The error is that of the model itself, over the second half of the record.
+    """
+    decades = 2
+    count = PER_DECADE * decades + 1
+    frequencies = band_hz * np.logspace(-decades, 0, count)
+    rest = float(model.simulate(np.zeros(64), dt)[-1])
+    rows = []
+    for frequency in frequencies:
+        samples = max(round(PERIODS / frequency / dt), 64)
+        time = np.arange(samples) * dt
+        reference = rest + stroke / 2 * np.sin(2 * np.pi * frequency * time)
+        try:
+            u = invert(reference)
+        except InputError as error:
+            rows.append(FollowedSine(float(frequency), None, None, str(error)))
+            continue
+        off = (reference - model.simulate(u, dt))[samples // 2 :]
+        left = float(np.sqrt(np.mean(off**2))) / stroke
+        rows.append(FollowedSine(float(frequency), left, float(np.abs(u).max())))
+    return rows
+
+
+def holds_to(rows: list[FollowedSine]) -> float | None:
+    """Give the highest frequency to which each error is at most :data:`HOLDS`."""
+    highest = None
+    for row in rows:
+        if row.error is None or row.error > HOLDS:
+            break
+        highest = row.frequency_hz
+    return highest

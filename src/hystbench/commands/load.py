@@ -4,7 +4,7 @@ from hystbench import options
 from hystbench.dataset import load_dataset
 from hystbench.doubts import doubts
 from hystbench.errors import refuse_unknown
-from hystbench.signature import DatasetFile, Out, command
+from hystbench.options import DatasetFile, Out, command
 
 
 @command

@@ -1,20 +1,13 @@
 """``hystbench rival``: a rival of the gap's solver, on a dataset."""
 
-import importlib
 from pathlib import Path
 from typing import Annotated
 
 from hystbench import options
-from hystbench.entrants.task import read, write
+from hystbench.entrants.rivals import RIVALS, read, write
 from hystbench.errors import refuse_unknown
-from hystbench.signature import DatasetFile, OutFolder, command
+from hystbench.options import DatasetFile, OutFolder, command
 from hystbench.written import writes
-
-#: Modules of hystbench.entrants by the rivals' names.
-RIVALS = {
-    "naive": "naive",
-    "random": "random_namer",
-}
 
 
 @command
@@ -31,6 +24,5 @@ def rival(
     """
     refuse_unknown(name, RIVALS, f"rival: no {name!r}")
     writes(out / "gap.json")
-    rival = importlib.import_module(f"hystbench.entrants.{RIVALS[name]}")
     given = read(dataset, model)
-    write(given, rival.answer(given), out)
+    write(given, RIVALS[name](given), out)

@@ -13,10 +13,10 @@ from hystbench.dataset import load_dataset
 from hystbench.errors import InputError, nearest
 from hystbench.files import write_columns
 from hystbench.model import check_bounded, load_model
+from hystbench.options import In, Out, command
 from hystbench.record import Channel, FloatArray, Record, column_name, load_record
 from hystbench.samples import read_input
 from hystbench.signals import load_signal
-from hystbench.signature import In, Out, command
 from hystbench.units import check_same_unit
 
 

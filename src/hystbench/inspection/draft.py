@@ -93,7 +93,7 @@ def draft(files: Sequence[Path], place: Path, given: Flags, ask: Ask) -> Draft:
         (part,) = owners
         cut = cut_in_two(entries[0], records[0], missing_in(part, signals))
         pieces = _read(place, about, cut)
-        if common_piece(*map(Written, pieces)) is None:
+        if common_piece(*map(Written.of, pieces)) is None:
             entries, records = cut, pieces
             notes.append(
                 "one record alone: its last part is held out, by whole periods where "

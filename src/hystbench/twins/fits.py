@@ -8,8 +8,13 @@ from hystbench.compare.evidence import Cell, Run
 from hystbench.identification.algorithm import identify_slow_loop
 from hystbench.rdgpi import RateDependentGPI, identify_rdgpi
 from hystbench.record import Record
-from hystbench.twins.read import Twin
-from hystbench.twins.runs import Settings, bare_run, draw_signals, measure_twin
+from hystbench.twins.runs import (
+    Settings,
+    Twin,
+    bare_run,
+    draw_signals,
+    measure_twin,
+)
 
 
 def fit(twins: Sequence[Twin], settings: Settings) -> dict[str, dict[str, Any]]:

@@ -1,31 +1,31 @@
 """All models on each twin, in parts that can be made again alone.
 
-Each twin is run as configured and in other experiments
-(:mod:`hystbench.twins.experiments`). What no step size changes takes the most time and
-is one part (:func:`hystbench.twins.fits.fit`); each filter (:func:`run`) is another.
+Each twin is run as configured and in other experiments that are drawn: step sizes, zero
+error, noise and phases, which the paper leaves open. What no step size changes takes
+the most time and is one part (:func:`hystbench.twins.fits.fit`); each filter
+(:func:`run`) is another.
 The parts are JSON; :func:`join` puts them together. Each simulates the records that it
 needs: kept in files, those of all twins would be a hundred megabytes.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+import numpy as np
+
+from hystbench.adaptive import make_filter
 from hystbench.compare.evidence import ClaimEvidence, Run
 from hystbench.errors import refuse_unknown
 from hystbench.files import finite_or_none
+from hystbench.filters import MOST_CORRECTION
 from hystbench.order_errors import OrderError, filters_by_order, order_errors
+from hystbench.published import FILTERS
 from hystbench.record import Record
-from hystbench.twins.experiments import (
-    CONFIGURED,
-    TwinExperiment,
-    experiments,
-    within_margin,
-)
-from hystbench.twins.read import Twin
 from hystbench.twins.runs import (
     Settings,
+    Twin,
     compare_envelopes,
     draw_signals,
     filter_jobs,
@@ -35,6 +35,76 @@ from hystbench.twins.runs import (
 
 Part = dict[str, dict[str, Any]]
 """What was found on each twin, by its name."""
+
+
+@dataclass(frozen=True)
+class TwinExperiment:
+    """What is changed in an experiment."""
+
+    seed: int
+    """Draw of the noise and of the random sum's phases; 0 is the configured one."""
+    steps: dict[str, float]
+    """Factor on the step sizes of each filter."""
+    zero: float
+    noise: float
+    """Factors on the zero error and on the noise of the recorded input."""
+
+    def measured(self, settings: Settings) -> dict[str, Any]:
+        """Give the settings of the measurement with zero error and noise changed."""
+        factors = {"input_zero_error": self.zero, "input_noise": self.noise}
+        return dict(settings) | {
+            key: factor * settings[key] for key, factor in factors.items()
+        }
+
+
+CONFIGURED = TwinExperiment(0, dict.fromkeys(FILTERS, 1.0), 1.0, 1.0)
+"""The experiment of config.yaml."""
+
+
+def experiments(design: Settings, place: int) -> list[TwinExperiment]:
+    """Draw the other experiments of a twin.
+
+    Parameters
+    ----------
+    design : mapping
+        ``members`` (how many), ``step_factors``, ``zero_factors``, ``noise_factors``.
+    place : int
+        Which twin it is: each has draws of its own.
+    """
+    found = []
+    for number in range(1, design["members"] + 1):
+        rng = np.random.default_rng([place, number])
+        drawn = rng.choice(design["step_factors"], len(FILTERS))
+        found.append(
+            TwinExperiment(
+                seed=place * design["members"] + number,
+                steps=dict(zip(FILTERS, map(float, drawn), strict=True)),
+                zero=float(rng.choice(design["zero_factors"])),
+                noise=float(rng.choice(design["noise_factors"])),
+            )
+        )
+    return found
+
+
+def within_margin(
+    model: str,
+    job: Settings,
+    factor: float,
+    records: Iterable[Record],
+    identified: Mapping[str, Any],
+) -> dict[str, Any]:
+    """Scale a filter's step sizes, but not beyond the margin on any of some records.
+
+    The margin is that of the calibration: an experimenter would have seen a filter
+    beyond it grow without end.
+    """
+    most = 0.0
+    for record in records:
+        adaptive = make_filter(model, job, record, identified)
+        most = max(most, adaptive.correction(adaptive.largest_power(record.u)))
+    times = min(factor, MOST_CORRECTION / most) if most else factor
+    steps = {name: times * mu for name, mu in job["convergence_factor"].items()}
+    return {**job, "convergence_factor": steps}
 
 
 @dataclass(frozen=True)
@@ -55,7 +125,7 @@ def run(twins: Sequence[Twin], settings: Settings, fitted: Part) -> Part:
     settings : mapping
         ``signals``, ``asked`` and ``measure`` as for :func:`hystbench.twins.fits.fit`;
         ``filters``, with the settings of the one filter; ``order_sweep``;
-        ``experiments``, as :func:`hystbench.twins.experiments.experiments` takes them;
+        ``experiments``, as :func:`experiments` takes them;
         and ``calibrated``, the signals on which a step size keeps its margin.
     fitted : mapping
         What :func:`hystbench.twins.fits.fit` found.

@@ -1,23 +1,64 @@
-"""Records of a twin and runs of the filters on them, all in memory.
+"""Twins, records of them and runs of the filters on these, all in memory.
 
 A twin's thirteen records and the four filters on them take a tenth of a second. What
 takes longer, and imports more, is in :mod:`hystbench.twins.fits`.
 """
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from hystbench.adaptive import make_filter, steps_of
 from hystbench.compare.evidence import Cell, Run
+from hystbench.errors import InputError
 from hystbench.filters import AdaptiveFilter, Result, run_many
 from hystbench.metrics import mean_square_error, relative_error
+from hystbench.model import Model, load_model
 from hystbench.published import in_order
 from hystbench.record import Record
 from hystbench.signals import Signal, make_signal
 from hystbench.twin_record import record_of_twin
-from hystbench.twins.read import Twin
 
 Settings = Mapping[str, Any]
+#: Blocks that make hysteresis; the first one in a twin's chain names its family.
+HYSTERESIS = ("gpi", "preisach", "jiles-atherton", "rdgpi")
+
+
+@dataclass(frozen=True)
+class Twin:
+    """A twin."""
+
+    name: str
+    place: str
+    """Stem of its file, and the file."""
+    model: Model
+    family: str
+    """Name of the block that makes its hysteresis."""
+
+
+def read_twins(paths: Iterable[Path]) -> tuple[Twin, ...]:
+    """Read twins; the first is the one that the claims are judged on.
+
+    Raises
+    ------
+    InputError
+        If a file is not what it should be, no block makes hysteresis or two twins
+        have one name.
+    """
+    twins: dict[str, Twin] = {}
+    for path in paths:
+        if path.stem in twins:
+            raise InputError(f"{path}: a second twin of the name {path.stem!r}")
+        model = load_model(path)
+        makers = [block.name for block in model.chain if block.name in HYSTERESIS]
+        if not makers:
+            raise InputError(
+                f"{path}: no block makes hysteresis; expected one of "
+                f"{', '.join(HYSTERESIS)}"
+            )
+        twins[path.stem] = Twin(path.stem, str(path), model, makers[0])
+    return tuple(twins.values())
 
 
 def draw_signals(definitions: Mapping[str, Settings], seed: int) -> dict[str, Signal]:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from hystbench.challenge.contest.score import judge
+from hystbench.gap.schema import SCHEMA
+
 
 def place(view, right, edges, shares, unit=""):
     return {
@@ -124,3 +127,8 @@ def answer(content, status="answered"):
         "data": "0",
         "gap": content,
     }
+
+
+def judged(about, content, confirm=lambda names: names, case="c", solver="s", **more):
+    """Judge an answer to a case; ``more`` is of the answer."""
+    return judge(solver, case, about, answer(content, **more), SCHEMA, confirm)

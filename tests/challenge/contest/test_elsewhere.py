@@ -6,10 +6,9 @@ import pandas as pd
 import pytest
 import yaml
 
-from hystbench.challenge.contest.elsewhere import beside, told
-from hystbench.challenge.contest.frames import frame
 from hystbench.challenge.contest.score import write_rows
-from hystbench.gap.schema import SCHEMA
+from hystbench.challenge.contest.tables import frame
+from hystbench.commands.jobs.blind_elsewhere import beside, told
 from tests.challenge.contest.made import gap, named
 from tests.conftest import run_hystbench
 
@@ -51,7 +50,7 @@ def case(folder, kind, hidden, names=None, family="gpi", sure=0.9, **answer):
 def test_a_single_effect_is_judged_by_what_is_hidden(
     tmp_path, hidden, names, first, exact
 ):
-    row = told(case(tmp_path / "case", "single", hidden, names), SCHEMA)
+    row = told(case(tmp_path / "case", "single", hidden, names))
     assert (row.top1, row.exact) == (first, exact)
 
 
@@ -61,20 +60,20 @@ def test_a_single_effect_is_judged_by_what_is_hidden(
 )
 def test_a_wrong_loop_is_wrong_beside_an_exact_base_alone(tmp_path, family, ours):
     names = ["hysteresis-shape", "creep"]
-    row = told(case(tmp_path / "case", "single", ["creep"], names, family), SCHEMA)
+    row = told(case(tmp_path / "case", "single", ["creep"], names, family))
     assert row.family == ours
     assert row.top1 == (ours != "gpi")
 
 
 def test_a_gap_is_closed_above_the_noise_and_the_error_of_the_base(tmp_path):
     # 13^2 = 3^2 + 4^2 + 12^2, and 5^2 = 3^2 + 4^2: all that could go has gone.
-    row = told(case(tmp_path / "case", "single", ["creep"], ["creep"]), SCHEMA)
+    row = told(case(tmp_path / "case", "single", ["creep"], ["creep"]))
     assert row.shrink == pytest.approx(1.0)
 
 
 def one(tmp_path, elsewhere):
     """The rows of the table, by figure."""
-    table = beside(frame([]), frame(told(case, SCHEMA) for case in elsewhere))
+    table = beside(frame([]), frame(map(told, elsewhere)))
     return table.set_index("figure").to_dict("index")
 
 
@@ -88,7 +87,7 @@ def test_both_plants_stand_side_by_side(tmp_path):
         case(tmp_path / "f", "pair", ["creep", "drift"], ["drift", "creep"], "ja"),
     ]
     own, out = tmp_path / "own.csv", tmp_path / "score.csv"
-    write_rows(own, [told(cases[0], SCHEMA)])
+    write_rows(own, [told(cases[0])])
     words = ["job", "blind-elsewhere", *map(str, cases), "--own", str(own)]
     run_hystbench(*words, "--out", str(out))
     table = pd.read_csv(out).set_index("figure").to_dict("index")

@@ -3,12 +3,10 @@ import dataclasses
 import pandas as pd
 import pytest
 
-from hystbench.challenge.contest.frames import frame, read_rows, write_frame
-from hystbench.challenge.contest.score import judge, write_rows
-from hystbench.challenge.contest.tables import confusion
-from hystbench.challenge.contest.view_hit import share_held, where_hit
+from hystbench.challenge.contest.score import write_rows
+from hystbench.challenge.contest.tables import confusion, frame, read_rows, write_frame
+from hystbench.challenge.where import share_held, where_hit
 from hystbench.errors import InputError
-from hystbench.gap.schema import SCHEMA
 
 from .made import (
     AMPLITUDE,
@@ -16,22 +14,13 @@ from .made import (
     DELAY,
     FREQUENCY,
     TIME,
-    answer,
     effect,
     gap,
+    judged,
     named,
     truth,
     view,
 )
-
-
-def everything(names):
-    return names
-
-
-def judged(about, content, confirm=everything, **more):
-    return judge("s", "c", about, answer(content, **more), SCHEMA, confirm)
-
 
 RIGHT = gap(named("resonance"), views=[view()])
 

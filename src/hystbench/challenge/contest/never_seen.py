@@ -1,6 +1,6 @@
 """What a solver says of what it cannot name, or has never seen: blind by kind.
 
-Cases are frames as :func:`hystbench.challenge.contest.frames.frame` gives them. A free
+Cases are frames as :func:`hystbench.challenge.contest.tables.frame` gives them. A free
 shape of the hysteresis beside a plant of another family than the base's is no name.
 """
 
@@ -11,10 +11,13 @@ from typing import Any
 
 import pandas as pd
 
-from hystbench.challenge.contest.frames import sure
-from hystbench.challenge.contest.tables import how_often, names_that_count, wilson
-from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP, group_of
-from hystbench.challenge.spec import NAMELESS
+from hystbench.challenge.contest.tables import (
+    how_often,
+    names_that_count,
+    sure,
+    wilson,
+)
+from hystbench.challenge.spec import LEFT_OUT_GROUP, NAMELESS, group_of
 
 COLUMNS = ("left_out", "cases", "no_name", "low", "high", "confident", "called")
 """Columns of the table of what is left out."""

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from hystbench.challenge.contest import table
-from hystbench.challenge.left_out_groups import LEFT_OUT_GROUP, group_of
-from hystbench.challenge.plant.effects import IN_ACTUATOR
-from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES
+from hystbench.challenge.plant.effects import IN_ACTUATOR, IN_MACHINE, MACHINES
 from hystbench.challenge.spec import (
     CASE_KINDS,
     FAMILIES,
+    LEFT_OUT_GROUP,
     CaseSpec,
     draw_spec,
     effects_of,
+    group_of,
 )
 from hystbench.errors import InputError, refuse_unknown
 
@@ -92,11 +92,16 @@ def plan(
     for key, asked in (("without", without), ("only", only)):
         for word in asked:
             refuse_unknown(word, WORDS, f"blind: {key}: {word!r}")
-    counts = sizes(name, scale, group)
-    held = zip(strata(name, group), counts, strict=True)
     entries = []
-    for number, (stratum, cases) in enumerate(held):
-        first = _SETS[name]["first_seed"] + number * _SETS[name]["seeds"]
+    for number, stratum in enumerate(strata(name, group)):
+        seeds = _SETS[name]["seeds"]
+        first = _SETS[name]["first_seed"] + number * seeds
+        cases = max(1, round(stratum.cases * scale))
+        if cases > seeds:
+            raise InputError(
+                f"blind: scale: {scale:g} asks for {cases} cases of one sort; "
+                f"expected at most {seeds / stratum.cases:g}"
+            )
         for k in range(cases):
             spec = _spec(name, stratum, first + k, number + k, group)
             words = {spec.kind, spec.family, *spec.effects}
@@ -132,20 +137,6 @@ def strata(name: str, group: int = LEFT_OUT_GROUP) -> tuple[Stratum, ...]:
         for item in found
         if item.kind == "none" or effects_of(item.kind, item.family, group, of_group)
     )
-
-
-def sizes(name: str, scale: float = 1.0, group: int = LEFT_OUT_GROUP) -> list[int]:
-    """Count the cases of each stratum of a set, as for :func:`plan`."""
-    counts = []
-    for stratum in strata(name, group):
-        most = _SETS[name]["seeds"]
-        counts.append(max(1, round(stratum.cases * scale)))
-        if counts[-1] > most:
-            raise InputError(
-                f"blind: scale: {scale:g} asks for {counts[-1]} cases of one sort; "
-                f"expected at most {most / stratum.cases:g}"
-            )
-    return counts
 
 
 def numbers(cases: int, size: int) -> list[str]:

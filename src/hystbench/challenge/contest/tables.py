@@ -1,21 +1,30 @@
-"""What many judged cases say together: tables, one row a group.
+"""Judged cases as a data frame, and what many say together: tables, a row a group.
 
-All take a data frame of :func:`hystbench.challenge.contest.frames.frame`.
+All tables take a data frame of :func:`frame`.
 """
 
 from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import astuple, fields
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
+from scipy.stats import binomtest
 
 from hystbench.challenge.contest import table
-from hystbench.challenge.contest.score import FREE_SHAPE
+from hystbench.challenge.contest.score import COLUMNS, FREE_SHAPE, Row
+from hystbench.compare.rows import read_items
+from hystbench.files import write_csv
 
+#: An effect that is stated with a higher confidence is called confident.
+CONFIDENT_ABOVE = 0.8
+#: Types of columns; but for text, cells may be missing.
+COLUMN_TYPES = {"str": "str", "bool": "boolean", "int": "Int64", "float": "Float64"}
 #: With which an interval holds the true share.
 CONFIDENCE = 0.95
 #: Edges of the bins of stated confidence.
@@ -26,6 +35,54 @@ NO_EFFECT = ("no-gap", "unnamed", "parameters", "lost")
 NO_EXPERIMENT = "none written down"
 #: Kinds of cases in which at most one effect is hidden, in the order they are told.
 AT_MOST_ONE = ("single", "unlisted", "none")
+
+
+def read_rows(paths: Sequence[Path]) -> pd.DataFrame:
+    """Read judged cases as :func:`frame` has them.
+
+    Raises
+    ------
+    InputError
+        If a file lacks a column, or a number in it is none.
+    """
+    return frame(row for path in paths for row in read_items(path, Row))
+
+
+def frame(rows: Iterable[Row]) -> pd.DataFrame:
+    """Give judged cases as a data frame: a row a case, a column a field of Row.
+
+    Figures that mean nothing for a case are missing. Added are ``stated``, the effects
+    named with the confidence of each; ``given``, the same where the verdict is
+    ``named``, as names beside another do not count; and ``confident``, whether one is
+    stated with more than :data:`CONFIDENT_ABOVE`.
+    """
+    told = [astuple(row) for row in rows]
+    table = pd.DataFrame(told, columns=list(COLUMNS), dtype=object)
+    kinds = {item.name: str(item.type).partition(" ")[0] for item in fields(Row)}
+    table = table.astype({name: COLUMN_TYPES[kind] for name, kind in kinds.items()})
+    table["stated"] = table["confidences"].map(_stated).astype(object)
+    named = table["verdict"] == "named"
+    given = [x if y else {} for x, y in zip(table["stated"], named, strict=True)]
+    table["given"] = pd.Series(given, index=table.index, dtype=object)
+    table["confident"] = pd.array(list(map(sure, table["stated"])), dtype="boolean")
+    return table
+
+
+def write_frame(path: Path, table: pd.DataFrame) -> None:
+    """Write judged cases that were read, as they were written."""
+    told = table[list(COLUMNS)].astype(object)
+    write_csv(path, COLUMNS, told.where(told.notna(), None).itertuples(index=False))
+
+
+def _stated(confidences: str) -> dict[str, float]:
+    """Give the stated confidence of each name, as a row has them."""
+    parts = (word.rpartition("=") for word in confidences.split())
+    return {name: float(confidence) for name, _, confidence in parts}
+
+
+def sure(names: Mapping[str, float]) -> bool:
+    """Tell whether a name is stated with more than :data:`CONFIDENT_ABOVE`."""
+    return any(confidence > CONFIDENT_ABOVE for confidence in names.values())
 
 
 class Share(NamedTuple):
@@ -49,8 +106,6 @@ def wilson(hits: int, cases: int) -> Share:
     .. [1] E. B. Wilson, "Probable inference, the law of succession, and statistical
        inference", Journal of the American Statistical Association 22 (1927) 209-212.
     """
-    from scipy.stats import binomtest  # late: not needed to make cases
-
     if cases == 0:
         return Share(None, None, None, 0)
     interval = binomtest(hits, cases).proportion_ci(CONFIDENCE, method="wilson")

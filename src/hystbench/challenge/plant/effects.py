@@ -1,10 +1,22 @@
-"""All effects by name: those of the vocabulary and those outside it."""
+"""What actuators and machines can hide, by name: in the vocabulary and outside it."""
 
-from hystbench.challenge.plant import drive, material, mechanics, sensor, unlisted
+from hystbench.challenge.plant import (
+    drive,
+    inside,
+    material,
+    mechanics,
+    sensor,
+    unlisted,
+)
 from hystbench.challenge.plant.kind import read_kinds
 
 IN_ACTUATOR, APART = read_kinds(
     "effects.yaml", drive, material, mechanics, sensor, unlisted
 )
-VOCABULARY = {name: kind for name, kind in IN_ACTUATOR.items() if kind.listed}
-UNLISTED = {name: kind for name, kind in IN_ACTUATOR.items() if not kind.listed}
+IN_MACHINE, APART_IN_MACHINE = read_kinds(
+    "inside.yaml", inside, drive, material, sensor
+)
+MACHINES = (
+    *("mass-spring", "free-mass", "pendulum", "impedance"),
+    *("tank", "coupled-tanks"),
+)

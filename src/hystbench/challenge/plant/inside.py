@@ -1,52 +1,17 @@
-"""What can be hidden in a machine: forces inside, and what stands before and behind it.
-
-The effects and their forces stand in ``inside.yaml``.
-"""
-
-import sys
+"""What stands before and behind a machine, where no actuator has it."""
 
 import numpy as np
 
 from hystbench.challenge import kernels
-from hystbench.challenge.plant.kind import Parameters, Reach, read_kinds
+from hystbench.challenge.plant.kind import Parameters, Reach
 from hystbench.challenge.plant.machine import FINE
 from hystbench.record import FloatArray
-
-
-def dead_zone(u: FloatArray, p: Parameters, r: Reach) -> FloatArray:
-    """Give no force near zero."""
-    width = p["half_width"] * r.force
-    return np.asarray(np.sign(u) * np.maximum(np.abs(u) - width, 0.0))
-
-
-def clip(u: FloatArray, p: Parameters, r: Reach) -> FloatArray:
-    """Limit the force."""
-    limit = p["limit"] * r.force
-    return np.asarray(np.clip(u, -limit, limit))
-
-
-def rounded_dead_zone(u: FloatArray, p: Parameters, r: Reach) -> FloatArray:
-    """Give little force near zero, without an edge."""
-    width = p["half_width"] * r.force
-    return np.asarray(u - width * np.tanh(u / width))
-
-
-def soft_clip(u: FloatArray, p: Parameters, r: Reach) -> FloatArray:
-    """Give less and less of a large force."""
-    limit = p["limit"] * r.force
-    return np.asarray(limit * np.tanh(u / limit))
 
 
 def bent(y: FloatArray, p: Parameters, r: Reach) -> FloatArray:
     """Bend the sensor's scale by a square and a cube."""
     z = y / r.output
     return np.asarray(y * (1.0 + p["quadratic"] * z + p["cubic"] * z**2))
-
-
-def sine(y: FloatArray, p: Parameters, r: Reach) -> FloatArray:
-    """Read the sine of an angle: a resolver beyond its small angles."""
-    reach = p["reach"] * r.output
-    return np.asarray(reach * np.sin(y / reach))
 
 
 def strained(y: FloatArray, p: Parameters, r: Reach) -> FloatArray:
@@ -71,10 +36,3 @@ def flood_wave(u: FloatArray, p: Parameters, r: Reach) -> FloatArray:
     step = np.arange(len(u), dtype=np.float64)
     arrival = np.maximum.accumulate(step + late)
     return np.asarray(np.interp(step, arrival, u))
-
-
-IN_MACHINE, APART = read_kinds("inside.yaml", sys.modules[__name__])
-MACHINES = (
-    *("mass-spring", "free-mass", "pendulum", "impedance"),
-    *("tank", "coupled-tanks"),
-)

@@ -19,17 +19,6 @@ import numpy as np
 from hystbench.record import FloatArray
 from hystbench.yaml_files import load_yaml
 
-View = Literal[
-    "frequency",
-    "amplitude",
-    "rate",
-    "branch",
-    "slow-time",
-    "delay",
-    "unexplained",
-    "record",
-]
-
 #: Where in the chain an effect acts, in the order of the signal's way.
 Stage = Literal[
     "command",  # on time: when the drive sees the command
@@ -61,6 +50,9 @@ class PlantRun:
     """Step of the fine grid in seconds."""
     random: np.random.Generator
     """Source of what is new in every record: a phase, a path."""
+
+
+NO_RUN = PlantRun(np.zeros(0), np.zeros(0), 1.0, np.random.default_rng(0))
 
 
 def log_uniform(random: np.random.Generator, low: float, high: float) -> float:
@@ -118,18 +110,13 @@ Inside = Callable[[Parameters, Reach], Numbers]
 Curve = Callable[[FloatArray, Parameters, Reach], FloatArray]
 
 
-def nothing(z: FloatArray, run: PlantRun, p: Parameters) -> FloatArray:
-    """Leave the signal: the hysteresis itself is another, or a machine is."""
-    return z
-
-
 @dataclass(frozen=True)
 class Form:
     """One way in which an effect may be written."""
 
-    act: Act = nothing
+    act: Act | None = None
     """In an actuator: takes the signal, the run and the parameters and gives the
-    signal."""
+    signal. None where the hysteresis itself is another, and in a machine."""
     ranges: Mapping[str, Range] = field(default_factory=dict)
     """By parameter."""
     size: str = ""
@@ -157,8 +144,8 @@ class EffectKind:
     ``before``, ``inside`` or ``behind``."""
     stage: Stage = "mechanics"
     """Where in the chain of an actuator it acts."""
-    views: tuple[View, ...] = ()
-    """Where in an actuator it shows."""
+    views: tuple[str, ...] = ()
+    """Where in an actuator it shows: views as gap.json has them."""
     forms: Mapping[str, Form] = field(default_factory=dict)
     listed: bool = True
     """Whether the vocabulary has a word for it."""
@@ -186,7 +173,8 @@ class HiddenEffect:
 
     def act(self, signal: FloatArray, run: PlantRun) -> FloatArray:
         """Compute what the effect makes of a signal."""
-        return self.law.act(signal, run, self.parameters)
+        act = self.law.act
+        return act(signal, run, self.parameters) if act else signal
 
     def scaled(self, factor: float) -> HiddenEffect:
         """Make its difference about so many times as large, as far as it may be."""
@@ -255,7 +243,8 @@ def read_kinds(
     A form names the functions of these modules that it calls (``act``, ``curve``,
     ``told``); ``also`` are words that are told beside its parameters, and ``numbers``
     products such as ``share * machine.stiffness / machine.position^2``, whose factors
-    are its parameters and those of :class:`Reach`.
+    are its parameters and those of :class:`Reach`. A ``curve`` that is an actuator's
+    too stands with such products for the parameters that it has there.
     """
     kinds = load_yaml(Path(__file__).with_name(table))
     apart = [set(pair) for pair in kinds.pop("apart")]
@@ -285,13 +274,27 @@ def _form(
     **about: Any,
 ) -> Form:
     for key in ("act", "curve", "told"):
-        if key in about:
+        if isinstance(about.get(key), dict):
+            ((name, products),) = about[key].items()
+            about[key] = partial(_as_in_actuator, known[name], products)
+        elif key in about:
             about[key] = known[about[key]]
     if numbers:
         about["numbers"] = partial(_numbers, numbers)
     if also:
         about["told"] = partial(_with, also)
     return Form(ranges={name: Range(**item) for name, item in ranges.items()}, **about)
+
+
+def _as_in_actuator(
+    act: Act,
+    products: Mapping[str, str],
+    signal: FloatArray,
+    p: Parameters,
+    reach: Reach,
+) -> FloatArray:
+    """Bend a signal of a machine as in an actuator, where no run is looked at."""
+    return act(signal, NO_RUN, _numbers(products, p, reach))
 
 
 def _with(words: Mapping[str, str], parameters: Parameters) -> dict[str, Any]:

@@ -1,10 +1,9 @@
 """``hystbench job blind-make``: the cases of a chunk, as solvers get them."""
 
 from hystbench.challenge.contest.plan import chunks, plan
-from hystbench.challenge.make import make
-from hystbench.challenge.writing import write_folder
+from hystbench.challenge.make import make, write_folder
 from hystbench.files import whole_folder
-from hystbench.signature import OutFolder, Settings, command
+from hystbench.options import OutFolder, Settings, command
 
 #: Files of a chunk, as patterns.
 WRITTEN = ("*/model.yaml", "*/dataset/*")

@@ -1,7 +1,7 @@
 """``hystbench job blind-solve``: one solver on the cases of a chunk."""
 
 from hystbench.entrants.answers import Solver, answer_all
-from hystbench.signature import Folder, Out, Settings, command
+from hystbench.options import Folder, Out, Settings, command
 
 
 @command

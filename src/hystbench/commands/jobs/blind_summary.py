@@ -1,10 +1,10 @@
 """``hystbench job blind-summary``: the score of a solver, and its rivals'."""
 
-from hystbench.challenge.contest.frames import read_rows
 from hystbench.challenge.contest.plan import DEVELOPMENT_SEEDS, RETIRED_SEEDS, plan
-from hystbench.challenge.contest.writing import WRITTEN, write_score
+from hystbench.challenge.contest.summary import WRITTEN, write_score
+from hystbench.challenge.contest.tables import read_rows
 from hystbench.files import whole_folder
-from hystbench.signature import In, OutFolder, Settings, command
+from hystbench.options import In, OutFolder, Settings, command
 
 
 @command

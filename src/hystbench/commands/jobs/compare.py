@@ -5,7 +5,7 @@ from functools import partial
 from hystbench.compare import comparison
 from hystbench.compare.evidence import FILES, read_evidence
 from hystbench.files import whole_folder
-from hystbench.signature import In, OutFolder, Settings, command
+from hystbench.options import In, OutFolder, Settings, command
 
 
 @partial(command, also=dict.fromkeys(FILES, (In, None)))

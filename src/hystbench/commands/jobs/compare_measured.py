@@ -2,7 +2,7 @@
 
 from hystbench.compare import measured
 from hystbench.files import whole_folder
-from hystbench.signature import In, OutFolder, command
+from hystbench.options import In, OutFolder, command
 
 
 @command

@@ -2,8 +2,8 @@
 
 from hystbench.adaptive import make_filter, run_filter
 from hystbench.files import write_csv
+from hystbench.options import In, Json, Out, Settings, command
 from hystbench.record import load_record
-from hystbench.signature import In, Json, Out, Settings, command
 
 COLUMNS = ["signal", "envelopes", "mse", "re", "status"]
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from hystbench.errors import InputError
 from hystbench.figures import drawer
-from hystbench.signature import In, Out, command
+from hystbench.options import In, Out, command
 
 
 @command

@@ -1,9 +1,9 @@
 """``hystbench job filter``: run one LMS filter on one record."""
 
 from hystbench.adaptive import make_filter, run_filter
+from hystbench.options import In, Json, Out, Settings, command
 from hystbench.record import load_record
 from hystbench.results import save_run
-from hystbench.signature import In, Json, Out, Settings, command
 
 
 @command

@@ -8,7 +8,7 @@ from hystbench.gap.bases.kinds import IDENTIFIED, check_base
 from hystbench.gap.bases.load import given_base
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.evidence import load_evidence
-from hystbench.signature import DatasetFile, Out, command
+from hystbench.options import DatasetFile, Out, command
 
 
 @command

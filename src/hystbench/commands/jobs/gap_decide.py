@@ -11,8 +11,7 @@ from hystbench.gap.bases.load import load_base
 from hystbench.gap.records.evidence import check_units, load_evidence
 from hystbench.gap.run import decide_in, write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary
-from hystbench.options import SearchOptions
-from hystbench.signature import DatasetFile, OutFolder, command, of_class
+from hystbench.options import DatasetFile, OutFolder, SearchOptions, command, of_class
 
 
 @partial(command, also=of_class(SearchOptions))

@@ -2,7 +2,7 @@
 
 from hystbench.gap.report.page import write_report
 from hystbench.gap.report.tables import write_gallery
-from hystbench.signature import Folder, command
+from hystbench.options import Folder, command
 
 
 @command

@@ -5,7 +5,7 @@ from hystbench.gap.bases.load import checked_base
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import show_in
 from hystbench.model import load_model
-from hystbench.signature import DatasetFile, In, OutFolder, command
+from hystbench.options import DatasetFile, In, OutFolder, command
 
 
 @command

@@ -2,7 +2,7 @@
 
 from hystbench.gap.report.tables import write_adds, write_table
 from hystbench.model import load_model
-from hystbench.signature import In, Json, Out, command
+from hystbench.options import In, Json, Out, command
 
 
 @command

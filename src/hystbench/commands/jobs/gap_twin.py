@@ -2,8 +2,8 @@
 
 from hystbench.files import whole_folder
 from hystbench.gap.example import WRITTEN, write_example
+from hystbench.options import In, Json, OutFolder, command
 from hystbench.record import load_record
-from hystbench.signature import In, Json, OutFolder, command
 
 
 @command

@@ -4,8 +4,8 @@ import click
 
 from hystbench.files import write_json
 from hystbench.identification.algorithm import identify_slow_loop
+from hystbench.options import In, Out, Settings, command
 from hystbench.record import load_record
-from hystbench.signature import In, Out, Settings, command
 
 
 @command

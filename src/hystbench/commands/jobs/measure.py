@@ -1,8 +1,8 @@
 """``hystbench job measure``: simulate a model on a signal and record it."""
 
 from hystbench.model import load_model
+from hystbench.options import In, Out, Settings, command
 from hystbench.signals import load_signal
-from hystbench.signature import In, Out, Settings, command
 from hystbench.twin_record import record_of_twin
 
 

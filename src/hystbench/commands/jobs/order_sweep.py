@@ -1,9 +1,9 @@
 """``hystbench job order-sweep``: error against order (Figure 7)."""
 
 from hystbench.compare.rows import names_of, or_empty, write_fields
+from hystbench.options import In, Json, Out, Settings, command
 from hystbench.order_errors import OrderError, filters_by_order, order_errors
 from hystbench.record import load_record
-from hystbench.signature import In, Json, Out, Settings, command
 
 #: How the step size follows the order: each rule, and the other one.
 OTHER = {

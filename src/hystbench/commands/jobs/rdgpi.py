@@ -1,9 +1,9 @@
 """``hystbench job rdgpi``: simulate the RDGPI model on one record."""
 
+from hystbench.options import In, Json, Out, Settings, command
 from hystbench.rdgpi import RateDependentGPI
 from hystbench.record import load_record
 from hystbench.results import run_result, save_run
-from hystbench.signature import In, Json, Out, Settings, command
 
 
 @command

@@ -1,9 +1,9 @@
 """``hystbench job rdgpi-identify``: fit the RDGPI model to records."""
 
 from hystbench.files import write_json
+from hystbench.options import In, Out, Settings, command
 from hystbench.rdgpi import identify_rdgpi
 from hystbench.record import load_record
-from hystbench.signature import In, Out, Settings, command
 
 
 @command

@@ -2,9 +2,9 @@
 
 from hystbench.files import write_csv
 from hystbench.metrics import mean_square_error, relative_error
+from hystbench.options import In, Out, command
 from hystbench.rdgpi import PUBLISHED_RDGPI
 from hystbench.record import load_record
-from hystbench.signature import In, Out, command
 
 COLUMNS = ["signal", "error_kind", "mse", "re", "largest_output", "largest_reference"]
 

@@ -1,9 +1,9 @@
 """``hystbench job report``: the front page of the results."""
 
 from hystbench.files import write_text
+from hystbench.options import Folder, In, Out, Settings, command
 from hystbench.report.reproduction.page import page
 from hystbench.report.reproduction.read import Results
-from hystbench.signature import Folder, In, Out, Settings, command
 
 
 @command

@@ -1,7 +1,7 @@
 """``hystbench job signal``: make an excitation signal."""
 
+from hystbench.options import Out, Settings, command
 from hystbench.signals import make_signal
-from hystbench.signature import Out, Settings, command
 
 
 @command

@@ -1,9 +1,9 @@
 """``hystbench job twin-fits``: Algorithm 1 and the RDGPI model on several twins."""
 
 from hystbench.files import write_json
-from hystbench.signature import In, Out, Settings, command
+from hystbench.options import In, Out, Settings, command
 from hystbench.twins.fits import fit
-from hystbench.twins.read import read_twins
+from hystbench.twins.runs import read_twins
 
 
 @command

@@ -1,9 +1,9 @@
 """``hystbench job twin-runs``: one filter on several twins."""
 
 from hystbench.files import write_json
-from hystbench.signature import In, Json, Out, Settings, command
+from hystbench.options import In, Json, Out, Settings, command
 from hystbench.twins.parts import run
-from hystbench.twins.read import read_twins
+from hystbench.twins.runs import read_twins
 
 
 @command

@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from hystbench.blocks.sensor_noise import SensorNoise
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import Block
 from hystbench.blocks.force import Force
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.parameter import HUGE
+from hystbench.blocks.sensor_noise import SensorNoise
 from hystbench.blocks.simulator import Simulator
 from hystbench.blocks.store import Store
 from hystbench.blocks.wrapping import WrappingBlock

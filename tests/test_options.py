@@ -5,7 +5,7 @@ from functools import partial
 import pytest
 from click.testing import CliRunner
 
-from hystbench.signature import In, Json, Out, Settings, SettingsType, command
+from hystbench.options import In, Json, Out, Settings, SettingsType, command
 
 told = []
 
