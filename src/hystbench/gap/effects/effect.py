@@ -132,6 +132,7 @@ class Effect(ABC):
         limits: dict[str, tuple[float, float]] | None = None,
         neutral: bool = True,
         zero: dict[str, float] | None = None,
+        charge: float | None = None,
     ) -> Variant:
         """Give the variant that puts the effect's block before the block at a place.
 
@@ -166,6 +167,7 @@ class Effect(ABC):
             unit or {},
             positive,
             free or (*(grids or {}), *(unit or {})),
+            charge=charge,
             refused=refused or {},
             limits=limits or {},
             neutral=neutral,
@@ -260,7 +262,9 @@ class Effect(ABC):
         self,
         place: Literal["before", "behind"],
         form: str = "",
-        also: Mapping[str, float] | None = None,
+        *,
+        law: str = "",
+        ranges: Mapping[str, tuple[float, float]] | None = None,
         **start: float,
     ) -> Law:
         """Give the effect's curve or play before or behind what has effects inside.
@@ -269,13 +273,15 @@ class Effect(ABC):
         ----------
         place : {"before", "behind"}
         form : str
-        also : mapping of str to float, optional
-            Numbers that are not fitted.
+        law : str
+            Name of the block, where it is not the effect's.
+        ranges : mapping of str to (float, float), optional
+            Of its numbers, where beyond them it would be another effect.
         **start : float
-            Those that are, where their fit starts.
+            Its numbers, where their fit starts.
         """
-        block = block_class(self.name).from_mapping({**(also or {}), **start})
-        return Law(form, block, tuple(start), place)
+        block = block_class(law or self.name).from_mapping(start)
+        return Law(form, block, tuple(start), place, ranges=ranges or {})
 
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
         """Give the block of a signal beside, from its amplitudes (records, k)."""
@@ -310,15 +316,3 @@ class StoreEffect(InsideEffect):
     """An effect of stores: their own numbers are other ones."""
 
     laws = ("store",)
-
-    @abstractmethod
-    def stored(self, filled: Filled) -> Iterator[Changed]:
-        """Give the numbers, as every effect may."""
-
-
-class ForceEffect(InsideEffect):
-    """An effect that acts inside a mechanism."""
-
-    @abstractmethod
-    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Give the laws, as every effect may."""

@@ -1,4 +1,4 @@
-"""The laws of a low-pass: a lag of first order, or a filter of second order."""
+"""Low-passes of the drive and of the sensor: of first order, or of second."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from typing import Literal
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.drive_lag import DriveLag
+from hystbench.blocks.drive_lag import DriveLag as Lag
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.law import Law, Passed
-from hystbench.gap.effects.variant import Variant
+from hystbench.gap.effects.places import places_in_drive, places_in_sensor
+from hystbench.gap.effects.variant import Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray
 
@@ -41,7 +42,7 @@ def low_pass(
         Time constants to search, in seconds.
     """
     yield effect.inserted(simulation, place, grids={TIME: times})
-    if any(isinstance(block, DriveLag) for block in simulation.chain):
+    if any(isinstance(block, Lag) for block in simulation.chain):
         return
     yield effect.inserted(
         simulation,
@@ -77,3 +78,39 @@ def low_pass_around(
         free=(*first.free, DAMPING),
         ranges={**first.ranges, DAMPING: FILTERS},
     )
+
+
+class DriveLag(Effect):
+    """A lag before everything else, of first or second order."""
+
+    name = "drive-lag"
+    shows = "frequency"
+    place = "drive"
+
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
+        """Offer the lag before the first block, and behind the drive's limits."""
+        times = logarithmic(simulation.step / 20, simulation.span / 20, 2)
+        for place in places_in_drive(simulation, linear=True):
+            yield from low_pass(self, simulation, place, times)
+
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer it before the host."""
+        yield from low_pass_around(self, passed, "before")
+
+
+class SensorLag(Effect):
+    """A lag behind the last block, of first or second order."""
+
+    name = "sensor-lag"
+    shows = "frequency"
+    place = "sensor"
+
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
+        """Offer the lag behind the last block, and before the sensor's curves."""
+        times = logarithmic(simulation.step / 20, simulation.span / 20)
+        for place in places_in_sensor(simulation, linear=True):
+            yield from low_pass(self, simulation, place, times)
+
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer it behind the host."""
+        yield from low_pass_around(self, passed, "behind", start="settled")
