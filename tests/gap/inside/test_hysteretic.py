@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.inside.host import best_host
-from hystbench.gap.inside.one_coordinate import one_coordinate
+from hystbench.gap.inside.one_coordinate import best_host, one_coordinate
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import SCALE
 from hystbench.quantities import Quantities

@@ -28,7 +28,6 @@ from hystbench.gap.inside.combine_forces import (
     starts,
     with_one_fewer,
 )
-from hystbench.gap.inside.host import best_host
 from hystbench.gap.inside.insert_law import (
     Times,
     evened,
@@ -43,9 +42,13 @@ from hystbench.gap.inside.named_inside import (
     named_inside,
     re_tuning,
 )
-from hystbench.gap.inside.one_coordinate import free_masses, one_coordinate
+from hystbench.gap.inside.one_coordinate import (
+    best_host,
+    free_masses,
+    one_coordinate,
+    same_as,
+)
 from hystbench.gap.inside.possible_hosts import hosts, is_seen_moving
-from hystbench.gap.inside.same_as import same_as
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.records.free_mass import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
@@ -285,7 +288,7 @@ def test_what_a_given_base_is_the_same_as_is_sought_once(monkeypatch):
     offset = replace(measured, y=measured.y - 0.05)
     sought = []
     monkeypatch.setattr(
-        "hystbench.gap.inside.same_as.one_coordinate",
+        "hystbench.gap.inside.one_coordinate.one_coordinate",
         lambda *given: sought.append(given) or one_coordinate(*given),
     )
     found = [
@@ -315,7 +318,7 @@ def test_what_no_mass_on_a_spring_does_is_seen_on_one_record(monkeypatch):
     )
     sought = []
     monkeypatch.setattr(
-        "hystbench.gap.inside.same_as.one_coordinate",
+        "hystbench.gap.inside.one_coordinate.one_coordinate",
         lambda given, *more: sought.append(given) or one_coordinate(given, *more),
     )
     start = ModelState((base,), records, ScoredSamples.of(records), hold="linear")

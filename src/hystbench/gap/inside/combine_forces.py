@@ -22,8 +22,13 @@ from hystbench.gap.fitting.least_squares import (
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.beginnings import Beginnings, with_numbers_of
-from hystbench.gap.inside.insert_law import Offer, evened, of_stores, with_law
-from hystbench.gap.inside.stores import with_changed
+from hystbench.gap.inside.insert_law import (
+    Offer,
+    evened,
+    of_stores,
+    with_changed,
+    with_law,
+)
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
 from hystbench.record import FloatArray

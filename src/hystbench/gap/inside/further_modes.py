@@ -72,7 +72,6 @@ def in_further_modes(
         found, frequency = more
         modes.append(frequency)
         host = found.state.chain[host_of(found.state)]
-        assert isinstance(host, Mechanism)  # noqa: S101  (for the type checker)
         say(f"inside: also in the mode at {frequency_of(host):.3g} Hz")
     return found, tuple(modes)
 
@@ -89,9 +88,7 @@ def with_modes(state: ModelState, frequencies: tuple[float, ...]) -> ModelState:
 
 def _frequency(state: ModelState) -> float:
     """Give the natural frequency of the mode that was taken out last, in Hz."""
-    mode = state.chain[state.free[-1].block]
-    assert isinstance(mode, Mechanism)  # noqa: S101  (for the type checker)
-    return frequency_of(mode)
+    return frequency_of(state.chain[state.free[-1].block])
 
 
 def further_words(state: ModelState) -> str:

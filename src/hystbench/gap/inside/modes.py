@@ -70,8 +70,9 @@ def modes(
             yield with_others_free(state) if others_too else state
 
 
-def frequency_of(mode: Mechanism) -> float:
-    """Give the natural frequency of a mode in Hz."""
+def frequency_of(mode: Block) -> float:
+    """Give the natural frequency of a mechanism in Hz."""
+    assert isinstance(mode, Mechanism)  # noqa: S101  (for the type checker)
     return float(np.sqrt(mode.stiffness / mode.mass) / (2 * np.pi))
 
 
