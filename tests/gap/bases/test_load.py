@@ -13,9 +13,8 @@ from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.bases import load as bases
-from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.bases.linear import Linear, identified_linear
-from hystbench.gap.bases.load import load_base
+from hystbench.gap.bases.load import identified_gpi, load_base
 from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio, stable
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.simulation import Simulation
