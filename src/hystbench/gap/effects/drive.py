@@ -48,7 +48,8 @@ class InputDelay(Effect):
 
     def around(self, passed: Passed) -> Iterator[Law]:
         """Offer it before the host."""
-        yield self.filter_around(passed, "delay_s", "before")
+        ranges = {"delay_s": (passed.shortest, np.inf)}
+        yield self.curve("before", ranges=ranges, delay_s=2.0 * passed.step)
 
 
 class EddyDiffusion(Effect):

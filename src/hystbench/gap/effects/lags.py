@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
-from typing import Literal
+from collections.abc import Iterable, Iterator
+from typing import Any, Literal
 
 import numpy as np
 
-from hystbench.blocks.base import Block
 from hystbench.blocks.drive_lag import DriveLag as Lag
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.effects.law import Law, Passed
@@ -24,93 +22,87 @@ which one counts: that is a lag and, nearly, a delay."""
 STARTS = (0.6, 0.9)
 
 
-def low_pass(
-    effect: Effect, simulation: Simulation, place: int, times: FloatArray
-) -> Iterator[Variant]:
-    """Offer both laws at a place of a chain.
+class LowPass(Effect):
+    """A lag of first order, or a filter of second order."""
 
-    Beside another lag that of second order is left out: it would make a third order,
-    which is hardly more than a lag and a delay.
+    shows = "frequency"
 
-    Parameters
-    ----------
-    effect : Effect
-        ``drive-lag`` or ``sensor-lag``.
-    simulation : Simulation
-    place : int
-    times : ndarray
-        Time constants to search, in seconds.
-    """
-    yield effect.inserted(simulation, place, grids={TIME: times})
-    if any(isinstance(block, Lag) for block in simulation.chain):
-        return
-    yield effect.inserted(
-        simulation,
-        place,
-        form=SECOND,
-        grids={TIME: times, DAMPING: np.array(STARTS)},
-        limits={DAMPING: FILTERS},
-    )
+    def at(
+        self, simulation: Simulation, places: Iterable[int], times: FloatArray
+    ) -> Iterator[Variant]:
+        """Offer both laws at places of a chain.
 
+        Beside another lag that of second order is left out: it would make a third
+        order, which is hardly more than a lag and a delay.
 
-def low_pass_around(
-    effect: Effect, passed: Passed, place: Literal["before", "behind"], **given: str
-) -> Iterator[Law]:
-    """Offer both laws before or behind what has effects inside.
+        Parameters
+        ----------
+        simulation : Simulation
+        places : iterable of int
+        times : ndarray
+            Time constants to search, in seconds.
+        """
+        has_lag = any(isinstance(block, Lag) for block in simulation.chain)
+        for place in places:
+            yield self.inserted(simulation, place, grids={TIME: times})
+            if not has_lag:
+                yield self.inserted(
+                    simulation,
+                    place,
+                    form=SECOND,
+                    grids={TIME: times, DAMPING: np.array(STARTS)},
+                    limits={DAMPING: FILTERS},
+                )
 
-    Parameters
-    ----------
-    effect : Effect
-    passed : Passed
-    place : {"before", "behind"}
-    **given
-        Other parameters of the block.
-    """
-    first = effect.filter_around(passed, TIME, place, **given)
-    yield first
-    block: Block = type(first.block).from_mapping(
-        {**first.block.to_mapping(), DAMPING: float(np.mean(FILTERS))}
-    )
-    yield replace(
-        first,
-        form=SECOND,
-        block=block,
-        free=(*first.free, DAMPING),
-        ranges={**first.ranges, DAMPING: FILTERS},
-    )
+    def beside_host(
+        self, passed: Passed, place: Literal["before", "behind"], **also: str
+    ) -> Iterator[Law]:
+        """Offer both laws before or behind what has effects inside.
+
+        They start short against the records' rates, at two sampling intervals.
+
+        Parameters
+        ----------
+        passed : Passed
+        place : {"before", "behind"}
+        **also
+            Other parameters of the block.
+        """
+        first: dict[str, Any] = {TIME: 2.0 * passed.step}
+        ranges = {TIME: (passed.shortest, np.inf)}
+        yield self.curve(place, also=also, ranges=ranges, **first)
+        second = {**first, DAMPING: float(np.mean(FILTERS))}
+        ranges = {**ranges, DAMPING: FILTERS}
+        yield self.curve(place, SECOND, also=also, ranges=ranges, **second)
 
 
-class DriveLag(Effect):
+class DriveLag(LowPass):
     """A lag before everything else, of first or second order."""
 
     name = "drive-lag"
-    shows = "frequency"
     place = "drive"
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the lag before the first block, and behind the drive's limits."""
         times = logarithmic(simulation.step / 20, simulation.span / 20, 2)
-        for place in places_in_drive(simulation, linear=True):
-            yield from low_pass(self, simulation, place, times)
+        yield from self.at(simulation, places_in_drive(simulation, linear=True), times)
 
     def around(self, passed: Passed) -> Iterator[Law]:
         """Offer it before the host."""
-        yield from low_pass_around(self, passed, "before")
+        yield from self.beside_host(passed, "before")
 
 
-class SensorLag(Effect):
+class SensorLag(LowPass):
     """A lag behind the last block, of first or second order."""
 
     name = "sensor-lag"
-    shows = "frequency"
     place = "sensor"
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the lag behind the last block, and before the sensor's curves."""
         times = logarithmic(simulation.step / 20, simulation.span / 20)
-        for place in places_in_sensor(simulation, linear=True):
-            yield from low_pass(self, simulation, place, times)
+        yield from self.at(simulation, places_in_sensor(simulation, linear=True), times)
 
     def around(self, passed: Passed) -> Iterator[Law]:
         """Offer it behind the host."""
-        yield from low_pass_around(self, passed, "behind", start="settled")
+        yield from self.beside_host(passed, "behind", start="settled")
