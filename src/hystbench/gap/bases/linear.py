@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ from hystbench.gap.bases.orders import (
     HIGHEST,
     ROUNDS,
     Found,
+    Judged,
     Orders,
     none_lowers_both,
     simplest_as_good,
@@ -186,7 +187,7 @@ def _on_all_samples(found: Found, everything: Orders) -> Found:
     ratio = task.refined(found.ratio, everything.whole, ROUNDS)
     count = sum(int(mask.sum()) for mask in everything.whole)
     fit = float(np.sqrt(ratio.cost / count))
-    return found._replace(orders=everything, task=task, ratio=ratio, fit=fit)
+    return replace(found, orders=everything, task=task, ratio=ratio, fit=fit)
 
 
 def _errors(orders: Orders, found: Sequence[Found]) -> HalvesError:
@@ -229,11 +230,10 @@ def _halves(
     return chain, float(np.sqrt(error / count)), words
 
 
-class Sum(NamedTuple):
+@dataclass(frozen=True)
+class Sum(Judged):
     """A base that is the sum of some signals, each times a number."""
 
-    fit: float
-    folds: float
     chain: tuple[Block, ...]
     words: str
 

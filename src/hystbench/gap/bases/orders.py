@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -46,16 +45,14 @@ ROUNDS = 20
 FOLD_ROUNDS = 4
 
 
-class Judged(Protocol):
-    """A model with its errors on all records, and on folds that did not fit it."""
+@dataclass(frozen=True)
+class Judged:
+    """A model with its errors."""
 
-    @property
-    def fit(self) -> float:
-        """Error on all records."""
-
-    @property
-    def folds(self) -> float:
-        """Error on the folds."""
+    fit: float
+    """On all records."""
+    folds: float
+    """On folds that did not fit it."""
 
 
 def lowers(better: Judged, item: Judged, share: float = NUMBER_PAYS) -> bool:
@@ -72,14 +69,13 @@ def none_lowers_both(item: Judged, others: Iterable[Judged]) -> bool:
     return not any(lowers(other, item) for other in others)
 
 
-class Found(NamedTuple):
+@dataclass(frozen=True)
+class Found(Judged):
     """A ratio that was fitted, and the records that it was fitted to."""
 
     orders: Orders
     task: OutputError
     ratio: Ratio
-    fit: float
-    folds: float
 
 
 @dataclass(frozen=True)
@@ -147,7 +143,7 @@ class Orders:
             for fold in self.folds
         )
         fit, folds = (float(np.sqrt(x / count)) for x in (ratio.cost, judged))
-        return Found(self, task, ratio, fit, folds)
+        return Found(fit, folds, self, task, ratio)
 
     def searched(self, without: Judged) -> list[Found]:
         """Fit orders from one on, while they matter beside a model without any pole.

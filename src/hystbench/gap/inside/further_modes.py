@@ -110,7 +110,13 @@ def _in_one_more(
     split = list(with_another_mode(state))
     if not split or not acting:
         return None
-    chosen = max(split, key=_needs)
+    # The mode of which other numbers would explain most of the records.
+    chosen = max(
+        split,
+        key=lambda one: explained_by_levels(
+            replace(one, free=one.free[-len(NUMBERS) :])
+        ),
+    )
     linear = fitted(chosen, score)
     laws = offer(linear)
     beginnings = Beginnings.of(linear.state, score)
@@ -208,8 +214,3 @@ def _with_mode(
             free += numbers_of(block, k)
     free += [Free(place, name) for name in NUMBERS]
     return replace(state, free=tuple(free)).settled()
-
-
-def _needs(state: ModelState) -> float:
-    """How much of the records other numbers of the mode put in last would explain."""
-    return explained_by_levels(replace(state, free=state.free[-len(NUMBERS) :]))

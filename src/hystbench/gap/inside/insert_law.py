@@ -64,7 +64,10 @@ def laws_for(
     times : Times, optional
         Of the host's own records by default, as of one that was identified from them.
     """
-    passed, known = what_passes(host.state, times), among(offered)
+    times = Times.of(host.state.records, True) if times is None else times
+    signals = [record.u for record in host.state.records], host.state.simulation.output
+    given, shown = (max(float(np.max(np.abs(x))) for x in every) for every in signals)
+    passed, known = Passed(given, shown, *times), among(offered)
     around = {name: tuple(effect.around(passed)) for name, effect in known.items()}
     own: dict[str, Iterator[Law | Changed]]
     if of_stores(host):
@@ -80,14 +83,6 @@ def laws_for(
         own = {name: effect.in_mechanism(moved) for name, effect in known.items()}
     every = {name: (*own[name], *around[name]) for name in known}
     return {name: laws for name, laws in every.items() if laws}
-
-
-def what_passes(state: ModelState, times: Times | None = None) -> Passed:
-    """Look how large the input and the output of a model are on its records."""
-    times = Times.of(state.records, True) if times is None else times
-    signals = [record.u for record in state.records], state.simulation.output
-    given, shown = (max(float(np.max(np.abs(x))) for x in every) for every in signals)
-    return Passed(given, shown, times.step, times.shortest)
 
 
 def of_stores(item: Fitted) -> bool:
