@@ -53,7 +53,7 @@ def tried(held, spring, offered, noise=NOISE):
     records = tuple(records_of(held, spring, noise))
     begun = one_coordinate(records, Quantities("force", "position"), "zero-order")
     sample = ScoredSamples.of(records)
-    score = Score(sample, np.zeros((len(sample), 0)), noise**2)
+    score = Score.plain(sample, noise**2)
     return search(best_host(list(begun), score), score, offered)
 
 

@@ -31,10 +31,6 @@ HIGHEST_WITH_MODES = 12
 UNHELD = 1e-9
 #: Order from which on a further mode is looked for: two modes and a lag do not do.
 MANY = 5
-#: Damping ratio at which a further mode is begun.
-BEGUN_DAMPING = 0.01
-#: Peaks of what is left at which a further mode is begun.
-PEAKS = 3
 #: So many orders in a row may not matter; one more ends the search.
 IN_VAIN = 2
 #: Share of each record at its beginning that does not count: what it remembers of the
@@ -175,9 +171,7 @@ class Orders:
             left = last.task.left(last.ratio)
             begun = [
                 last.task.refined(ratio, self.whole, FOLD_ROUNDS)
-                for ratio in with_a_mode(
-                    self.spectra, last.ratio, left, BEGUN_DAMPING, PEAKS
-                )
+                for ratio in with_a_mode(self.spectra, last.ratio, left)
             ]
             best = min(begun, key=lambda ratio: ratio.cost)
             further = self.judged(last.task, best)

@@ -35,6 +35,10 @@ ROUNDS = 12
 REFINED = 25
 #: Share of the cost that a round must win for another one to follow.
 LEAST_GAIN = 1e-5
+#: Damping ratio at which a further mode is begun.
+BEGUN_DAMPING = 0.01
+#: Peaks of what is left at which a further mode is begun.
+PEAKS = 3
 #: Half the width of a band, as a share of its frequency.
 BAND = 0.05
 #: A pole is kept off the imaginary axis by this share of its size.
@@ -184,11 +188,7 @@ def with_poles(spectra: Spectra, a: FloatArray, zeros: int) -> Ratio:
 
 
 def with_a_mode(
-    spectra: Spectra,
-    ratio: Ratio,
-    left: Sequence[FloatArray],
-    damping_ratio: float,
-    count: int,
+    spectra: Spectra, ratio: Ratio, left: Sequence[FloatArray]
 ) -> Iterator[Ratio]:
     """Give a ratio a further pair of poles, at each of the peaks of what it leaves.
 
@@ -200,20 +200,16 @@ def with_a_mode(
     ratio : Ratio
     left : sequence of ndarray, shape (n,) each
         What it leaves of the output, by stretch.
-    damping_ratio : float
-        Of the further mode.
-    count : int
-        Peaks that are tried, the highest ones.
     """
     order = len(ratio.a) + 2
     problem = _Problem(spectra, order, order)
-    for s in _peaks(spectra, left, count):
-        pair = [1.0, 2 * damping_ratio * s, s**2]
+    for s in _peaks(spectra, left):
+        pair = [1.0, 2 * BEGUN_DAMPING * s, s**2]
         a = np.polymul(np.append(ratio.a, 1.0)[::-1], pair)[:0:-1]
         yield problem.solved(np.asarray(a))
 
 
-def _peaks(spectra: Spectra, left: Sequence[FloatArray], count: int) -> Iterator[float]:
+def _peaks(spectra: Spectra, left: Sequence[FloatArray]) -> Iterator[float]:
     """Give where most power is left in a band of a tenth, in units of the scale."""
     s = np.concatenate([lines.s.imag for lines in spectra.lines])
     power = np.concatenate(
@@ -225,7 +221,7 @@ def _peaks(spectra: Spectra, left: Sequence[FloatArray], count: int) -> Iterator
     s, power = s[s > 0], power[s > 0]
     order = np.argsort(s)
     s, power = s[order], power[order]
-    for _ in range(count):
+    for _ in range(PEAKS):
         total = np.concatenate([[0.0], np.cumsum(power)])
         first, end = (np.searchsorted(s, s * k) for k in (1 - BAND, 1 + BAND))
         best = int(np.argmax(total[end] - total[first]))
