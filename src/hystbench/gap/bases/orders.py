@@ -14,7 +14,6 @@ from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import (
     Ratio,
     Spectra,
-    Stretch,
     fit_ratio,
     with_a_mode,
     with_poles,
@@ -100,10 +99,10 @@ class Orders:
     @cached_property
     def spectra(self) -> Spectra:
         """Spectra of the records."""
-        each = ((item.u, item.y, item.dt) for item in self.evidence.fit)
+        fit = self.evidence.fit
         if self.evidence.own_offsets:  # a constant makes one, but for a transient
-            each = ((u - u.mean(), y - y.mean(), dt) for u, y, dt in each)
-        return Spectra.of([Stretch(*item) for item in each], self.evidence.input_hold)
+            fit = tuple(replace(x, u=x.u - x.u.mean(), y=x.y - x.y.mean()) for x in fit)
+        return Spectra.of(fit, self.evidence.input_hold)
 
     @cached_property
     def decay_s(self) -> float | None:

@@ -16,13 +16,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, cast
+from typing import cast
 
 import numpy as np
 
 from hystbench.blocks.held import Hold
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.record import ComplexArray, FloatArray
+from hystbench.record import ComplexArray, FloatArray, Record
 
 #: Highest order that is fitted.
 MOST = 12
@@ -45,17 +45,9 @@ BAND = 0.05
 MARGIN = 1e-5
 
 
-class Stretch(NamedTuple):
-    """Contiguous samples of a record."""
-
-    u: FloatArray
-    y: FloatArray
-    dt: float
-
-
 @dataclass(frozen=True)
 class RecordSpectrum:
-    """Spectral lines of one stretch."""
+    """Spectral lines of one record."""
 
     s: ComplexArray
     """Shape (l,). ``j w`` over the scale."""
@@ -74,19 +66,19 @@ class RecordSpectrum:
 
 @dataclass(frozen=True)
 class Spectra:
-    """Lines of all stretches, over one scale of frequency in rad/s."""
+    """Lines of all records, over one scale of frequency in rad/s."""
 
     lines: tuple[RecordSpectrum, ...]
     scale: float
 
     @classmethod
-    def of(cls, stretches: Sequence[Stretch], hold: Hold) -> Spectra:
-        """Transform stretches.
+    def of(cls, records: Sequence[Record], hold: Hold) -> Spectra:
+        """Transform records.
 
         The images of the input that a staircase or straight lines leave above half
         the sampling rate are not seen.
         """
-        raw = [_transformed(item, hold) for item in stretches]
+        raw = [_transformed(item, hold) for item in records]
         power = sum(float(np.sum(np.abs(y[1:]) ** 2)) for _, _, y, _ in raw)
         moment = sum(float(np.sum((w * np.abs(y)) ** 2)) for w, _, y, _ in raw)
         scale = float(np.sqrt(moment / power))
@@ -199,7 +191,7 @@ def with_a_mode(
     spectra : Spectra
     ratio : Ratio
     left : sequence of ndarray, shape (n,) each
-        What it leaves of the output, by stretch.
+        What it leaves of the output, by record.
     """
     order = len(ratio.a) + 2
     problem = _Problem(spectra, order, order)
@@ -298,7 +290,7 @@ def below(a: FloatArray, s: ComplexArray) -> ComplexArray:
 
 
 def _transformed(
-    item: Stretch, hold: Hold
+    item: Record, hold: Hold
 ) -> tuple[FloatArray, ComplexArray, ComplexArray, FloatArray]:
     n = len(item.u)
     f = np.asarray(np.fft.rfftfreq(n, item.dt), dtype=np.float64)
@@ -330,7 +322,7 @@ def _real(values: ComplexArray) -> FloatArray:
 def _triangle(
     columns: ComplexArray, transients: ComplexArray, target: ComplexArray
 ) -> FloatArray:
-    """Triangle of a stretch's equations, without what its transient can do."""
+    """Triangle of a record's equations, without what its transient can do."""
     every = triangle_of(_real(np.column_stack([transients, columns, target])))
     own = transients.shape[1]
     return every[own:, own:]
@@ -342,7 +334,7 @@ def triangle_of(equations: FloatArray) -> FloatArray:
 
 
 def _least(triangles: Sequence[FloatArray]) -> tuple[FloatArray, float]:
-    """Least squares over all stretches: the solution, and what is left."""
+    """Least squares over all records: the solution, and what is left."""
     all_of_them = triangle_of(np.vstack(triangles))
     left, right = all_of_them[:, :-1], all_of_them[:, -1]
     size = np.linalg.norm(left, axis=0)

@@ -132,7 +132,7 @@ def masses(
     At each natural frequency and damping ratio the gain and an offset of the output are
     solved for.
     """
-    span, step = _span_and_step(records)
+    span, step = span_and_step(records)
     grid = np.geomspace(2 * np.pi / span, 0.8 * np.pi / step, FREQUENCIES)
     about: Any = {"output": output, "hold": hold}
     units = (
@@ -158,7 +158,7 @@ def free_masses(
     windows = any(record.decay_s is not None for record in records)
     allowed = ("rest",) if windows else free_starts(output)
     starts = [own for own in _starts(records) if own in allowed]
-    span, step = _span_and_step(records)
+    span, step = span_and_step(records)
     rates = np.geomspace(0.3 / span, 0.3 / step, FREQUENCIES)
     about: Any = {"output": output, "hold": hold}
     units = (
@@ -199,7 +199,7 @@ def _solved_for(
     return sorted(found, key=lambda item: item[0])
 
 
-def _span_and_step(records: Sequence[Record]) -> tuple[float, float]:
+def span_and_step(records: Sequence[Record]) -> tuple[float, float]:
     """Give the longest duration and the shortest sampling interval."""
     span = max(record.dt * len(record) for record in records)
     return span, min(record.dt for record in records)

@@ -22,6 +22,7 @@ from hystbench.gap.inside.one_coordinate import (
     likeliest,
     missed,
     most_missed,
+    span_and_step,
 )
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import FURTHER
@@ -54,9 +55,8 @@ def stores(
         return
     sample = ScoredSamples.of(records)
     wanted = sample.take([record.y for record in records])
-    span = max(record.dt * len(record) for record in records)
-    fastest = 0.3 / min(record.dt for record in records)
-    grid = np.geomspace(3 / span, fastest, RATES).tolist()
+    span, step = span_and_step(records)
+    grid = np.geomspace(3 / span, 0.3 / step, RATES).tolist()
     found: list[tuple[float, tuple[Store, ...]]] = []
     for rates in itertools.combinations_with_replacement(grid, count):
         down = np.poly([-rate for rate in rates])
