@@ -13,10 +13,9 @@ from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.bases import load as bases
-from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.bases.linear import Linear, identified_linear
-from hystbench.gap.bases.load import load_base
-from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio, stable
+from hystbench.gap.bases.load import identified_gpi, load_base
+from hystbench.gap.bases.spectral import Spectra, fit_ratio, stable
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model, load_model
@@ -221,7 +220,7 @@ class TestLinear:
         u = sine(30.0, count=1000)
         gain = 2 / (1 + 2j * np.pi * 30 * 0.05)
         y = (gain * np.exp(2j * np.pi * 30 * time)).imag + 7 * np.exp(-time / 0.05)
-        spectra = Spectra.of([Stretch(u, y, 0.001)], "band-limited")
+        spectra = Spectra.of([record(u, y, dt=0.001)], "band-limited")
         ratio = fit_ratio(spectra, 1, 0)
         block = ratio.block(spectra.scale, "band-limited", "rest")
         slow, still = block.denominator
@@ -507,8 +506,8 @@ class TestLoad:
 def test_a_stretch_shorter_than_its_transient_has_numbers_is_fitted():
     u = np.array([0.0, 1.0, -1.0, 0.5])
     long = np.random.default_rng(2).normal(size=(2, 400))
-    stretches = [Stretch(*long, 0.001), Stretch(u, 0.5 * u, 0.001)]
-    ratio = fit_ratio(Spectra.of(stretches, "linear"), 6, 6)
+    records = [record(*long, dt=0.001), record(u, 0.5 * u, dt=0.001)]
+    ratio = fit_ratio(Spectra.of(records, "linear"), 6, 6)
     assert np.all(np.isfinite(ratio.a))
 
 

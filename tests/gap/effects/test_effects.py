@@ -10,8 +10,8 @@ from scipy.optimize import least_squares
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.gap.effects import effects, own
-from hystbench.gap.effects.drift import FORMS, WINDING, path
 from hystbench.gap.effects.effect import Declined
+from hystbench.gap.effects.sensor import FORMS, WINDING, path
 from hystbench.gap.effects.variant import logarithmic
 from hystbench.gap.fitting.edit_chain import removable, with_effect, without_effect
 from hystbench.gap.fitting.model_score import score_of

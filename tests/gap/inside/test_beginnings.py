@@ -31,7 +31,7 @@ def state(*gaps):
 
 
 def beginnings(model):
-    score = Score(model.sample, np.zeros((len(model.sample), 0)), 1e-6)
+    score = Score.plain(model.sample, 1e-6)
     return Beginnings.of(model, score)
 
 

@@ -97,7 +97,7 @@ def test_what_is_found_on_fewer_samples_starts_as_all_of_them_do(start):
     assert fewer.chain[0].start == "repeating"
     if start == "repeating":
         assert np.abs(fewer.residual).max() < 1e-3 * np.ptp(whole.measured)
-    score = Score(whole.sample, np.zeros((len(whole.sample), 0)), 1e-12)
+    score = Score.plain(whole.sample, 1e-12)
     on_all = OnAll.of(whole, score, fewer, True)
     assert on_all.start == start
     back = on_all.state(fewer)
@@ -118,7 +118,7 @@ def test_rivals_of_what_was_chosen_are_fitted_to_all_samples_too():
         record, y=SensorLag(time_constant_s=0.004).simulate(record.y, record.u, DT)
     )
     whole = state(shown)
-    score = Score(whole.sample, np.zeros((len(whole.sample), 0)), 1e-12)
+    score = Score.plain(whole.sample, 1e-12)
     found = [Fitted(whole, 100.0)]
     for effect, place, value in (
         ("sensor-lag", "behind", 0.0041),

@@ -86,7 +86,7 @@ def found_with(second):
     ]
     added = (Added("hysteretic-force", "inside", "plays", (1,), {}, 2.0),)
     state = state_of(truth, chain, free, added)
-    score = Score(state.sample, np.zeros((len(state.sample), 0)), NOISE**2)
+    score = Score.plain(state.sample, NOISE**2)
     return fitted(state, score), score
 
 

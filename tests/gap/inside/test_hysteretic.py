@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.inside.host import best_host
-from hystbench.gap.inside.one_coordinate import one_coordinate
+from hystbench.gap.inside.one_coordinate import best_host, one_coordinate
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import SCALE
 from hystbench.quantities import Quantities
@@ -54,7 +53,7 @@ def tried(held, spring, offered, noise=NOISE):
     records = tuple(records_of(held, spring, noise))
     begun = one_coordinate(records, Quantities("force", "position"), "zero-order")
     sample = ScoredSamples.of(records)
-    score = Score(sample, np.zeros((len(sample), 0)), noise**2)
+    score = Score.plain(sample, noise**2)
     return search(best_host(list(begun), score), score, offered)
 
 

@@ -28,7 +28,6 @@ from hystbench.gap.inside.combine_forces import (
     starts,
     with_one_fewer,
 )
-from hystbench.gap.inside.host import best_host
 from hystbench.gap.inside.insert_law import (
     Times,
     evened,
@@ -43,9 +42,13 @@ from hystbench.gap.inside.named_inside import (
     named_inside,
     re_tuning,
 )
-from hystbench.gap.inside.one_coordinate import free_masses, one_coordinate
+from hystbench.gap.inside.one_coordinate import (
+    best_host,
+    free_masses,
+    one_coordinate,
+    same_as,
+)
 from hystbench.gap.inside.possible_hosts import hosts, is_seen_moving
-from hystbench.gap.inside.same_as import same_as
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.records.free_mass import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
@@ -77,7 +80,7 @@ def damper(size, frequency, seed):
 def found():
     records = tuple(damper(s, f, k) for k, (s, f) in enumerate([(2, 1.3), (5, 0.7)]))
     begun = list(one_coordinate(records, Quantities("position", "force"), "linear"))
-    score = Score(begun[0].sample, np.zeros((len(begun[0].sample), 0)), NOISE**2)
+    score = Score.plain(begun[0].sample, NOISE**2)
     return search(best_host(begun, score), score, offered=["friction", "drag"])
 
 
@@ -96,7 +99,7 @@ def best_of_moved(given, noise, offered):
     """Give the best that is found in a device that is moved."""
     begun = one_coordinate(tuple(given), Quantities("position", "force"), "linear")
     sample = ScoredSamples.of(tuple(given))
-    score = Score(sample, np.zeros((len(sample), 0)), noise**2)
+    score = Score.plain(sample, noise**2)
     found = search(best_host(list(begun), score), score, offered=offered)
     return min(found, key=lambda item: item.score)
 
@@ -180,7 +183,7 @@ def test_a_law_promises_what_its_numbers_do_that_start_at_zero():
     y = 2.0 * x + 0.1 * np.gradient(x, DT) + 0.05 * x**2
     given = (record("one", x, y + NOISE * np.sin(TIME**2 * 99)),)
     begun = list(one_coordinate(given, Quantities("position", "force"), "linear"))
-    score = Score(begun[0].sample, np.zeros((len(begun[0].sample), 0)), NOISE**2)
+    score = Score.plain(begun[0].sample, NOISE**2)
     host = best_host(begun, score)
     laws = laws_for(host)["stiffness-hardening"]
     whole = Beginnings.all_of(host.state, score)
@@ -194,7 +197,7 @@ def test_a_law_whose_slopes_run_away_is_left_out(monkeypatch):
     x = 5.0 * np.sin(7 * TIME)
     given = (record("one", x, 2.0 * x + 0.05 * x**3 + NOISE * np.sin(TIME**2 * 99)),)
     begun = list(one_coordinate(given, Quantities("position", "force"), "linear"))
-    score = Score(begun[0].sample, np.zeros((len(begun[0].sample), 0)), NOISE**2)
+    score = Score.plain(begun[0].sample, NOISE**2)
     host = best_host(begun, score)
     laws = laws_for(host)["stiffness-hardening"]
     whole = Beginnings.all_of(host.state, score)
@@ -234,7 +237,7 @@ def hosted(records, noise):
     """A mass that fits the records best, and the score of such noise."""
     begun = one_coordinate(tuple(records), MOVES, "zero-order")
     sample = ScoredSamples.of(tuple(records))
-    score = Score(sample, np.zeros((len(sample), 0)), noise**2)
+    score = Score.plain(sample, noise**2)
     return best_host(list(begun), score), score
 
 
@@ -273,7 +276,7 @@ def test_where_the_base_is_a_gain_no_mass_is_seen(units, kinds, count):
     u = np.sin(2.1 * TIME)
     given = (record("slow", u, 3.0 * u, units),)
     start = ModelState((Gain(value=3.0, offset=0.0),), given, ScoredSamples.of(given))
-    score = Score(start.sample, np.zeros((len(start.sample), 0)), NOISE**2)
+    score = Score.plain(start.sample, NOISE**2)
     assert len(list(hosts(start, kinds, True, score))) == count
 
 
@@ -285,7 +288,7 @@ def test_what_a_given_base_is_the_same_as_is_sought_once(monkeypatch):
     offset = replace(measured, y=measured.y - 0.05)
     sought = []
     monkeypatch.setattr(
-        "hystbench.gap.inside.same_as.one_coordinate",
+        "hystbench.gap.inside.one_coordinate.one_coordinate",
         lambda *given: sought.append(given) or one_coordinate(*given),
     )
     found = [
@@ -315,7 +318,7 @@ def test_what_no_mass_on_a_spring_does_is_seen_on_one_record(monkeypatch):
     )
     sought = []
     monkeypatch.setattr(
-        "hystbench.gap.inside.same_as.one_coordinate",
+        "hystbench.gap.inside.one_coordinate.one_coordinate",
         lambda given, *more: sought.append(given) or one_coordinate(given, *more),
     )
     start = ModelState((base,), records, ScoredSamples.of(records), hold="linear")
@@ -337,7 +340,7 @@ def test_drag_of_a_loose_mass_whose_acceleration_is_measured():
         noise = NOISE * np.random.default_rng(seed).standard_normal(len(u))
         given.append(record(f"{seed}", u, np.array(out) + noise, ("N", "m/s^2")))
     start = transfer(tuple(given))
-    score = Score(start.sample, np.zeros((len(start.sample), 0)), NOISE**2)
+    score = Score.plain(start.sample, NOISE**2)
     every = hosts(start, Quantities("force", "acceleration"), True, score)
     first = ((x, x.fitted.state.chain[0]) for x in every)
     host = next(x for x, b in first if b.name == "mechanism" and b.stiffness == 0.0)
@@ -438,7 +441,7 @@ def found_beside_an_arm(slope, sizes, damping):
     arm = Mechanism(mass=1.0, damping=damping, stiffness=30.0, hold="linear")
     given = tuple(records)
     start = ModelState((arm,), given, ScoredSamples.of(given)).settled()
-    score = Score(start.sample, np.zeros((len(start.sample), 0)), 1e-6)
+    score = Score.plain(start.sample, 1e-6)
     host = Fitted(start, score.of(start.residual))
     return min(search(host, score, turns="rad")[1:], key=lambda item: item.score)
 
@@ -542,7 +545,7 @@ def test_a_slider_without_a_clearance_is_friction_and_no_rival_of_it():
     (begun,) = one_coordinate(
         (record("run", x, y),), Quantities("position", "force"), "linear"
     )
-    score = Score(begun.sample, np.zeros((len(begun.sample), 0)), NOISE**2)
+    score = Score.plain(begun.sample, NOISE**2)
     every = search(
         best_host([begun], score), score, offered=["friction", "slider-with-gap"]
     )
@@ -751,7 +754,7 @@ def test_a_stop_on_both_sides_without_a_clearance_is_a_spring_and_no_stop():
     given = (record("stiffer", u, y + 1e-4 * rng.standard_normal(len(y)), ("N", "m")),)
     base = Mechanism(mass=1.0, damping=2.0, stiffness=60.0, hold="linear")
     start = ModelState((base,), given, ScoredSamples.of(given)).settled()
-    score = Score(start.sample, np.zeros((len(start.sample), 0)), 1e-8)
+    score = Score.plain(start.sample, 1e-8)
     host = Fitted(start, score.of(start.residual))
     every = search(host, score, offered=["stop"])
     assert {item.effects for item in every} == {()}
@@ -777,7 +780,7 @@ def test_a_rubber_stop_that_loses_energy_is_no_slider_with_gap():
         given.append(record(f"run-{size:g}", u, y, ("N", "m")))
     base = Mechanism(mass=1.0, damping=2.0, stiffness=60.0, hold="linear")
     start = ModelState((base,), tuple(given), ScoredSamples.of(tuple(given))).settled()
-    score = Score(start.sample, np.zeros((len(start.sample), 0)), 4e-6)
+    score = Score.plain(start.sample, 4e-6)
     rivals = ["stop", "slider-with-gap", "hysteretic-force", "stiffness-hardening"]
     host = Fitted(start, score.of(start.residual))
     found = search(host, score, offered=rivals)
@@ -793,7 +796,7 @@ def test_a_base_that_calls_itself_exact_is_not_fitted_as_a_host(exact):
     given = (record("run", u, u / 60.0, ("N", "m")),)
     base = Mechanism(mass=1.0, damping=2.0, stiffness=60.0)
     start = ModelState((base,), given, ScoredSamples.of(given))
-    score = Score(start.sample, np.zeros((len(start.sample), 0)), NOISE**2)
+    score = Score.plain(start.sample, NOISE**2)
     free = [len(x.fitted.state.free) for x in hosts(start, MOVES, False, score, exact)]
     assert free == ([0] if exact else [0, 3])
 
@@ -807,7 +810,7 @@ def test_a_host_of_a_given_base_is_fitted_about_what_is_stated():
     given = (record("run", u, y + noise, ("N", "m")),)
     base = TransferFunction(numerator=(1.0,), denominator=(0.5, 2.0))
     start = ModelState((base,), given, ScoredSamples.of(given)).settled()
-    score = Score(start.sample, np.zeros((len(start.sample), 0)), 1e-6)
+    score = Score.plain(start.sample, 1e-6)
     held, fitted = hosts(start, MOVES, False, score)
     mass = held.alone.chain[0].mass
     assert fitted.fitted.state.chain[0].mass == pytest.approx(mass, rel=0.1)
@@ -836,6 +839,6 @@ def test_what_is_known_about_of_a_base_is_known_about_of_its_host():
     base = TransferFunction(numerator=(1.0,), denominator=(0.5, 2.0))
     free = (Free(0, "numerator", 0, 0.1, 0.9, 1.1, given=1.0),)
     start = ModelState((base,), given, ScoredSamples.of(given), free=free).settled()
-    score = Score(start.sample, np.zeros((len(start.sample), 0)), 1e-6)
+    score = Score.plain(start.sample, 1e-6)
     (host,) = hosts(start, MOVES, False, score)
     assert all(item.given is not None for item in host.fitted.state.free)

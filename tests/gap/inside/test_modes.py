@@ -7,7 +7,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.modes import modes, one_by_one, split_modes
+from hystbench.gap.inside.modes import frequency_of, modes, one_by_one, taken_out
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.model import Model
 from hystbench.record import Channel, Record
@@ -40,14 +40,11 @@ def moves(mode, f):
 def test_both_parts_together_are_the_whole(output, direct):
     up = np.polyadd(direct * BOTH, [2.0, 30.0, 400.0, 9000.0])
     whole = TransferFunction(numerator=tuple(up), denominator=tuple(BOTH))
-    split = split_modes(whole, output)
-    assert [round(np.sqrt(m.stiffness / m.mass) / 2 / np.pi, 6) for m, _ in split] == [
-        2.0,
-        5.0,
-    ]
+    split = list(taken_out(whole, output))
+    assert [frequency_of(one.mode) for one in split] == pytest.approx([2.0, 5.0])
     f = np.linspace(0.1, 20, 300)
-    for mode, others in split:
-        both = moves(mode, f) + response(others, f)
+    for one in split:
+        both = moves(one.mode, f) + response(one.rest, f)
         np.testing.assert_allclose(both, response(whole, f), rtol=1e-9)
 
 
@@ -66,7 +63,9 @@ def test_other_modes_one_by_one_are_the_same_sum(real):
 
 def test_one_mode_is_not_split():
     alone = TransferFunction(numerator=(1.0,), denominator=tuple(LOW))
-    assert split_modes(alone, "position") == []
+    rest = Record("rest", DT, TIME, 0 * TIME, FORCE, MOTION, "measured")
+    start = ModelState((alone,), (rest,), ScoredSamples.of((rest,)), hold="linear")
+    assert list(modes(start, "position")) == []
 
 
 def test_only_the_mode_that_differs_from_level_to_level_is_given():

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
-from hystbench.blocks.impedance import Impedance
+from hystbench.blocks.impedance import INPUTS, NUMBERS, Impedance
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.errors import InputError
 from hystbench.gap.bases.orders import (
@@ -23,15 +23,16 @@ from hystbench.gap.bases.orders import (
     simplest_as_good,
     with_plainest_start,
 )
+from hystbench.gap.bases.output_error import without_mean
 from hystbench.gap.bases.spectral import fit_ratio
 from hystbench.gap.bases.split_linear import best_split, chain_of, is_bent
-from hystbench.gap.bases.summed import constant, impedance, static
 from hystbench.gap.bases.unsigned import with_signs
 from hystbench.gap.bases.wiener_hammerstein import HalvesError
 from hystbench.gap.records.coarser import coarser
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.thresholds import LOOSE, NUMBER_PAYS
 from hystbench.model import Model
+from hystbench.record import FloatArray, Mask
 
 LINEAR = "linear"
 """Name of the base that is identified as a linear model."""
@@ -118,40 +119,33 @@ def linear_of(evidence: Evidence) -> Linear:
     orders = Orders(_coarse(evidence))
     if orders.evidence is evidence:
         orders = everything
-    gain = static(orders)
+    gain, moved = static(orders), impedance(orders)
     found = orders.searched(gain)
-    moved = impedance(orders)
-    tried: list[Judged] = [gain, *found] if moved is None else [gain, moved[0], *found]
-    chain: tuple[Block, ...]
-    if none_lowers_both(gain, tried):
-        gain = static(everything)
-        value, offset = gain.numbers
-        chain = (Gain(value=value, offset=offset),)
-        fit, fold, what = gain.fit, gain.folds, "order 0 (a gain and an offset)"
-    elif moved is not None and none_lowers_both(moved[0], tried):
-        (fit, fold, _), block = moved
-        chain, what = (block,), "the impedance of a mass on a spring"
+    tried: list[Sum | Found] = [gain, *([] if moved is None else [moved]), *found]
+    best = next(item for item in tried if none_lowers_both(item, tried))
+    if isinstance(best, Sum):
+        # An impedance was fitted to all samples, as its records are never coarse.
+        best = static(everything) if best is gain else best
+        chain, what = best.chain, best.words
     else:
-        chosen = next(item for item in found if none_lowers_both(item, tried))
         steps = {item.dt for item in evidence.fit}
-        chosen = simplest_as_good(
-            chosen, tried, min(steps) if len(steps) == 1 else None
-        )
-        if chosen.orders.late:
-            orders, found = chosen.orders, [chosen]
+        best = simplest_as_good(best, tried, min(steps) if len(steps) == 1 else None)
+        if best.orders.late:
+            orders, found = best.orders, [best]
             spared = len(orders.evidence.fit[0]) < len(evidence.fit[0])
             moved_too = everything.moved(orders.late, min(steps))
             everything = moved_too if spared else orders
-        if chosen.orders is not everything:  # the same order, on every sample
-            chosen = _on_all_samples(chosen, everything)
-        ratio = chosen.task.block(chosen.ratio)
-        chain = (ratio, Gain(value=1.0, offset=float(chosen.ratio.offset)))
-        fit, fold = chosen.fit, chosen.folds
-        zeros = len(chosen.ratio.b) - 1
-        what = f"order {len(chosen.ratio.a)}, {zeros} zero{'s' * (zeros != 1)}"
+        if best.orders is not everything:  # the same order, on every sample
+            best = _on_all_samples(best, everything)
+        ratio = best.task.block(best.ratio)
+        chain = (ratio, Gain(value=1.0, offset=float(best.ratio.offset)))
+        zeros = len(best.ratio.b) - 1
+        what = f"order {len(best.ratio.a)}, {zeros} zero{'s' * (zeros != 1)}"
         what += f", start: {ratio.start}"
+    fit, fold = best.fit, best.folds
     unit = evidence.output.unit
-    still = constant(orders).folds
+    ones = [np.ones((len(item), 1)) for item in orders.evidence.fit]
+    _, still, _ = summed(ones, orders)
     note = (
         f"linear base: {what}; rms error {fit:.4g} {unit} on the fit records, "
         f"{fold:.4g} {unit} on folds of them"
@@ -193,7 +187,7 @@ def _on_all_samples(found: Found, everything: Orders) -> Found:
     ratio = task.refined(found.ratio, everything.whole, ROUNDS)
     count = sum(int(mask.sum()) for mask in everything.whole)
     fit = float(np.sqrt(ratio.cost / count))
-    return found._replace(orders=everything, task=task, ratio=ratio, fit=fit)
+    return replace(found, orders=everything, task=task, ratio=ratio, fit=fit)
 
 
 def _errors(orders: Orders, found: Sequence[Found]) -> HalvesError:
@@ -234,3 +228,79 @@ def _halves(
         f"{np.sqrt(halves.cost / count):.4g} {unit}"
     )
     return chain, float(np.sqrt(error / count)), words
+
+
+@dataclass(frozen=True)
+class Sum(Judged):
+    """A base that is the sum of some signals, each times a number."""
+
+    chain: tuple[Block, ...]
+    words: str
+
+
+def static(orders: Orders) -> Sum:
+    """Fit a gain and a constant."""
+    signals = [np.column_stack([x.u, np.ones(len(x))]) for x in orders.evidence.fit]
+    fit, folds, (value, offset) = summed(signals, orders)
+    chain = (Gain(value=value, offset=offset),)
+    return Sum(fit, folds, chain, "order 0 (a gain and an offset)")
+
+
+def summed(
+    signals: Sequence[FloatArray], orders: Orders
+) -> tuple[float, float, list[float]]:
+    """Fit a sum of signals: error on all records, on the folds, and the numbers.
+
+    Parameters
+    ----------
+    signals : sequence of ndarray, shape (n, k)
+        Of each record, in columns; the last is of ones.
+    orders : Orders
+        The records with their folds.
+    """
+    evidence, whole = orders.evidence, orders.whole
+    sizes = np.maximum(np.sqrt(np.mean(np.vstack(signals) ** 2, axis=0)), 1e-300)
+    scaled = [columns / sizes for columns in signals]
+    outputs = [record.y for record in evidence.fit]
+    apart = evidence.own_offsets
+
+    def masked(parts: Sequence[FloatArray], masks: tuple[Mask, ...]) -> FloatArray:
+        taken = [x[mask] for x, mask in zip(parts, masks, strict=True)]
+        return np.concatenate([without_mean(x) for x in taken] if apart else taken)
+
+    def solved(masks: tuple[Mask, ...]) -> FloatArray:
+        left, right = masked(scaled, masks), masked(outputs, masks)
+        return np.asarray(np.linalg.lstsq(left, right, rcond=None)[0], np.float64)
+
+    def squares(numbers: FloatArray, masks: tuple[Mask, ...]) -> float:
+        error = masked(outputs, masks) - masked(scaled, masks) @ numbers
+        return float(error @ error)
+
+    best = solved(whole)
+    if apart:  # the mean of what each record has of its own
+        each = zip(scaled, outputs, whole, strict=True)
+        best[-1] = np.mean(
+            np.concatenate([(y - x @ best)[mask] for x, y, mask in each])
+        )
+    judged = sum(squares(solved(fold.train), fold.validation) for fold in orders.folds)
+    count = sum(int(mask.sum()) for mask in whole)
+    fit, folds = (float(np.sqrt(x / count)) for x in (squares(best, whole), judged))
+    return fit, folds, (best / sizes).tolist()
+
+
+def impedance(orders: Orders) -> Sum | None:
+    """Fit the force of a mass on a spring to a motion; none to any other input.
+
+    It grows with the frequency: a ratio of polynomials that can be run has no such.
+    """
+    evidence, about = orders.evidence, orders.evidence.quantities
+    if about.causality != "motion to force" or about.input not in INPUTS:
+        return None
+    signals = [
+        Impedance.columns(about.input, evidence.input_hold, record.u, record.dt)
+        for record in evidence.fit
+    ]
+    fit, folds, found = summed(signals, orders)
+    numbers: dict[str, Any] = dict(zip(NUMBERS, found, strict=True))
+    block = Impedance(**numbers, input=about.input, hold=evidence.input_hold)
+    return Sum(fit, folds, (block,), "the impedance of a mass on a spring")

@@ -9,20 +9,22 @@ from pathlib import Path
 
 import numpy as np
 
+from hystbench.blocks.base import Block
 from hystbench.blocks.calls import current
 from hystbench.blocks.command import Command
 from hystbench.blocks.external import External
 from hystbench.blocks.fmu import Fmu
+from hystbench.blocks.gain import Gain
+from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.blocks.onnx import Onnx
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.simulator import Simulator
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
-from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.bases.kinds import COMMAND, IDENTIFIED, kind_of_base
 from hystbench.gap.bases.linear import identified_linear
 from hystbench.gap.bases.orders import HIGHEST
-from hystbench.gap.bases.split_given import split_given
+from hystbench.gap.bases.split_linear import split_given
 from hystbench.gap.cache import records_digest, remembered
 from hystbench.gap.records.evidence import Evidence, check_units
 from hystbench.gap.simulation.simulation import Simulation
@@ -230,3 +232,48 @@ def _column(evidence: Evidence) -> tuple[Model, str]:
         "needs a simulator that can be run again"
     )
     return model, note
+
+
+ORDER = 20
+"""Order N of the base: so many operators and one more."""
+
+
+def identified_gpi(evidence: Evidence) -> tuple[Model, str]:
+    """Identify the generalized Prandtl-Ishlinskii model of the slowest fit record.
+
+    Parameters
+    ----------
+    evidence : Evidence
+        Of its fit records only the slowest is looked at, or the one that the dataset
+        names for identification.
+
+    Returns
+    -------
+    Model
+        A ``gpi`` block, and a ``gain`` behind it where a constant was fitted.
+    str
+        One sentence: the record, the relative error, and whether it is tolerable.
+
+    Raises
+    ------
+    InputError
+        If the record is too short.
+    """
+    from hystbench.identification import identify  # late: scipy
+
+    slow = evidence.slowest
+    found = identify(slow.u, slow.y, ORDER)
+    block = GeneralizedPrandtlIshlinskii(
+        envelope=tuple(found.envelope.to_dict().values()),
+        thresholds=tuple(found.thresholds.tolist()),
+        weights=tuple(found.weights.tolist()),
+        start=found.start,
+    )
+    chain: tuple[Block, ...] = (block,)
+    if found.offset:
+        chain = (block, Gain(value=1.0, offset=found.offset))
+    note = (
+        f"gpi base of order {ORDER} from record {slow.name}, from {found.start}: "
+        f"{found.message}"
+    )
+    return Model("gpi", evidence.input, evidence.output, chain), note

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import (
     Ratio,
     Spectra,
-    Stretch,
     fit_ratio,
     with_a_mode,
     with_poles,
@@ -32,10 +30,6 @@ HIGHEST_WITH_MODES = 12
 UNHELD = 1e-9
 #: Order from which on a further mode is looked for: two modes and a lag do not do.
 MANY = 5
-#: Damping ratio at which a further mode is begun.
-BEGUN_DAMPING = 0.01
-#: Peaks of what is left at which a further mode is begun.
-PEAKS = 3
 #: So many orders in a row may not matter; one more ends the search.
 IN_VAIN = 2
 #: Share of each record at its beginning that does not count: what it remembers of the
@@ -46,16 +40,14 @@ ROUNDS = 20
 FOLD_ROUNDS = 4
 
 
-class Judged(Protocol):
-    """A model with its errors on all records, and on folds that did not fit it."""
+@dataclass(frozen=True)
+class Judged:
+    """A model with its errors."""
 
-    @property
-    def fit(self) -> float:
-        """Error on all records."""
-
-    @property
-    def folds(self) -> float:
-        """Error on the folds."""
+    fit: float
+    """On all records."""
+    folds: float
+    """On folds that did not fit it."""
 
 
 def lowers(better: Judged, item: Judged, share: float = NUMBER_PAYS) -> bool:
@@ -72,14 +64,13 @@ def none_lowers_both(item: Judged, others: Iterable[Judged]) -> bool:
     return not any(lowers(other, item) for other in others)
 
 
-class Found(NamedTuple):
+@dataclass(frozen=True)
+class Found(Judged):
     """A ratio that was fitted, and the records that it was fitted to."""
 
     orders: Orders
     task: OutputError
     ratio: Ratio
-    fit: float
-    folds: float
 
 
 @dataclass(frozen=True)
@@ -108,10 +99,10 @@ class Orders:
     @cached_property
     def spectra(self) -> Spectra:
         """Spectra of the records."""
-        each = ((item.u, item.y, item.dt) for item in self.evidence.fit)
+        fit = self.evidence.fit
         if self.evidence.own_offsets:  # a constant makes one, but for a transient
-            each = ((u - u.mean(), y - y.mean(), dt) for u, y, dt in each)
-        return Spectra.of([Stretch(*item) for item in each], self.evidence.input_hold)
+            fit = tuple(replace(x, u=x.u - x.u.mean(), y=x.y - x.y.mean()) for x in fit)
+        return Spectra.of(fit, self.evidence.input_hold)
 
     @cached_property
     def decay_s(self) -> float | None:
@@ -147,7 +138,7 @@ class Orders:
             for fold in self.folds
         )
         fit, folds = (float(np.sqrt(x / count)) for x in (ratio.cost, judged))
-        return Found(self, task, ratio, fit, folds)
+        return Found(fit, folds, self, task, ratio)
 
     def searched(self, without: Judged) -> list[Found]:
         """Fit orders from one on, while they matter beside a model without any pole.
@@ -179,9 +170,7 @@ class Orders:
             left = last.task.left(last.ratio)
             begun = [
                 last.task.refined(ratio, self.whole, FOLD_ROUNDS)
-                for ratio in with_a_mode(
-                    self.spectra, last.ratio, left, BEGUN_DAMPING, PEAKS
-                )
+                for ratio in with_a_mode(self.spectra, last.ratio, left)
             ]
             best = min(begun, key=lambda ratio: ratio.cost)
             further = self.judged(last.task, best)

@@ -16,13 +16,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, cast
+from typing import cast
 
 import numpy as np
 
 from hystbench.blocks.held import Hold
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.record import ComplexArray, FloatArray
+from hystbench.record import ComplexArray, FloatArray, Record
 
 #: Highest order that is fitted.
 MOST = 12
@@ -35,23 +35,19 @@ ROUNDS = 12
 REFINED = 25
 #: Share of the cost that a round must win for another one to follow.
 LEAST_GAIN = 1e-5
+#: Damping ratio at which a further mode is begun.
+BEGUN_DAMPING = 0.01
+#: Peaks of what is left at which a further mode is begun.
+PEAKS = 3
 #: Half the width of a band, as a share of its frequency.
 BAND = 0.05
 #: A pole is kept off the imaginary axis by this share of its size.
 MARGIN = 1e-5
 
 
-class Stretch(NamedTuple):
-    """Contiguous samples of a record."""
-
-    u: FloatArray
-    y: FloatArray
-    dt: float
-
-
 @dataclass(frozen=True)
 class RecordSpectrum:
-    """Spectral lines of one stretch."""
+    """Spectral lines of one record."""
 
     s: ComplexArray
     """Shape (l,). ``j w`` over the scale."""
@@ -70,19 +66,19 @@ class RecordSpectrum:
 
 @dataclass(frozen=True)
 class Spectra:
-    """Lines of all stretches, over one scale of frequency in rad/s."""
+    """Lines of all records, over one scale of frequency in rad/s."""
 
     lines: tuple[RecordSpectrum, ...]
     scale: float
 
     @classmethod
-    def of(cls, stretches: Sequence[Stretch], hold: Hold) -> Spectra:
-        """Transform stretches.
+    def of(cls, records: Sequence[Record], hold: Hold) -> Spectra:
+        """Transform records.
 
         The images of the input that a staircase or straight lines leave above half
         the sampling rate are not seen.
         """
-        raw = [_transformed(item, hold) for item in stretches]
+        raw = [_transformed(item, hold) for item in records]
         power = sum(float(np.sum(np.abs(y[1:]) ** 2)) for _, _, y, _ in raw)
         moment = sum(float(np.sum((w * np.abs(y)) ** 2)) for w, _, y, _ in raw)
         scale = float(np.sqrt(moment / power))
@@ -184,11 +180,7 @@ def with_poles(spectra: Spectra, a: FloatArray, zeros: int) -> Ratio:
 
 
 def with_a_mode(
-    spectra: Spectra,
-    ratio: Ratio,
-    left: Sequence[FloatArray],
-    damping_ratio: float,
-    count: int,
+    spectra: Spectra, ratio: Ratio, left: Sequence[FloatArray]
 ) -> Iterator[Ratio]:
     """Give a ratio a further pair of poles, at each of the peaks of what it leaves.
 
@@ -199,21 +191,17 @@ def with_a_mode(
     spectra : Spectra
     ratio : Ratio
     left : sequence of ndarray, shape (n,) each
-        What it leaves of the output, by stretch.
-    damping_ratio : float
-        Of the further mode.
-    count : int
-        Peaks that are tried, the highest ones.
+        What it leaves of the output, by record.
     """
     order = len(ratio.a) + 2
     problem = _Problem(spectra, order, order)
-    for s in _peaks(spectra, left, count):
-        pair = [1.0, 2 * damping_ratio * s, s**2]
+    for s in _peaks(spectra, left):
+        pair = [1.0, 2 * BEGUN_DAMPING * s, s**2]
         a = np.polymul(np.append(ratio.a, 1.0)[::-1], pair)[:0:-1]
         yield problem.solved(np.asarray(a))
 
 
-def _peaks(spectra: Spectra, left: Sequence[FloatArray], count: int) -> Iterator[float]:
+def _peaks(spectra: Spectra, left: Sequence[FloatArray]) -> Iterator[float]:
     """Give where most power is left in a band of a tenth, in units of the scale."""
     s = np.concatenate([lines.s.imag for lines in spectra.lines])
     power = np.concatenate(
@@ -225,7 +213,7 @@ def _peaks(spectra: Spectra, left: Sequence[FloatArray], count: int) -> Iterator
     s, power = s[s > 0], power[s > 0]
     order = np.argsort(s)
     s, power = s[order], power[order]
-    for _ in range(count):
+    for _ in range(PEAKS):
         total = np.concatenate([[0.0], np.cumsum(power)])
         first, end = (np.searchsorted(s, s * k) for k in (1 - BAND, 1 + BAND))
         best = int(np.argmax(total[end] - total[first]))
@@ -302,7 +290,7 @@ def below(a: FloatArray, s: ComplexArray) -> ComplexArray:
 
 
 def _transformed(
-    item: Stretch, hold: Hold
+    item: Record, hold: Hold
 ) -> tuple[FloatArray, ComplexArray, ComplexArray, FloatArray]:
     n = len(item.u)
     f = np.asarray(np.fft.rfftfreq(n, item.dt), dtype=np.float64)
@@ -334,7 +322,7 @@ def _real(values: ComplexArray) -> FloatArray:
 def _triangle(
     columns: ComplexArray, transients: ComplexArray, target: ComplexArray
 ) -> FloatArray:
-    """Triangle of a stretch's equations, without what its transient can do."""
+    """Triangle of a record's equations, without what its transient can do."""
     every = triangle_of(_real(np.column_stack([transients, columns, target])))
     own = transients.shape[1]
     return every[own:, own:]
@@ -346,7 +334,7 @@ def triangle_of(equations: FloatArray) -> FloatArray:
 
 
 def _least(triangles: Sequence[FloatArray]) -> tuple[FloatArray, float]:
-    """Least squares over all stretches: the solution, and what is left."""
+    """Least squares over all records: the solution, and what is left."""
     all_of_them = triangle_of(np.vstack(triangles))
     left, right = all_of_them[:, :-1], all_of_them[:, -1]
     size = np.linalg.norm(left, axis=0)

@@ -1,6 +1,6 @@
-"""The effects that can be named, one a module, by name.
+"""The effects that can be named, by name; a module holds those that act alike.
 
-A new effect is a new module in this package; it is found by its class's ``name``. An
+A new effect is a class in a module of this package, found by its ``name``. An
 installed package adds one by an entry point of the group ``hystbench.effects``.
 """
 

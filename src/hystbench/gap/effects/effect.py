@@ -6,8 +6,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar, Literal, get_args
 
-import numpy as np
-
 from hystbench.blocks import block_class
 from hystbench.blocks.base import Block, Place
 from hystbench.blocks.held import HeldBlock, held_until_smooth
@@ -17,7 +15,7 @@ from hystbench.device_kinds import DEVICE_KINDS, DeviceKind, causes
 from hystbench.errors import refuse_unknown
 from hystbench.gap.effects.law import Changed, Filled, Law, Moved, Passed
 from hystbench.gap.effects.places import INSIDE, places_between_halves
-from hystbench.gap.effects.variant import Beside, Refused, Values, Variant, in_operation
+from hystbench.gap.effects.variant import Beside, Values, Variant, in_operation
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.view_kinds import ViewKind
 from hystbench.record import FloatArray
@@ -124,19 +122,24 @@ class Effect(ABC):
         *,
         law: str = "",
         form: str = "",
-        grids: dict[str, FloatArray] | None = None,
-        unit: dict[str, float] | None = None,
-        positive: tuple[str, ...] = (),
-        free: tuple[str, ...] = (),
-        refused: dict[str, Refused] | None = None,
-        limits: dict[str, tuple[float, float]] | None = None,
-        neutral: bool = True,
-        zero: dict[str, float] | None = None,
+        **about: Any,
     ) -> Variant:
         """Give the variant that puts the effect's block before the block at a place.
 
-        A block that wraps the hysteresis changes the chain from the hysteresis on. The
-        block has the effect's name, or that of another law of it.
+        A block that wraps the hysteresis changes the chain from the hysteresis on.
+
+        Parameters
+        ----------
+        simulation : Simulation
+        place : int
+        values : callable
+            Gives the block's parameters from those that are searched and solved for.
+        law : str
+            Name of the block, where it is not the effect's.
+        form : str
+        **about
+            Further fields of :class:`Variant`; by default all parameters that are
+            searched and solved for are free.
         """
         block = block_class(law or self.name)
         start = place
@@ -155,6 +158,7 @@ class Effect(ABC):
                 own = {"hold": hold, **own}
             return (*between, block.from_mapping(own), *rest)
 
+        about.setdefault("free", (*about.get("grids", ()), *about.get("unit", ())))
         return Variant(
             self.name,
             INSIDE if place in places_between_halves(simulation) else self.place,
@@ -162,38 +166,24 @@ class Effect(ABC):
             start,
             build,
             (len(between),),
-            grids or {},
-            unit or {},
-            positive,
-            free or (*(grids or {}), *(unit or {})),
-            refused=refused or {},
-            limits=limits or {},
-            neutral=neutral,
-            zero=zero,
             is_linear=issubclass(block, LinearBlock),
+            **about,
         )
 
     def added(
-        self,
-        simulation: Simulation,
-        beside: Beside,
-        *,
-        form: str,
-        charge: float,
-        grids: dict[str, FloatArray] | None = None,
+        self, simulation: Simulation, beside: Beside, *, form: str, **about: Any
     ) -> Variant:
         """Give the variant that adds a signal to the output of the chain."""
-        end = len(simulation.chain)
+        end, nothing = len(simulation.chain), ()
         return Variant(
             self.name,
             self.place,
             form,
             end,
-            lambda given: (),
-            (),
-            grids or {},
+            lambda given: nothing,
+            nothing,
             beside=beside,
-            charge=charge,
+            **about,
         )
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
@@ -233,49 +223,33 @@ class Effect(ABC):
         """
         yield from ()
 
-    def filter_around(
-        self,
-        passed: Passed,
-        name: str,
-        place: Literal["before", "behind"],
-        **given: str,
-    ) -> Law:
-        """Give the effect's filter before or behind what has effects inside.
-
-        It starts short against the records' rates: at two sampling intervals.
-
-        Parameters
-        ----------
-        passed : Passed
-        name : str
-            The time that is fitted.
-        place : {"before", "behind"}
-        **given
-            Other parameters.
-        """
-        block = block_class(self.name).from_mapping({name: 2 * passed.step, **given})
-        return Law("", block, (name,), place, ranges={name: (passed.shortest, np.inf)})
-
     def curve(
         self,
         place: Literal["before", "behind"],
         form: str = "",
-        also: Mapping[str, float] | None = None,
+        *,
+        law: str = "",
+        also: Mapping[str, Any] | None = None,
+        ranges: Mapping[str, tuple[float, float]] | None = None,
         **start: float,
     ) -> Law:
-        """Give the effect's curve or play before or behind what has effects inside.
+        """Give the effect's block before or behind what has effects inside.
 
         Parameters
         ----------
         place : {"before", "behind"}
         form : str
-        also : mapping of str to float, optional
-            Numbers that are not fitted.
+        law : str
+            Name of the block, where it is not the effect's.
+        also : mapping, optional
+            Parameters that are not fitted.
+        ranges : mapping of str to (float, float), optional
+            Of its numbers, where beyond them it would be another effect.
         **start : float
-            Those that are, where their fit starts.
+            Its numbers, where their fit starts.
         """
-        block = block_class(self.name).from_mapping({**(also or {}), **start})
-        return Law(form, block, tuple(start), place)
+        block = block_class(law or self.name).from_mapping({**(also or {}), **start})
+        return Law(form, block, tuple(start), place, ranges=ranges or {})
 
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
         """Give the block of a signal beside, from its amplitudes (records, k)."""
@@ -310,15 +284,3 @@ class StoreEffect(InsideEffect):
     """An effect of stores: their own numbers are other ones."""
 
     laws = ("store",)
-
-    @abstractmethod
-    def stored(self, filled: Filled) -> Iterator[Changed]:
-        """Give the numbers, as every effect may."""
-
-
-class ForceEffect(InsideEffect):
-    """An effect that acts inside a mechanism."""
-
-    @abstractmethod
-    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Give the laws, as every effect may."""

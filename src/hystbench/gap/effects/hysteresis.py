@@ -1,9 +1,10 @@
-"""``hysteresis``: the data have a loop at every rate, the chain has none."""
+"""Loops of the material: a new one, another shape, or one that widens with rate."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import fields, replace
+from functools import partial
 from typing import Any, ClassVar, cast
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.wrapping import PlayBlock
 from hystbench.envelope import Envelope
+from hystbench.errors import InputError
 from hystbench.gap.effects.effect import Declined, Effect
 from hystbench.gap.effects.places import has_dynamics, only_lags
 from hystbench.gap.effects.variant import Values, Variant, logarithmic
@@ -139,10 +141,118 @@ class Hysteresis(Effect):
             positive=tuple(names),
             free=("weights", "envelope"),
             neutral=False,
+            charge=float(OPERATORS + len(envelope)),
         )
-        return replace(found, charge=float(OPERATORS + len(envelope)), begun=True)
+        return replace(found, begun=True)
 
 
 def _standing(form: str, place: int) -> str:
     """Name a form with where it stands, if not before everything else."""
     return f"{form} behind" if place else form
+
+
+class HysteresisShape(Effect):
+    """Play operators, their squares, and powers of the input beside the hysteresis.
+
+    Its parameters are many: it is charged for all the directions that reshaping has.
+    """
+
+    name = "hysteresis-shape"
+    shows = "branch"
+    place = "material"
+    free_forms = ("",)
+
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
+        """Offer the correction of the chain's hysteresis."""
+        if simulation.hysteresis is None:
+            raise Declined("the chain has no hysteresis whose shape could be wrong")
+        amplitude = simulation.largest(simulation.hysteresis)
+        thresholds = [amplitude * k / PLAYS_OF_SHAPE for k in range(1, PLAYS_OF_SHAPE)]
+        weights = [f"weight {k}" for k in range(1, PLAYS_OF_SHAPE)]
+        squares = [f"square {k}" for k in range(1, PLAYS_OF_SHAPE)]
+        powers = [f"power {k}" for k in range(1, POWERS_OF_SHAPE + 1)]
+        size = 1e-3 * simulation.largest(simulation.behind_hysteresis)
+        unit = (
+            dict.fromkeys(weights, size / amplitude)
+            | dict.fromkeys(squares, size / amplitude**2)
+            | {name: size / amplitude**k for k, name in enumerate(powers, start=1)}
+        )
+        yield self.inserted(
+            simulation,
+            simulation.hysteresis + 1,
+            lambda given: {
+                "thresholds": thresholds,
+                "weights": [given[name] for name in weights],
+                "square_weights": [given[name] for name in squares],
+                "powers": [given[name] for name in powers],
+            },
+            unit=unit,
+            free=("weights", "square_weights", "powers"),
+        )
+
+
+PLAYS_OF_SHAPE = 10
+POWERS_OF_SHAPE = 5
+
+
+class RateDependentHysteresis(Effect):
+    """Thresholds that grow with rate, or a field that the rate takes away."""
+
+    name = "rate-dependent-hysteresis"
+    shows = "rate"
+    place = "material"
+
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
+        """Offer three laws around the hysteresis.
+
+        The coefficient is searched by what it does at the fastest rate of the records,
+        from one exponent or another, which the refit moves.
+        """
+        if simulation.hysteresis is None:
+            raise Declined("the chain has no hysteresis that could widen")
+        amplitude = simulation.largest(simulation.hysteresis)
+        field = np.geomspace(2e-3, 0.5, 5) * amplitude
+        sizes = {
+            "growing-thresholds": np.geomspace(0.03, 20, 5),
+            "excess-field": field,
+            "acting-field": field,
+        }
+        if not can_grow(simulation):
+            del sizes["growing-thresholds"]
+        for form, at_fastest in sizes.items():
+            for exponent in EXPONENTS[form]:
+                yield self.inserted(
+                    simulation,
+                    simulation.hysteresis + 1,
+                    partial(_widened, form, exponent),
+                    form=f"{form}, {exponent:g}",
+                    grids={
+                        "coefficient": at_fastest / simulation.fastest() ** exponent
+                    },
+                    free=("coefficient", "exponent"),
+                    zero={"coefficient": 0.0},
+                    charge=2.0,
+                )
+
+
+EXPONENTS = {
+    "growing-thresholds": (0.5, 1.0),
+    "excess-field": (0.5, 1.0),
+    # With an exponent of one the field that acts is a plain lag of the drive.
+    "acting-field": (0.5,),
+}
+"""Where the search for each law starts; the refit moves the exponent."""
+
+
+def _widened(form: str, exponent: float, given: Values) -> dict[str, Any]:
+    return {"exponent": exponent, **given, "form": form}
+
+
+def can_grow(simulation: Simulation) -> bool:
+    """Tell whether the hysteresis has thresholds that can grow."""
+    assert simulation.hysteresis is not None  # noqa: S101  (the caller has looked)
+    try:
+        simulation.chain[simulation.hysteresis].check_growth()  # type: ignore[attr-defined]
+    except InputError:
+        return False
+    return True

@@ -12,10 +12,10 @@ import numpy as np
 
 from hystbench.gap.fitting.score import Score, Shared
 from hystbench.gap.fitting.state import ROUNDING, ModelState
-from hystbench.gap.records.scored_samples import rms
 from hystbench.gap.simulation.reshape import closing_reshapings, orthonormal
 from hystbench.gap.simulation.shared import Same
 from hystbench.gap.simulation.simulation import Simulation
+from hystbench.metrics import rms
 from hystbench.record import FloatArray
 
 LEAST = float(np.finfo(float).tiny)

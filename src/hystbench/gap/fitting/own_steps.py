@@ -9,7 +9,7 @@ from hystbench.blocks.external import External
 from hystbench.blocks.held import Hold
 from hystbench.errors import InputError
 from hystbench.gap.fitting.on_records import run_base
-from hystbench.gap.records.scored_samples import rms
+from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 from hystbench.sentences import percent

@@ -20,7 +20,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.simulator import Simulator
 from hystbench.gap.cache import Result, records_digest, remembered
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.drift import Drift
+from hystbench.gap.effects.sensor import Drift
 from hystbench.gap.effects.variant import Beside
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.records.scored_samples import ScoredSamples

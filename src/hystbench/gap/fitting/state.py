@@ -18,11 +18,12 @@ from hystbench.errors import InputError
 from hystbench.gap.effects.variant import Beside, Refused, Values
 from hystbench.gap.fitting.beside import beside_columns
 from hystbench.gap.fitting.score import Held
-from hystbench.gap.records.scored_samples import ScoredSamples, rms
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.reshape import orthonormal, reshapings
 from hystbench.gap.simulation.shared import shared
 from hystbench.gap.simulation.simulation import Signals, Simulation
 from hystbench.gap.thresholds import SHAPE
+from hystbench.metrics import rms
 from hystbench.record import FloatArray, Record
 
 

@@ -15,15 +15,21 @@ from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import (
     QUICK,
     Fitted,
+    at_values,
     fitted,
     fitted_to_the_end,
     record_weights,
 )
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.beginnings import Beginnings, with_numbers_of
-from hystbench.gap.inside.insert_law import Offer, evened, of_stores, with_law
-from hystbench.gap.inside.stores import with_changed
+from hystbench.gap.inside.beginnings import Beginnings
+from hystbench.gap.inside.insert_law import (
+    Offer,
+    evened,
+    of_stores,
+    with_changed,
+    with_law,
+)
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
 from hystbench.record import FloatArray
@@ -262,10 +268,10 @@ def fitted_likely(
         for own in list(likely.values())[: 2 * count]
     ]
     rough.sort(key=lambda pair: pair[1].score)
-    begun_well = [
-        replace(own, state=with_numbers_of(item.state, own.state))
-        for item, own in rough[:count]
-    ]
+    begun_well = []
+    for item, own in rough[:count]:
+        numbers = np.array([own.state.value(free) for free in item.state.free])
+        begun_well.append(replace(own, state=at_values(item.state, numbers)))
     return _to_the_end(begun_well, score)
 
 

@@ -72,7 +72,6 @@ def in_further_modes(
         found, frequency = more
         modes.append(frequency)
         host = found.state.chain[host_of(found.state)]
-        assert isinstance(host, Mechanism)  # noqa: S101  (for the type checker)
         say(f"inside: also in the mode at {frequency_of(host):.3g} Hz")
     return found, tuple(modes)
 
@@ -89,9 +88,7 @@ def with_modes(state: ModelState, frequencies: tuple[float, ...]) -> ModelState:
 
 def _frequency(state: ModelState) -> float:
     """Give the natural frequency of the mode that was taken out last, in Hz."""
-    mode = state.chain[state.free[-1].block]
-    assert isinstance(mode, Mechanism)  # noqa: S101  (for the type checker)
-    return frequency_of(mode)
+    return frequency_of(state.chain[state.free[-1].block])
 
 
 def further_words(state: ModelState) -> str:
@@ -113,7 +110,13 @@ def _in_one_more(
     split = list(with_another_mode(state))
     if not split or not acting:
         return None
-    chosen = max(split, key=_needs)
+    # The mode of which other numbers would explain most of the records.
+    chosen = max(
+        split,
+        key=lambda one: explained_by_levels(
+            replace(one, free=one.free[-len(NUMBERS) :])
+        ),
+    )
     linear = fitted(chosen, score)
     laws = offer(linear)
     beginnings = Beginnings.of(linear.state, score)
@@ -211,8 +214,3 @@ def _with_mode(
             free += numbers_of(block, k)
     free += [Free(place, name) for name in NUMBERS]
     return replace(state, free=tuple(free)).settled()
-
-
-def _needs(state: ModelState) -> float:
-    """How much of the records other numbers of the mode put in last would explain."""
-    return explained_by_levels(replace(state, free=state.free[-len(NUMBERS) :]))

@@ -18,10 +18,9 @@ from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.gap.effects import among
-from hystbench.gap.effects.law import Changed, Law, Moved, Passed
+from hystbench.gap.effects.law import Changed, Filled, Law, Moved, Passed
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added, Free, ModelState
-from hystbench.gap.inside.stores import how_it_fills
 from hystbench.record import Record
 
 REMAINS = 0.05
@@ -65,7 +64,10 @@ def laws_for(
     times : Times, optional
         Of the host's own records by default, as of one that was identified from them.
     """
-    passed, known = what_passes(host.state, times), among(offered)
+    times = Times.of(host.state.records, True) if times is None else times
+    signals = [record.u for record in host.state.records], host.state.simulation.output
+    given, shown = (max(float(np.max(np.abs(x))) for x in every) for every in signals)
+    passed, known = Passed(given, shown, *times), among(offered)
     around = {name: tuple(effect.around(passed)) for name, effect in known.items()}
     own: dict[str, Iterator[Law | Changed]]
     if of_stores(host):
@@ -81,14 +83,6 @@ def laws_for(
         own = {name: effect.in_mechanism(moved) for name, effect in known.items()}
     every = {name: (*own[name], *around[name]) for name in known}
     return {name: laws for name, laws in every.items() if laws}
-
-
-def what_passes(state: ModelState, times: Times | None = None) -> Passed:
-    """Look how large the input and the output of a model are on its records."""
-    times = Times.of(state.records, True) if times is None else times
-    signals = [record.u for record in state.records], state.simulation.output
-    given, shown = (max(float(np.max(np.abs(x))) for x in every) for every in signals)
-    return Passed(given, shown, times.step, times.shortest)
 
 
 def of_stores(item: Fitted) -> bool:
@@ -125,6 +119,21 @@ def how_it_moves(state: ModelState, turns: str) -> Moved:
     )
 
 
+def how_it_fills(state: ModelState) -> Filled:
+    """Look how high the stores of a chain are filled on its records."""
+    tops = []
+    for k, block in enumerate(state.chain):
+        if isinstance(block, Store):
+            level = replace(block, output="level")
+            signals = state.simulation.tail(k, [level])
+            tops.append((k, block, max(float(z.max()) for z in signals)))
+    measured = max(float(record.y.max()) for record in state.records)
+    last = state.chain[-1]
+    is_shown = isinstance(last, Store) and last.output == "level" and measured > 0
+    known = all(free.given is not None for free in state.free)
+    return Filled(tuple(tops), measured if is_shown else None, known)
+
+
 def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
     """Put a law into a chain, with its numbers free.
 
@@ -151,6 +160,33 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
     values: dict[str, Any] = {name: getattr(law.block, name) for name in law.free}
     item = Added(effect, law.place, law.form, (place,), values, float(len(law.free)))
     return replace(state, free=tuple(free), added=(*state.added, item))
+
+
+def with_changed(state: ModelState, effect: str, changed: Changed) -> ModelState:
+    """Give stores with other numbers, some of them free as well.
+
+    What was known of such a number says nothing of it any more.
+    """
+    chain = list(state.chain)
+    old = {
+        f"{place}.{name}": float(getattr(chain[place], name))
+        for place, values in changed.values.items()
+        for name in values
+    }
+    for place, values in changed.values.items():
+        chain[place] = replace(chain[place], **values)
+    places = tuple(changed.values)
+    was_free = tuple(x for x in state.free if f"{x.block}.{x.parameter}" in old)
+    free = tuple(
+        Free(x.block, x.parameter) if x in was_free and x.given is not None else x
+        for x in state.free
+    )
+    more = tuple(x for x in (Free(*own) for own in changed.free) if x not in free)
+    charge = max(float(len(more)), 1.0)
+    item = Added(effect, "inside", changed.form, places, old, charge, was_free=was_free)
+    return replace(
+        state, chain=tuple(chain), free=(*free, *more), added=(*state.added, item)
+    )
 
 
 def evened(state: ModelState) -> ModelState:

@@ -39,8 +39,8 @@ def modes(
     Parameters
     ----------
     start : ModelState
-        Its chain is a transfer function of two oscillating modes or more, and gains;
-        of any other nothing is given.
+        Its chain is a transfer function of two oscillating modes or more, of which no
+        two poles coincide, and gains; of any other nothing is given.
     output : {"position", "velocity", "acceleration"}
     others_too : bool
         Whether the numbers of the other modes are free as well, and each of them is a
@@ -56,22 +56,25 @@ def modes(
         return
     if not all(isinstance(item, Gain) for item in behind):
         return
-    found: list[tuple[float, int, ModelState]] = []
-    for split in split_modes(block, output):
-        state = replace(
-            start,
-            chain=(*split, *behind),
-            free=tuple(Free(0, name) for name in NUMBERS),
-        ).settled()
-        found.append((-explained_by_levels(state), len(found), state))
-    found.sort()
-    for share, _, state in found:
-        if -share >= MOST * -found[0][0]:
-            yield with_others_free(state) if others_too else state
+    poles, _ = poles_of(block)
+    away = np.abs(poles[:, None] - poles) + np.diag(np.abs(poles))
+    if np.sum(poles.imag > 0) < 2 or np.any(away < APART * np.abs(poles)):
+        return
+    free = tuple(Free(0, name) for name in NUMBERS)
+    split = [
+        replace(start, chain=(one.mode, one.rest, *behind), free=free).settled()
+        for one in taken_out(block, output)
+        if one.rest is not None
+    ]
+    shares = np.array([explained_by_levels(state) for state in split])
+    for k in np.argsort(-shares, kind="stable"):
+        if shares[k] >= MOST * shares.max():
+            yield with_others_free(split[k]) if others_too else split[k]
 
 
-def frequency_of(mode: Mechanism) -> float:
-    """Give the natural frequency of a mode in Hz."""
+def frequency_of(mode: Block) -> float:
+    """Give the natural frequency of a mechanism in Hz."""
+    assert isinstance(mode, Mechanism)  # noqa: S101  (for the type checker)
     return float(np.sqrt(mode.stiffness / mode.mass) / (2 * np.pi))
 
 
@@ -116,31 +119,6 @@ def one_by_one(others: OtherModes) -> list[OtherModes]:
     return [*parts, sum_of(others, poles[last], residues[last], direct)]
 
 
-def split_modes(block: TransferFunction, output: str) -> list[tuple[Block, Block]]:
-    """Write a transfer function as a mechanism and other modes, in every way.
-
-    With the residues R of a pair of poles p the mode is
-    ``2 (Re R (s - Re p) - Im R Im p) / (s^2 + c s + k)``: a motion of the coordinate
-    and a share of the next derivative.
-
-    Parameters
-    ----------
-    block : TransferFunction
-    output : {"position", "velocity", "acceleration"}
-        What motion of the mechanism the output is.
-
-    Returns
-    -------
-    list of (Mechanism, OtherModes)
-        By frequency; empty if fewer than two modes oscillate, or two poles coincide.
-    """
-    poles, _ = poles_of(block)
-    away = np.abs(poles[:, None] - poles) + np.diag(np.abs(poles))
-    if np.sum(poles.imag > 0) < 2 or np.any(away < APART * np.abs(poles)):
-        return []
-    return [(one.mode, one.rest) for one in taken_out(block, output) if one.rest]
-
-
 class ModeTakenOut(NamedTuple):
     """A mode that was taken out of a transfer function."""
 
@@ -155,6 +133,10 @@ class ModeTakenOut(NamedTuple):
 
 def taken_out(block: TransferFunction, output: str) -> Iterator[ModeTakenOut]:
     """Take each oscillating mode out of a transfer function in turn, by frequency.
+
+    With the residues R of a pair of poles p the mode is
+    ``2 (Re R (s - Re p) - Im R Im p) / (s^2 + c s + k)``: a motion of the coordinate
+    and a share of the next derivative.
 
     Left out are those that are none of the motion, and those beside which the rest is
     so little damped that rounding its numbers makes it unstable.

@@ -29,8 +29,8 @@ from hystbench.gap.inside.further_modes import (
     in_further_modes,
     with_modes,
 )
-from hystbench.gap.inside.host import ZEROS, Host
 from hystbench.gap.inside.insert_law import Times, host_places, laws_for
+from hystbench.gap.inside.one_coordinate import ZEROS, Host
 from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.with_own_values import ROUNDS, on_records

@@ -1,10 +1,11 @@
-"""Linear models of one coordinate where a fit begins: masses, and an impedance."""
+"""Linear hosts of one coordinate: begun, and fitted to records or to a simulation."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,68 @@ from hystbench.blocks.held import Hold
 from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.mechanism import Mechanism, free_starts
 from hystbench.blocks.starts import possible_starts
+from hystbench.gap.cache import records_digest
+from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
+from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.records.scored_samples import ScoredSamples
+from hystbench.gap.thresholds import AS_GOOD
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
+
+ZEROS = ("bias", "offset", "delay_s", "blend")
+"""Numbers that are counted from a zero: a share of them says nothing."""
+
+
+@dataclass(frozen=True)
+class Host:
+    """A linear model that forces may act inside of."""
+
+    alone: ModelState
+    """What the gap is counted from."""
+    fitted: Fitted
+    """The same, its numbers fitted to the records: what forces are put in."""
+    words: str
+    """How it stands in place of the base."""
+    other: ModelState | None = None
+    """What forces are put in instead: as good while linear, and not fitted, as a fit
+    would come back."""
+    charge: float = 0.0
+    """For numbers of a given base that are fitted though nobody set them free."""
+
+    @property
+    def counts(self) -> int:
+        """As how many effects it counts: one if known numbers are fitted."""
+        return int(self.charge > 0.0)
+
+
+def best_host(states: Iterable[ModelState], score: Score) -> Fitted | None:
+    """Fit linear hosts, the likely ones to the end; give the one that scores least.
+
+    What it gives as its output may also have a share of the next derivative (a zero).
+    """
+    best = likeliest(states, score)
+    if best is None:
+        return None
+    return min(best, with_a_zero(best, score), key=lambda item: item.score)
+
+
+def likeliest(states: Iterable[ModelState], score: Score) -> Fitted | None:
+    """Fit hosts a little, and the best of them to the end; None without any."""
+    quick = [fitted(state, score, QUICK) for state in states]
+    if not quick:
+        return None
+    return fitted(min(quick, key=lambda item: item.score).state, score)
+
+
+def with_a_zero(best: Fitted, score: Score) -> Fitted:
+    """Fit a host whose output also has a share of the next derivative."""
+    block, free = best.state.chain[0], best.state.free
+    zero = Free(0, "blend")
+    if not (isinstance(block, Mechanism) and block.output != "force") or zero in free:
+        return best
+    return fitted(replace(best.state, free=(*free, zero)), score)
+
 
 FREQUENCIES = 24
 """Natural frequencies at which a mass on a spring is begun."""
@@ -73,7 +132,7 @@ def masses(
     At each natural frequency and damping ratio the gain and an offset of the output are
     solved for.
     """
-    span, step = _span_and_step(records)
+    span, step = span_and_step(records)
     grid = np.geomspace(2 * np.pi / span, 0.8 * np.pi / step, FREQUENCIES)
     about: Any = {"output": output, "hold": hold}
     units = (
@@ -99,7 +158,7 @@ def free_masses(
     windows = any(record.decay_s is not None for record in records)
     allowed = ("rest",) if windows else free_starts(output)
     starts = [own for own in _starts(records) if own in allowed]
-    span, step = _span_and_step(records)
+    span, step = span_and_step(records)
     rates = np.geomspace(0.3 / span, 0.3 / step, FREQUENCIES)
     about: Any = {"output": output, "hold": hold}
     units = (
@@ -140,7 +199,7 @@ def _solved_for(
     return sorted(found, key=lambda item: item[0])
 
 
-def _span_and_step(records: Sequence[Record]) -> tuple[float, float]:
+def span_and_step(records: Sequence[Record]) -> tuple[float, float]:
     """Give the longest duration and the shortest sampling interval."""
     span = max(record.dt * len(record) for record in records)
     return span, min(record.dt for record in records)
@@ -186,3 +245,97 @@ def solved(columns: FloatArray, wanted: FloatArray) -> FloatArray:
     sizes = np.maximum(np.sqrt(np.mean(columns**2, axis=0)), 1e-300)
     found = np.linalg.lstsq(columns / sizes, wanted, rcond=1e-10)[0] / sizes
     return np.asarray(found)
+
+
+def same_as(
+    start: ModelState, quantities: Quantities, floor: float
+) -> ModelState | None:
+    """Give a model of one coordinate that simulates what a given base does.
+
+    It may differ by no more of the gap than two models that do the same. A zero and an
+    offset are its own only where noise of that power does not hide what they do. Of a
+    base that a gain and an offset do as well there is none: nothing moves in it.
+    """
+    simulated, most = as_simulated(start), most_missed(start)
+    u, wanted = (start.sample.take(x) for x in ([r.u for r in simulated], start.exact))
+    static = np.column_stack([u, np.ones(len(u))])
+    moves = wanted - static @ solved(static, wanted)
+    if np.mean(moves**2) < most:
+        return None
+    unseen = min(AS_GOOD * floor, most)
+    shown = [float(np.sum(moves[part] ** 2)) for part in start.sample.slices]
+    one = _ByContent((simulated[int(np.argmax(shown))],))
+    every, count = _ByContent(simulated), len(ScoredSamples.of(simulated))
+    about = quantities, start.hold
+    for with_zero, enough in ((False, unseen), (True, most)):
+        # What the best model of one record misses there, one of all records does too.
+        alone = _coordinate_like(one, *about, with_zero)
+        if len(simulated) > 1 and missed(alone) > enough * count:
+            continue
+        best = _coordinate_like(every, *about, with_zero)
+        if best is not None and missed(best) <= enough * count:
+            same = _without_offset(best, unseen * count)
+            return replace(same, records=start.records, sample=start.sample).settled()
+    return None
+
+
+def as_simulated(start: ModelState) -> tuple[Record, ...]:
+    """Give records whose output is what the base simulates."""
+    return tuple(
+        replace(record, y=y, simulated=None, interpolated=None)
+        for record, y in zip(start.records, start.exact, strict=True)
+    )
+
+
+def most_missed(start: ModelState) -> float:
+    """Give the mean square by which two models differ that do the same."""
+    return AS_GOOD * float(np.mean(start.residual**2))
+
+
+def _without_offset(best: Fitted, allowed: float) -> ModelState:
+    """Leave out the gain and the offset behind a model that does as well without."""
+    state = best.state
+    if not isinstance(state.chain[-1], Gain):
+        return state
+    last = len(state.chain) - 1
+    plain = replace(
+        state,
+        chain=state.chain[:-1],
+        free=tuple(free for free in state.free if free.block != last),
+    ).settled()
+    return plain if float(np.sum(plain.residual**2)) <= allowed else state
+
+
+def missed(found: Fitted | None) -> float:
+    """Sum the squares of what a model misses."""
+    return np.inf if found is None else float(np.sum(found.state.residual**2))
+
+
+class _ByContent:
+    """Records as a key: any others of the same content will do."""
+
+    def __init__(self, records: tuple[Record, ...]) -> None:
+        self.records, self.digest = records, records_digest(records)
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _ByContent) and self.digest == other.digest
+
+
+@lru_cache(maxsize=4)
+def _coordinate_like(
+    simulated: _ByContent, quantities: Quantities, hold: Hold, with_zero: bool
+) -> Fitted | None:
+    """Fit a model of one coordinate to what a base simulates.
+
+    That does not depend on what was measured: a second look, on records without their
+    offsets, asks for the same one. Nothing of a simulation is noise.
+    """
+    records = simulated.records
+    score = Score.plain(ScoredSamples.of(records), np.finfo(float).tiny)
+    if with_zero:
+        plain = _coordinate_like(simulated, quantities, hold, False)
+        return None if plain is None else with_a_zero(plain, score)
+    return likeliest(one_coordinate(records, quantities, hold), score)

@@ -9,11 +9,14 @@ in place of a base that does something else, which is then said.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import product
+from typing import Any
 
 import numpy as np
 
+from hystbench.blocks.attached_mass import AttachedMass
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.impedance import NUMBERS, Impedance
@@ -25,15 +28,21 @@ from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.fitting.least_squares import Fitted, fitted, fitted_to_the_end
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.inside.host import Host, about_what_is_given, best_host
 from hystbench.gap.inside.insert_law import host_places
 from hystbench.gap.inside.modes import frequency_of, modes
-from hystbench.gap.inside.one_coordinate import MOTIONS, free_masses, one_coordinate
-from hystbench.gap.inside.same_as import same_as
-from hystbench.gap.inside.store_hosts import store_hosts
+from hystbench.gap.inside.one_coordinate import (
+    BEGUN,
+    MOTIONS,
+    ZEROS,
+    Host,
+    best_host,
+    free_masses,
+    one_coordinate,
+    same_as,
+)
+from hystbench.gap.inside.stores import store_hosts
 from hystbench.gap.inside.timing import in_front, with_free_timing
-from hystbench.gap.inside.two_masses import further_modes_of, two_masses
-from hystbench.gap.thresholds import FURTHER, PARAMETER, PAYS
+from hystbench.gap.thresholds import ABOUT, FURTHER, PARAMETER, PAYS
 from hystbench.quantities import Quantities
 
 TRIED = 2
@@ -111,11 +120,8 @@ def hosts(
     split = modes(start, quantities.output if known else "position", identified)
     seen = (mode for mode in split if is_seen_moving(mode))
     for mode in itertools.islice(seen, TRIED):
-        block = mode.chain[0]
-        assert isinstance(block, Mechanism)  # noqa: S101  (for the type checker)
-        words = (
-            f"the base's mode at {frequency_of(block):.3g} Hz is a mechanism of its own"
-        )
+        at = f"{frequency_of(mode.chain[0]):.3g} Hz"
+        words = f"the base's mode at {at} is a mechanism of its own"
         if identified:
             best = fitted(mode, score)
             yield Host(best.state, best, words)
@@ -153,9 +159,18 @@ def _as_given(
 
 
 def _about(state: ModelState) -> ModelState:
-    """Give a host whose numbers are held by what they may be off."""
-    numbers = tuple(about_what_is_given(state, item) for item in state.free)
-    return replace(state, free=numbers)
+    """Give a host whose numbers are held by what they may be off.
+
+    Those that are counted from a zero are as they are.
+    """
+
+    def about(free: Free) -> Free:
+        value, stated = state.value(free), free.given is not None
+        if stated or free.parameter in ZEROS or value == 0.0:
+            return free
+        return free._replace(tolerance=ABOUT * abs(value), given=value)
+
+    return replace(state, free=tuple(map(about, state.free)))
 
 
 def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
@@ -271,3 +286,98 @@ def of_many_modes(start: ModelState) -> bool:
         isinstance(block, TransferFunction) and len(block.denominator) > HIGHEST + 1
         for block in start.chain
     )
+
+
+SHARES = (0.2, 0.5, 0.8)
+"""Of the mass, that is attached."""
+RATIO = 0.05
+"""Damping ratio with which they are begun."""
+
+
+def two_masses(
+    hosts: Iterable[ModelState], frequencies: Sequence[float]
+) -> Iterator[ModelState]:
+    """Write masses as two of as much together, which swing against each other.
+
+    What friction or a clearance holds at the driven side of a flexible shaft acts on
+    the motion of both modes: of the mass as a whole, and of the two against each other.
+
+    Parameters
+    ----------
+    hosts : iterable of ModelState
+        Each begins with a mechanism; further blocks do not depend on what enters them.
+    frequencies : sequence of float
+        At which the two are begun, in rad/s.
+
+    Yields
+    ------
+    ModelState
+        With all numbers of both masses free.
+    """
+    found: list[tuple[float, int, ModelState]] = []
+    for host in hosts:
+        for w, share in product(frequencies, SHARES):
+            begun = _sized(_split(host, w, share))
+            if begun is not None:
+                rest = float(np.mean(begun.residual**2))
+                found.append((rest, len(found), begun))
+    for _, _, state in sorted(found)[:BEGUN]:
+        yield state
+
+
+def further_modes_of(base: ModelState) -> list[float]:
+    """Give the frequencies, in rad/s, at which a base swings beside one coordinate.
+
+    It has two poles of one coordinate; those of a further mode were asked for by
+    folds, as those that only imitate friction are not.
+    """
+    poles = [
+        pole
+        for block in base.chain
+        if isinstance(block, TransferFunction)
+        for pole in np.roots(block.denominator)
+    ]
+    if len(poles) < 3:
+        return []
+    return [float(abs(pole)) for pole in poles if pole.imag > 0]
+
+
+def _split(state: ModelState, frequency: float, share: float) -> ModelState:
+    """Attach a share of the mass of a mechanism to the rest of it."""
+    whole, *behind = state.chain
+    assert isinstance(whole, Mechanism)  # noqa: S101  (for the type checker)
+    own, attached = (1 - share) * whole.mass, share * whole.mass
+    reduced = own * share
+    other = AttachedMass(
+        mass=attached,
+        damping=2 * RATIO * frequency * reduced,
+        stiffness=frequency**2 * reduced,
+    )
+    split = state.rearranged(
+        (replace(whole, mass=own), other, *behind),
+        {k: k + (k > 0) for k in range(len(state.chain))},
+    )
+    free = (*split.free, *(Free(1, name) for name in AttachedMass.parameters()))
+    return replace(split, free=free).settled()
+
+
+def _sized(state: ModelState) -> ModelState | None:
+    """Give two masses the size that fits best; None if they would move backwards."""
+    output = state.sample.take(state.simulation.output)
+    columns = np.column_stack([output, np.ones(len(output))])
+    if not np.all(np.isfinite(columns)):
+        return None
+    gain = float(np.linalg.lstsq(columns, state.measured, rcond=1e-10)[0][0])
+    if gain <= 0.0:
+        return None
+    return state.with_chain(
+        (*(_over(x, gain) for x in state.chain[:2]), *state.chain[2:])
+    )
+
+
+def _over(block: Block, gain: float) -> Block:
+    """Divide a mass, its damper and its spring by a number."""
+    numbers: dict[str, Any] = {
+        name: getattr(block, name) / gain for name in ("mass", "damping", "stiffness")
+    }
+    return replace(block, **numbers)

@@ -3,25 +3,35 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
+from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
 from hystbench.blocks.store import STARTS, Store
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.effects.law import Changed, Filled
-from hystbench.gap.fitting.state import Added, Free, ModelState
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.inside.one_coordinate import (
+    BEGUN,
+    Host,
+    as_simulated,
+    best_host,
+    likeliest,
+    missed,
+    most_missed,
+    span_and_step,
+)
 from hystbench.gap.records.scored_samples import ScoredSamples
+from hystbench.gap.thresholds import FURTHER
 from hystbench.record import Record
 
 RATES = 6
 """Rates of outflow at which stores are begun, from slow to fast."""
 FARTHEST = 5.0
 """Noise in times of its rms, at most: of a million samples one is farther off."""
-BEGUN = 3
-"""Starts that are fitted, the best ones of the grid."""
 
 
 def stores(
@@ -45,9 +55,8 @@ def stores(
         return
     sample = ScoredSamples.of(records)
     wanted = sample.take([record.y for record in records])
-    span = max(record.dt * len(record) for record in records)
-    fastest = 0.3 / min(record.dt for record in records)
-    grid = np.geomspace(3 / span, fastest, RATES).tolist()
+    span, step = span_and_step(records)
+    grid = np.geomspace(3 / span, 0.3 / step, RATES).tolist()
     found: list[tuple[float, tuple[Store, ...]]] = []
     for rates in itertools.combinations_with_replacement(grid, count):
         down = np.poly([-rate for rate in rates])
@@ -72,7 +81,9 @@ def stores(
             last = replace(chain[-1], start_level=max(float(records[0].y[0]), 0.0))
             found.append((rest, (*chain[:-1], last)))
     likely = [chain for _, chain in sorted(found, key=lambda item: item[0])[:BEGUN]]
-    for start, chain in itertools.product(_starts(records), likely):
+    # One record's level is a number, wherever it rests.
+    starts = STARTS if len(records) > 1 else STARTS[:1]
+    for start, chain in itertools.product(starts, likely):
         free = [Free(0, "bias"), Free(len(chain) - 1, "gain")]
         for k in range(len(chain)):
             free.append(Free(k, "rate"))
@@ -82,11 +93,6 @@ def stores(
         if start != "given":
             begun = tuple(replace(store, start_level=0.0) for store in begun)
         yield ModelState(begun, records, sample, free=tuple(free), hold=hold)
-
-
-def _starts(records: Sequence[Record]) -> tuple[str, ...]:
-    """Give the starts of stores: one record's level is a number, wherever it rests."""
-    return STARTS if len(records) > 1 else STARTS[:1]
 
 
 def _chain(
@@ -134,43 +140,68 @@ def in_other_order(state: ModelState) -> Iterator[ModelState]:
     yield state.with_chain((upper, last))
 
 
-def how_it_fills(state: ModelState) -> Filled:
-    """Look how high the stores of a chain are filled on its records."""
-    tops = []
-    for k, block in enumerate(state.chain):
-        if isinstance(block, Store):
-            level = replace(block, output="level")
-            signals = state.simulation.tail(k, [level])
-            tops.append((k, block, max(float(z.max()) for z in signals)))
-    measured = max(float(record.y.max()) for record in state.records)
-    last = state.chain[-1]
-    is_shown = isinstance(last, Store) and last.output == "level" and measured > 0
-    known = all(free.given is not None for free in state.free)
-    return Filled(tuple(tops), measured if is_shown else None, known)
+STORES = {1: "a store stands", 2: "two stores in series stand"}
+"""How many are tried, and how that is told."""
 
 
-def with_changed(state: ModelState, effect: str, changed: Changed) -> ModelState:
-    """Give stores with other numbers, some of them free as well.
+def store_hosts(start: ModelState, identified: bool, score: Score) -> Iterator[Host]:
+    """Give one store and two in series, fitted to the records.
 
-    What was known of such a number says nothing of it any more.
+    Beside a given base that is no store already those that simulate the same, and, in
+    place of a linear base of few real poles, those that do not: it may fall below the
+    bottom of a tank. A bent outflow has another rate than a linear one, so their
+    numbers are fitted, and that counts as a further effect.
     """
-    chain = list(state.chain)
-    old = {
-        f"{place}.{name}": float(getattr(chain[place], name))
-        for place, values in changed.values.items()
-        for name in values
-    }
-    for place, values in changed.values.items():
-        chain[place] = replace(chain[place], **values)
-    places = tuple(changed.values)
-    was_free = tuple(x for x in state.free if f"{x.block}.{x.parameter}" in old)
-    free = tuple(
-        Free(x.block, x.parameter) if x in was_free and x.given is not None else x
-        for x in state.free
-    )
-    more = tuple(x for x in (Free(*own) for own in changed.free) if x not in free)
-    charge = max(float(len(more)), 1.0)
-    item = Added(effect, "inside", changed.form, places, old, charge, was_free=was_free)
-    return replace(
-        state, chain=tuple(chain), free=(*free, *more), added=(*state.added, item)
-    )
+    if not (identified or may_be_stores(start)):
+        return
+    noise = float(np.sqrt(score.floor))
+    for count, words in STORES.items():
+        begun = stores(start.records, start.hold, noise, count)
+        best = best_host(begun, score)
+        if best is None or not all_are_seen_filling(best.state):
+            continue
+        words, alone, charge = f"{words} in place of the base", best.state, 0.0
+        if not identified:
+            same, charge = stores_like(start, count), FURTHER
+            words += ", fitted to the records"
+            if same is None:
+                words += ", as none simulates the same"
+            else:
+                alone = same
+        yield Host(alone, best, words, charge=charge)
+        for other in in_other_order(best.state):
+            yield Host(alone, best, words, other, charge)
+
+
+def may_be_stores(start: ModelState) -> bool:
+    """Tell whether a base is linear, with no more poles than two stores, all real."""
+    poles = [
+        np.roots(block.denominator)
+        for block in start.chain
+        if isinstance(block, TransferFunction)
+    ]
+    linear = all(isinstance(block, TransferFunction | Gain) for block in start.chain)
+    few = len(poles) == 1 and 1 <= len(poles[0]) <= len(STORES)
+    return linear and few and bool(np.isreal(poles[0]).all())
+
+
+def stores_like(start: ModelState, count: int) -> ModelState | None:
+    """Give stores in series that simulate what a given base does, if any do."""
+    simulated = as_simulated(start)
+    sample = ScoredSamples.of(simulated)
+    score = Score.plain(sample, np.finfo(float).tiny)
+    best = likeliest(stores(simulated, start.hold, np.inf, count), score)
+    if best is None or missed(best) > most_missed(start) * len(sample):
+        return None
+    return replace(best.state, records=start.records, sample=start.sample).settled()
+
+
+def all_are_seen_filling(state: ModelState) -> bool:
+    """Tell whether each of linear stores is slow enough for its records to show it.
+
+    One that fills within a sampling interval does nothing; a law inside of it would be
+    searched without end.
+    """
+    step = min(record.dt for record in state.records)
+    rates = [block.rate for block in state.chain if isinstance(block, Store)]
+    return max(rates) < np.pi / step

@@ -52,7 +52,7 @@ def better_timed(base: Model, found: ModelState, floor_rms: float) -> Model | No
     best = fitted_to_the_end(with_free_timing(found), score)
     if not best.score < now - PAYS:
         return None
-    return timed(base, _shift(best.state.chain[0]) - _given(base))
+    return timed(base, _shift(best.state.chain[0]) - _shift(base.chain[0]))
 
 
 def timed_as_named(base: Model, found: ModelState) -> Model | None:
@@ -68,7 +68,7 @@ def timed_as_named(base: Model, found: ModelState) -> Model | None:
         or len(found.added) < 2
     ):
         return None
-    return timed(base, late - _given(base))
+    return timed(base, late - _shift(base.chain[0]))
 
 
 def in_time_words(found: ModelState) -> str:
@@ -89,16 +89,12 @@ def timed(base: Model, later_s: float) -> Model:
     """Give a base that takes its input so many seconds later, or earlier."""
     behind = base.chain[1:] if isinstance(base.chain[0], InputDelay) else base.chain
     hold = next((x.hold for x in behind if hasattr(x, "hold")), "default")
-    delay = InputDelay.by(_given(base) + later_s, hold)
+    delay = InputDelay.by(_shift(base.chain[0]) + later_s, hold)
     return replace(base, chain=(delay, *behind))
 
 
-def _given(base: Model) -> float:
-    """Give how late a base takes its input already, in seconds."""
-    return _shift(base.chain[0])
-
-
 def _shift(block: Block) -> float:
+    """Give how late a block takes its input, in seconds."""
     return block.shift_s if isinstance(block, InputDelay) else 0.0
 
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.gap.effects.drift import FORMS, WINDING, degree
+from hystbench.gap.effects.sensor import FORMS, WINDING, degree
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.judging.drifts import beside_a_drift
 from hystbench.gap.judging.grouped_evidence import ColumnProducts

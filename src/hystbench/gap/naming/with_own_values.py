@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench.gap.asked import Asked
 from hystbench.gap.cache import records_digest
-from hystbench.gap.effects.drift import Drift
+from hystbench.gap.effects.sensor import Drift
 from hystbench.gap.effects.variant import Beside, Values
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of

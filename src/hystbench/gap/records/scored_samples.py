@@ -15,7 +15,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from hystbench.metrics import rms as rms  # gap/fitting takes it from here
 from hystbench.record import FloatArray, Record
 
 SAMPLES = 1000

@@ -1,9 +1,8 @@
-"""``creep``: slow displacement that follows a step."""
+"""What follows slowly: creep behind a step, and heat."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -44,7 +43,7 @@ class Creep(Effect):
                     ],
                 }
 
-            found = self.inserted(
+            yield self.inserted(
                 simulation,
                 simulation.behind_linear,
                 values,
@@ -55,8 +54,8 @@ class Creep(Effect):
                 unit=unit,
                 positive=tuple(unit),
                 free=("magnitudes", "time_constants_s"),
+                charge=2.0 * count,
             )
-            yield replace(found, charge=2.0 * count)
         for form, power in POWERS.items():
             yield self._over_decades(simulation, form, power)
 
@@ -66,7 +65,7 @@ class Creep(Effect):
         They begin anywhere between the sampling interval and the slowest that one
         record shows, and may go on beyond it.
         """
-        found = self.inserted(
+        return self.inserted(
             simulation,
             simulation.behind_linear,
             lambda given: {"power": power, **given},
@@ -85,11 +84,46 @@ class Creep(Effect):
             unit={"magnitude": 1e-3},
             positive=("magnitude",),
             free=("magnitude", "first_time_s", "last_time_s", "power"),
+            charge=4.0,
         )
-        return replace(found, charge=4.0)
 
 
 POWERS = {"logarithmic": 0.0, "fractional": 0.3}
 """Of time, with which creep over decades grows: where the refit starts."""
 SPREAD = 5.0
 """Ratio between neighbouring time constants of three elements."""
+
+
+class ThermalDrift(Effect):
+    """Displacement that follows the input's square, slowly."""
+
+    name = "thermal-drift"
+    shows = "slow-time"
+    place = "mechanics"
+
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
+        """Offer it behind the mechanics, of one body that warms and of two.
+
+        Two bodies in a row may change places: the second one is the quicker.
+        """
+        end = simulation.behind_mechanics
+        small = 1e-3 * simulation.largest(end) / simulation.largest(0) ** 2
+        low, high = simulation.span / 200, 3 * simulation.span
+        yield self.inserted(
+            simulation,
+            end,
+            form="one body",
+            grids={"time_constant_s": logarithmic(low, high, 2.5)},
+            unit={"coefficient": small},
+        )
+        slower = logarithmic(simulation.span / 20, high, 2.5)
+        yield self.inserted(
+            simulation,
+            end,
+            form="two bodies",
+            grids={
+                "time_constant_s": slower,
+                "second_time_constant_s": logarithmic(low, high / 10, 2.5),
+            },
+            unit={"coefficient": small},
+        )

@@ -1,0 +1,223 @@
+"""Effects of the drive: the input acts late, slowly, or not in full."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+import numpy as np
+from scipy.special import expit, logit
+
+from hystbench.blocks.eddy_diffusion import GEOMETRIES
+from hystbench.gap.effects.effect import Effect
+from hystbench.gap.effects.law import Law, Passed
+from hystbench.gap.effects.material import SHARPEST, SOFTEST, STRAIGHT
+from hystbench.gap.effects.places import (
+    drives_a_machine,
+    places_between_halves,
+    places_in_drive,
+)
+from hystbench.gap.effects.variant import Values, Variant, logarithmic
+from hystbench.gap.simulation.simulation import Simulation
+
+
+class InputDelay(Effect):
+    """A delay before everything else, up to a twentieth of the longest record."""
+
+    name = "input-delay"
+    shows = "delay"
+    place = "drive"
+
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
+        """Offer the delay before the first block.
+
+        Where an input does not begin at zero, also one of a device that was idle before
+        the record, as dynamics of the chain that begin at rest say.
+        """
+        grids = {"delay_s": logarithmic(simulation.step / 20, simulation.span / 20, 2)}
+        yield self.inserted(simulation, 0, grids=grids)
+        if any(z[0] != 0.0 for z in simulation.at(0) if len(z)):
+            yield self.inserted(
+                simulation,
+                0,
+                lambda given: {**given, "start": "rest"},
+                form="idle before",
+                grids=grids,
+            )
+
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer it before the host."""
+        ranges = {"delay_s": (passed.shortest, np.inf)}
+        yield self.curve("before", ranges=ranges, delay_s=2.0 * passed.step)
+
+
+class EddyDiffusion(Effect):
+    """Magnetic diffusion before the material, in a slab, a rod or a half-space."""
+
+    name = "eddy-diffusion"
+    shows = "frequency"
+    place = "drive"
+
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
+        """Offer each shape of the core, behind the drive's limits as well.
+
+        A half-space goes by the root of its time, and shows at a far shorter one.
+        """
+        times = logarithmic(simulation.step / 5, simulation.span / 5, 1.5)
+        quick = logarithmic(1e-4 * simulation.step, simulation.span / 100, 1)
+        for place in places_in_drive(simulation, linear=True):
+            for geometry in GEOMETRIES:
+                yield self.inserted(
+                    simulation,
+                    place,
+                    partial(_values, geometry),
+                    form=geometry,
+                    grids={
+                        "time_constant_s": quick if geometry == "half-space" else times
+                    },
+                )
+
+
+def _values(geometry: str, given: Values) -> dict[str, Any]:
+    return {**given, "geometry": geometry}
+
+
+class SlewLimit(Effect):
+    """A rate below the fastest of the records' inputs.
+
+    Where the input steps within a sample interval and rests on both sides, the fastest
+    is a third of that: a limit that makes three intervals of the step moves its middle
+    by one, and the moment of a step is known to a sample.
+    """
+
+    name = "slew-limit"
+    shows = "rate"
+    place = "drive"
+
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
+        """Offer rates from 2 to 98 % of the fastest there.
+
+        They are close together at both ends: just below the fastest rate the effect
+        sets in, and far below it the output grows with the limit. A refit may go down
+        to the rate at which the input's range takes a whole record: the fastest of a
+        record of steps says little about the drive.
+        """
+        share = expit(np.linspace(logit(0.02), logit(0.98), 16))
+        for place in places_in_drive(simulation):
+            rates = _fastest(simulation, place) * share
+            _, half = simulation.middle_and_half(place)
+            slowest = min(float(rates[0]), 2 * half / simulation.span)
+            yield self.inserted(
+                simulation,
+                place,
+                grids={"rate": rates},
+                limits={"rate": (slowest, float(rates[-1]))},
+            )
+
+
+STEP = 0.25
+"""Of a step, that the signal moves in both intervals beside it together at most."""
+
+
+def _fastest(simulation: Simulation, place: int) -> float:
+    """Largest rate of a signal, of a step within one interval a third."""
+    rates = []
+    for z, record in zip(simulation.at(place), simulation.records, strict=True):
+        moves = np.abs(np.diff(z))
+        beside = np.convolve(moves, [1.0, 0.0, 1.0], mode="same")
+        is_step = beside < STEP * moves
+        rates.append(float(np.max(moves / np.where(is_step, 3, 1))) / record.dt)
+    return max(rates)
+
+
+class DeadZone(Effect):
+    """A dead zone of up to half of the largest input, with corners or rounded."""
+
+    name = "dead-zone"
+    shows = "amplitude"
+    place = "drive"
+
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
+        """Offer the dead zone in the drive, and inside a linear base."""
+        for place in (*places_in_drive(simulation), *places_between_halves(simulation)):
+            largest = simulation.largest(place)
+            widths = logarithmic(1e-3 * largest, 0.5 * largest, 4)
+            yield self.inserted(simulation, place, grids={"half_width": widths})
+            yield self.inserted(
+                simulation,
+                place,
+                lambda given: {
+                    **given,
+                    "rounding": max(given["rounding"], given["half_width"]),
+                },
+                form="rounded",
+                grids={"rounding": widths},
+                unit={"half_width": 1e-3 * widths[0]},
+                positive=("half_width",),
+            )
+
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer narrow and wide ones before the host."""
+        for share in (0.02, 0.15):
+            width = share * passed.given
+            yield self.curve("before", half_width=width)
+            yield self.curve("before", "rounded", half_width=width, rounding=2 * width)
+
+
+SOFT = {"sharpness": (SOFTEST, SHARPEST)}
+"""Of a soft limit: a sharper one is the hard one."""
+ROUND = np.array([5.0, 8.0, 14.0])
+"""Sharpness of limits with rounded corners that are tried."""
+
+
+class DriveSaturation(Effect):
+    """A limit of the input: hard, rounded, or soft before a mass or a store."""
+
+    name = "drive-saturation"
+    shows = "amplitude"
+    place = "drive"
+    laws = ("saturation",)
+
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
+        """Offer limits from 30 to 99.5 % of the largest signal there.
+
+        Before what moves a mass or fills a store, where no material stands, soft ones
+        as well; before a material those that leave half of the range straight.
+        """
+        share = 1.0 - np.geomspace(0.7, 0.005, 12)
+        soft = drives_a_machine(simulation)
+        for place in places_in_drive(simulation):
+            largest = simulation.largest(place)
+            yield self.inserted(simulation, place, grids={"limit": largest * share})
+            if soft:
+                levels = logarithmic(0.3 * largest, 30 * largest, 5)
+                yield self.inserted(
+                    simulation,
+                    place,
+                    law="saturation",
+                    form="soft",
+                    grids={"level": levels},
+                )
+                continue
+            yield self.inserted(
+                simulation,
+                place,
+                law="saturation",
+                form="rounded",
+                grids={
+                    "level": logarithmic(0.3 * largest, 2 * largest, 5),
+                    "sharpness": ROUND,
+                },
+                limits={"sharpness": (STRAIGHT, SHARPEST)},
+                refused={"sharpness": "either"},
+            )
+
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer limits before the host, met seldom and often, hard and soft."""
+        for share in (0.9, 0.6):
+            level = share * passed.given
+            yield self.curve("before", limit=level)
+            soft = partial(self.curve, "before", law="saturation", level=level)
+            yield soft(form="soft")
+            yield soft(form="algebraic", sharpness=3.0, ranges=SOFT)

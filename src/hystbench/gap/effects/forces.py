@@ -1,0 +1,305 @@
+"""Forces inside a mechanism, and friction and play behind the mechanics."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.blocks.bouc_wen_force import BoucWenForce
+from hystbench.blocks.drag import Drag as DragBlock
+from hystbench.blocks.friction_force import FrictionForce
+from hystbench.blocks.gravity import RADIANS
+from hystbench.blocks.gravity import Gravity as GravityBlock
+from hystbench.blocks.hysteretic_force import HystereticForce as BoucWen
+from hystbench.blocks.iwan_force import LEAST_EXPONENT, IwanForce
+from hystbench.blocks.lugre_force import LuGreForce
+from hystbench.blocks.slider_with_gap import SliderWithGap as SliderBlock
+from hystbench.blocks.smooth_friction import SmoothFriction
+from hystbench.blocks.stop import SIDES
+from hystbench.blocks.stop import Stop as StopBlock
+from hystbench.gap.effects.effect import Effect, InsideEffect
+from hystbench.gap.effects.law import Law, Moved, Passed
+from hystbench.gap.effects.places import has_dynamics
+from hystbench.gap.effects.variant import Variant, logarithmic
+from hystbench.gap.simulation.simulation import Simulation
+from hystbench.gap.thresholds import SLIDES
+
+HOLDS = 1e-7
+"""Share of the reach by which dry friction gives way where it holds: no record shows
+so little."""
+SOON = 1e-3
+"""The same where it gives way along a curve."""
+BENDS = 0.1
+"""The same, at most, where it falls with the velocity, as no hysteretic force does:
+there is friction that slides on most of its way."""
+VISCOUS = 1.0
+"""Of the fastest velocity: there the tangent is a quarter below a straight line. What
+bends less is as much as viscous."""
+
+
+class Friction(Effect):
+    """Dry friction: smooth behind the mechanics, by several laws inside."""
+
+    name = "friction"
+    shows = "branch"
+    place = "mechanics"
+    laws = ("friction-force", "lugre-force", "smooth-friction", "hysteretic-force")
+
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
+        """Offer it behind the mechanics, by the velocity at which it saturates."""
+        end = simulation.behind_mechanics
+        fastest = simulation.fastest()
+        yield self.inserted(
+            simulation,
+            end,
+            grids={"velocity_scale": logarithmic(1e-4 * fastest, fastest / 5, 2)},
+            # A seal's friction may bend as late as that; beyond it is viscous.
+            limits={"velocity_scale": (1e-4 * fastest, VISCOUS * fastest)},
+            refused={"velocity_scale": "either"},
+            unit={"coulomb": 1e-3 * simulation.largest(end)},
+        )
+
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
+        """Offer dry friction that holds, or gives way before it slides."""
+        for share in (0.03, 0.3):
+            dry = FrictionForce(
+                coulomb=share * moved.force, presliding_distance=HOLDS * moved.reach
+            )
+            yield Law("dry", dry, ("coulomb",))
+        # A fit from a long way finds others as long, and hardly a short one.
+        for share, way in ((0.03, 1e-3), (0.1, 3e-2)):
+            own = {
+                "coulomb": share * moved.force,
+                "presliding_distance": way * moved.reach,
+            }
+            yield Law("Coulomb", FrictionForce(**own), tuple(own))
+            own |= {
+                "static_excess": 0.5 * share * moved.force,
+                "stribeck_velocity": 0.1 * moved.speed,
+            }
+            yield Law("Stribeck", FrictionForce(**own), tuple(own))
+            ranges = {"presliding_distance": (0.0, BENDS * moved.reach)}
+            yield Law("LuGre", LuGreForce(**own), tuple(own), ranges=ranges)
+        for share in (0.03, 0.3):
+            dahl = {
+                "largest": share * moved.force,
+                "yield_distance": SOON * moved.reach,
+            }
+            block = BoucWen(**dahl, sharing=0.0)
+            ranges = {"yield_distance": (0.0, SLIDES * moved.reach)}
+            yield Law("Dahl", block, tuple(dahl), ranges=ranges)
+        for share in (0.03, 0.3):
+            smooth = {
+                "coulomb": 0.1 * moved.force,
+                "velocity_scale": share * moved.speed,
+            }
+            yield Law("smooth", SmoothFriction(**smooth), tuple(smooth))
+        # It hardly grows near rest: a motion that stands is then not held.
+        for share, fades in ((1e-3, 0.03), (1e-2, 0.1)):
+            own = {
+                "coulomb": 0.1 * moved.force,
+                "velocity_scale": share * moved.speed,
+                "static_excess": 0.05 * moved.force,
+                "stribeck_velocity": fades * moved.speed,
+            }
+            yield Law("smooth Stribeck", SmoothFriction(**own), tuple(own))
+
+
+class Backlash(Effect):
+    """A play operator behind the mechanics, or before what has no hysteresis."""
+
+    name = "backlash"
+    shows = "branch"
+    place = "mechanics"
+
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
+        """Offer half-widths up to a third of the largest output, or input."""
+        places = {simulation.behind_mechanics: ""}
+        if simulation.loop is None and has_dynamics(simulation):
+            places[0] = "before"
+        for place, form in places.items():
+            largest = simulation.largest(place)
+            grid = logarithmic(3e-4 * largest, largest / 3, 4)
+            yield self.inserted(
+                simulation, place, form=form, grids={"half_width": grid}
+            )
+
+    def around(self, passed: Passed) -> Iterator[Law]:
+        """Offer narrow and wide play behind the host, and wide play before it."""
+        for share in (0.01, 0.1):
+            yield self.curve("behind", half_width=share * passed.shown)
+        yield self.curve("before", half_width=0.1 * passed.given)
+
+
+class Drag(InsideEffect):
+    """Drag of a fluid in turbulent flow."""
+
+    name = "drag"
+    shows = "rate"
+
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
+        """Offer it weak."""
+        block = DragBlock(coefficient=0.03 * moved.force / moved.speed**2)
+        yield Law("", block, ("coefficient",))
+
+
+BESIDE = 2.0
+"""Of a spring that is known, as of an arm that was measured lying: a weight that is
+more than the spring is far from any share of it."""
+
+
+class Gravity(InsideEffect):
+    """The weight of a pendulum, by the sine of its angle."""
+
+    name = "gravity"
+    shows = "amplitude"
+    special = True
+    taken_from = "stiffness"
+
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
+        """Offer a weight that makes half of the spring, one against it, one beside it.
+
+        The coordinate is an angle. It is counted from the vertical, or from any angle:
+        from where the weight is at rest, or from where the spring is.
+        """
+        both = ("amplitude", "angle")
+        starts = (BESIDE, 0.5, -0.5) if moved.turns and not moved.anywhere else ()
+        for share in starts:
+            # Of so small an angle that its sine is the angle, a spring.
+            weight = share * moved.stiffness / RADIANS[moved.turns]
+            block = GravityBlock(amplitude=weight, unit=moved.turns)
+            part = share if share < 1 else 0.0
+            yield Law("", block, both[:1], stands_for=part)
+            yield Law("tilted", block, both, stands_for=part)
+            slack = replace(block, carried=0.0)
+            yield Law("tilted, from a slack spring", slack, both, stands_for=part)
+
+
+STEEPEST = 1.0
+"""Exponent of plays, at most. Of a joint it is below zero (Segalman); a large one makes
+one way at which all slip, which is dry friction that gives way."""
+LATEST = 0.5
+"""Share of the slip distance at which the first plays slip, at most: with one that is
+as late as the last all slip at once, too."""
+
+
+class HystereticForce(InsideEffect):
+    """Bouc and Wen's hysteresis as a force, or plays."""
+
+    name = "hysteretic-force"
+    shows = "branch"
+    laws = ("bouc-wen-force", "iwan-force")
+
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
+        """Offer it weak, with short and long ways to yield, or as one that stiffens."""
+        names = ("largest", "yield_distance", "sharing")
+        for share, way in ((0.03, 0.03), (0.1, 0.3), (0.3, 1.0)):
+            block = BoucWen(
+                largest=share * moved.force, yield_distance=way * moved.reach
+            )
+            ranges = {"yield_distance": (SLIDES * moved.reach, np.inf)}
+            yield Law("Bouc-Wen", block, names, ranges=ranges)
+        # Beyond such a beta it would slide on nearly all of its way.
+        stiffness = max(moved.stiffness, moved.force / moved.reach)
+        stiffens = {
+            "beta": (0.0, 1.0 / (SLIDES * moved.reach)),
+            "gamma": (-np.inf, 0.0),
+        }
+        for share, softer, stiffer in ((0.1, 0.3, 0.3), (0.3, 1.0, 1.5)):
+            wen = {
+                "stiffness": share * stiffness,
+                "beta": softer / moved.reach,
+                "gamma": -stiffer / moved.reach,
+            }
+            yield Law(
+                "Bouc-Wen, stiffer on loading",
+                BoucWenForce(**wen),
+                tuple(wen),
+                ranges=stiffens,
+            )
+        plays = ("stiffness", "slip_distance", "exponent")
+        for share, way in ((0.1, 0.3), (0.3, 1.0)):
+            iwan = IwanForce(
+                stiffness=share * stiffness, slip_distance=way * moved.reach
+            )
+            ranges = {
+                "slip_distance": (SLIDES * moved.reach, np.inf),
+                "exponent": (LEAST_EXPONENT, STEEPEST),
+            }
+            yield Law("plays", iwan, plays, ranges=ranges)
+        late = IwanForce(
+            stiffness=0.3 * stiffness,
+            slip_distance=0.5 * moved.reach,
+            exponent=-1.0,
+            first_slip=0.1,
+        )
+        yield Law(
+            "plays from a first slip on",
+            late,
+            (*plays, "first_slip"),
+            ranges={
+                "slip_distance": (SLIDES * moved.reach, np.inf),
+                "exponent": (-np.inf, STEEPEST),
+                "first_slip": (0.0, LATEST),
+            },
+        )
+
+    def vanishing(self, form: str) -> Mapping[str, float]:
+        """Without a loop it is a spring."""
+        return {"beta": 0.0, "sharing": 1.0}
+
+
+class SliderWithGap(InsideEffect):
+    """A slider behind a clearance."""
+
+    name = "slider-with-gap"
+    shows = "branch"
+
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
+        """Offer narrow and wide clearances."""
+        names = ("contact_stiffness", "slip_force", "gap")
+        for share in (0.03, 0.3):
+            block = SliderBlock(
+                contact_stiffness=3.0 * moved.force / moved.reach,
+                slip_force=0.3 * moved.force,
+                gap=share * moved.reach,
+            )
+            yield Law("", block, names)
+
+    def vanishing(self, form: str) -> Mapping[str, float]:
+        """Without its clearance it is dry friction."""
+        return {"gap": 0.0}
+
+
+LOSS = 0.3
+"""Of a contact's force that a start adds at the largest speed."""
+
+
+class Stop(InsideEffect):
+    """Contact beyond a clearance, on one side or both."""
+
+    name = "stop"
+    shows = "amplitude"
+
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
+        """Offer both sides, and either one, met early and late, and one that loses."""
+        stiffness = moved.force / moved.reach
+        for sides in () if moved.anywhere else SIDES:
+            for share in (0.3, 0.8):
+                block = StopBlock(
+                    contact_stiffness=stiffness, gap=share * moved.reach, sides=sides
+                )
+                yield Law(_form(sides), block, ("contact_stiffness", "gap"))
+            lossy = replace(block, loss=LOSS / moved.speed)
+            numbers = ("contact_stiffness", "gap", "loss")
+            yield Law(f"{_form(sides)}, lossy", lossy, numbers)
+
+    def vanishing(self, form: str) -> Mapping[str, float]:
+        """Without its clearance a stop on both sides is a linear spring."""
+        return {"gap": 0.0} if form == _form("both") else {}
+
+
+def _form(sides: str) -> str:
+    return f"sides: {sides}"
