@@ -207,13 +207,13 @@ def test_the_fine_search_stays_in_its_grid_and_is_no_worse():
     score = plain_score(state)
     one = attempt(state, score, "drive-lag")
     start = coarse(one)
-    end = fine(one, start)
+    end = fine(start)
     assert end.score <= start.score
     # Where the grid is halved twice it is as near as a quarter of a step.
     axis = one.variant.grids["time_constant_s"]
     step = np.log(axis[1] / axis[0]) / 4
     assert abs(np.log(end.values["time_constant_s"] / 4e-3)) < 2 * step
-    edge = fine(one, one.at((float(axis[0]),)))
+    edge = fine(one.at((float(axis[0]),)))
     assert edge.values["time_constant_s"] >= axis[0]
 
 
@@ -234,7 +234,7 @@ def test_what_is_solved_for_comes_out_as_it_was_put_in():
     state = state_of((hysteresis(),), measured(mode(110.0, 0.25), NOISE))
     score = plain_score(state)
     one = attempt(state, score, "resonance")
-    trial = fine(one, coarse(one))
+    trial = fine(coarse(one))
     after, value = added(state, trial, score)
     assert value <= trial.score + 1.0
     found = after.chain[1]

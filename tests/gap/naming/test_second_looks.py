@@ -222,7 +222,7 @@ def test_a_hysteresis_without_a_loop_gives_way_to_a_curve(loop):
     before = state_of((gain,), measured((device, gain), NOISE), count=600)
     score = make_score(before, NOISE)
     every, _ = tried(effects()["hysteresis"], before, score)
-    plays = next(trial for _, trial in every if trial.variant.form == FORMS[loop])
+    plays = next(trial for trial in every if trial.variant.form == FORMS[loop])
     state, _ = added(before, plays, score)
     kept, _ = reconsidered(state, (), NOISE, silent)
     names = [item.effect for item in kept.added]

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -15,11 +13,7 @@ from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import beside_of, score_beside, score_of
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.serialize import (
-    remembered_of,
-    state_again,
-    state_with_correction,
-)
+from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.variant_search import Trial
 from hystbench.gap.thresholds import SCALE
@@ -130,25 +124,10 @@ def added(
     variant = trial.variant
     about = [variant.effect, variant.place, variant.form, variant.start]
     about.append(variant.operates)
-    return _remembered(
+    return remembered_of(
         state,
         lambda: ["added", *about, trial.values, score.digest, wanted],
         lambda: _added(state, trial, score, wanted),
-    )
-
-
-def _remembered(
-    state: ModelState,
-    key: Callable[[], list[Any]],
-    compute: Callable[[], tuple[ModelState, float]],
-) -> tuple[ModelState, float]:
-    """Compute a model that follows from another one, or look it up."""
-    return remembered_of(
-        state,
-        key,
-        compute,
-        lambda found: [state_with_correction(found[0]), found[1]],
-        lambda kept: (state_again(kept[0], state), kept[1]),
     )
 
 
@@ -194,7 +173,7 @@ def tuned(state: ModelState, score: Score) -> ModelState:
 
 def finished(state: ModelState, score: Score) -> tuple[ModelState, float]:
     """Simulate a model exactly and refit it to the end."""
-    return _remembered(
+    return remembered_of(
         state,
         lambda: ["finished", score.digest],
         lambda: _finished(state, score),

@@ -85,8 +85,6 @@ class ModelState:
     correction: FloatArray | None = None
     """Shape (scored samples,). By how much the exact simulation is above the quick one.
     It changes little from candidate to candidate; :meth:`settled` measures it anew."""
-    corrected_at: tuple[Block, ...] | None = None
-    """The chain at which the correction was measured."""
     offered: tuple[str, ...] | None = None
     """Effects that may be added; all by default."""
 
@@ -110,7 +108,7 @@ class ModelState:
     def settled(self) -> ModelState:
         """Give the state with what the quick simulation lacks made up for."""
         lacks = self.sample.take(self.exact) - self.sample.take(self.simulation.output)
-        return replace(self, correction=lacks, corrected_at=self.chain)
+        return replace(self, correction=lacks)
 
     @cached_property
     def residual(self) -> FloatArray:

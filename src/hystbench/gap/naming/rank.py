@@ -20,7 +20,7 @@ from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.refit import added, finished, refit
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, ModelState
-from hystbench.gap.fitting.tried import Seen, Tried, on_all_records, seen
+from hystbench.gap.fitting.tried import Seen, on_all_records, seen
 from hystbench.gap.fitting.variant_search import Trial, fine
 from hystbench.gap.naming.on_folds import first_on_folds, on_folds
 from hystbench.gap.naming.rivals import (
@@ -106,7 +106,7 @@ def rank(
     ]
     if not found:
         return tuple(declined)
-    best = min(trial.score for _, trial in found)
+    best = min(trial.score for trial in found)
     least = max(_near(now - best), worth)
     refined = _refined(found, now, least)
     of_effect: dict[str, Trial] = {}
@@ -192,33 +192,29 @@ def _loop_is_free(state: ModelState) -> bool:
     return any(x.block == loop and x.parameter == "weights" for x in state.free)
 
 
-def _refined(found: Sequence[Tried], now: float, least: float) -> list[Trial]:
+def _refined(found: Sequence[Trial], now: float, least: float) -> list[Trial]:
     """Search around the best points of grids that gain enough; the least score first.
 
     A grid's step may miss most of what the right law does. So of their effects the laws
     of fewer numbers are searched as well, whatever they gain, as a step misses more of
     a law of few numbers; and of the effect that then does best, all its laws.
     """
-    near = [now - trial.score > least for _, trial in found]
     most: dict[str, float] = {}
-    for (attempt, _), enough in zip(found, near, strict=True):
-        own = attempt.variant
-        if enough:
+    for trial in found:
+        own = trial.variant
+        if now - trial.score > least:
             most[own.effect] = max(most.get(own.effect, 0.0), own.freedom)
     near = [
-        enough or attempt.variant.freedom < most.get(attempt.variant.effect, 0.0)
-        for (attempt, _), enough in zip(found, near, strict=True)
+        now - x.score > least or x.variant.freedom < most.get(x.variant.effect, 0.0)
+        for x in found
     ]
-    every = [
-        fine(attempt, trial) if enough else trial
-        for (attempt, trial), enough in zip(found, near, strict=True)
-    ]
+    every = [fine(x) if enough else x for x, enough in zip(found, near, strict=True)]
     first = min(range(len(every)), key=lambda k: every[k].score)
     best = every[first].variant
-    for k, (attempt, trial) in enumerate(found if near[first] else ()):
-        own = attempt.variant
+    for k, trial in enumerate(found if near[first] else ()):
+        own = trial.variant
         if not near[k] and own.effect == best.effect and own.form != best.form:
-            every[k] = fine(attempt, trial)
+            every[k] = fine(trial)
     return sorted(every, key=lambda trial: trial.score)
 
 
