@@ -30,9 +30,7 @@ from hystbench.gap.judging.effect_rows import (
     ranking_rows,
     simulator_mapping,
 )
-from hystbench.gap.judging.fit_result import FitResult
-from hystbench.gap.judging.left import Left, what_is_left
-from hystbench.gap.judging.size_of_noise import size_follows
+from hystbench.gap.judging.left import Left, size_follows, what_is_left
 from hystbench.gap.judging.unnamed import Unnamed, what_is_unnamed
 from hystbench.gap.judging.verdict import (
     Verdict,
@@ -44,7 +42,7 @@ from hystbench.gap.locate import curves, locate
 from hystbench.gap.locate.level import beside_level
 from hystbench.gap.locate.view import LEAST_SHARE
 from hystbench.gap.naming.add_effects import LITTLE, Named
-from hystbench.gap.naming.ladder import contributions, rungs
+from hystbench.gap.naming.ladder import FitResult, contributions, rungs
 from hystbench.gap.records.black_box import BlackBox, black_box
 from hystbench.gap.records.floor import Floor, lone_share, unrepeated
 from hystbench.gap.records.scored_samples import Compared
@@ -133,7 +131,7 @@ def judge_and_tell(
             "lone_share": left.lone,
             "unrepeated": left.unrepeated,
         },
-        "unnamed": found.unnamed.mapping(share),
+        "unnamed": found.unnamed.mapping(),
         "where": [view.to_mapping() for view in where],
         "ranking": ranking_rows(named),
         "record_values": own.mapping(unit),
@@ -187,7 +185,7 @@ def _judged(
     box = black_box(before, floor.rms)
     unnamed = what_is_unnamed(start, state, floor.rms, share)
     bound = floor.method == "upper-bound"
-    size_tells = bound or left.is_new or unnamed.follows_nothing(share)
+    size_tells = bound or left.is_new or unnamed.follows_nothing
     verdict, why = judge(
         left,
         bool(state.added),
@@ -196,7 +194,6 @@ def _judged(
         bound,
         not state.added and size_tells and size_follows(state),
         unnamed,
-        share,
         what_mends(start.records),
     )
     beside = f"beside {own.words} of some records' own" if own.records else ""
@@ -210,7 +207,7 @@ def _judged(
         _predicts_nothing(state),
         _used_up(current()),
     )
-    trust = unnamed.trust(share, left.may_be_of_base)
+    trust = unnamed.trust(left.may_be_of_base)
     reason = "; ".join(part for part in parts if part)
     return _Judged(verdict, reason, trust, unnamed, box)
 

@@ -26,10 +26,9 @@ from hystbench.gap.holdout.outcome import show_on_hold_out
 from hystbench.gap.holdout.show import Outcome
 from hystbench.gap.inside.named_inside import quantities_if_linear
 from hystbench.gap.judge_and_tell import Decision
-from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.naming.built_in import BuiltIn, build_in
 from hystbench.gap.naming.forecast_calls import reserve_calls
-from hystbench.gap.naming.ladder import Rung
+from hystbench.gap.naming.ladder import FitResult, Rung
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.black_box import black_box
 from hystbench.gap.records.evidence import Evidence, check_units

@@ -10,7 +10,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import among
 from hystbench.gap.effects.effect import Declined
 from hystbench.gap.effects.variant import Variant
-from hystbench.gap.fitting.scan import LOOKS
+from hystbench.gap.fitting.refit import LOOKS
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.tried import records_at_a_glance
 from hystbench.gap.fitting.variant_search import POINTS_EACH

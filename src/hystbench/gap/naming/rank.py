@@ -22,10 +22,12 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.fitting.tried import Seen, on_all_records, seen
 from hystbench.gap.fitting.variant_search import Trial, fine
-from hystbench.gap.naming.on_folds import first_on_folds, on_folds
 from hystbench.gap.naming.rivals import (
     beside_their_own_shapes,
-    beyond_others,
+    beyond_simpler_laws,
+    by_all_their_laws,
+    first_on_folds,
+    on_folds,
     simplest_of_a_tie,
 )
 from hystbench.gap.naming.rounds import Candidate, TriedVariant, best_forms, in_order
@@ -76,34 +78,22 @@ def rank(
     known = tuple(among(state.offered).values()) if known is None else tuple(known)
     have = {item.effect for item in state.added}
     now = score_of(state, score)
-    declined = [
-        Candidate(effect.name, effect.place, declined="added already")
-        for effect in known
-        if effect.name in have
-    ]
-    others = [effect for effect in known if effect.name not in have]
-    if _loop_is_free(state):
-        declined += [
-            Candidate(effect.name, effect.place, declined=FITTED_WITH_IT)
-            for effect in others
-            if effect.name == SHAPE
-        ]
-        others = [effect for effect in others if effect.name != SHAPE]
+    places = {effect.name: effect.place for effect in known}
+    why_not = {name: "added already" for name in places if name in have}
+    if SHAPE in places and _loop_is_free(state):
+        why_not.setdefault(SHAPE, FITTED_WITH_IT)
     looks: list[Seen] = []
-    for effect in others:
-        trials, why = seen(effect, state, score)
-        looks += trials
-        if why:
-            declined.append(Candidate(effect.name, effect.place, declined=why))
+    for effect in known:
+        if effect.name not in why_not:
+            trials, why = seen(effect, state, score)
+            looks += trials
+            why_not |= {effect.name: why} if why else {}
     worth = needs * (1 - BEHIND)
     found, refused = on_all_records(
         looks, now, lambda most: max(min(_near(most), most * (1 - BEHIND)), worth)
     )
-    declined += [
-        Candidate(effect.name, effect.place, declined=refused[effect.name])
-        for effect in others
-        if effect.name in refused
-    ]
+    why_not |= {name: refused[name] for name in places if name in refused}
+    declined = [Candidate(x, places[x], declined=why) for x, why in why_not.items()]
     if not found:
         return tuple(declined)
     best = min(trial.score for trial in found)
@@ -159,7 +149,8 @@ def rank(
     )
     candidates = beside_their_own_shapes(candidates, exact, state, score.floor)
     if not folds:
-        return tuple(beyond_others(candidates, state, score))
+        candidates = by_all_their_laws(candidates)
+        return tuple(beyond_simpler_laws(candidates, state, score))
     candidates = in_order(
         _not_cut_short(item, state) for item in first_on_folds(candidates, state, score)
     )
@@ -172,7 +163,7 @@ def rank(
         candidates = in_order(
             first_on_folds(in_order([again, *candidates]), state, score)
         )
-    candidates = beyond_others(candidates, state, score)
+    candidates = beyond_simpler_laws(by_all_their_laws(candidates), state, score)
     return tuple(simplest_of_a_tie(candidates, exact, needs))
 
 
@@ -288,24 +279,21 @@ def _judged(
     if item.gain <= 0 and not variant.begun:
         return item
 
-    def declined(why: str) -> Candidate:
-        return Candidate(variant.effect, variant.place, declined=why)
-
     try:
         after, value = added(state, trial, score, wanted)
     except InputError as error:
-        return replace(declined(f"fits best where {error}"), refused=True)
+        return replace(item.but(f"fits best where {error}"), refused=True)
     if end := at_end(after):
-        return declined(f"{AT_AN_END}: {end}")
+        return item.but(f"{AT_AN_END}: {end}")
     of_noise = variant.beside is not None and effects()[variant.effect].like_noise
     if of_noise and state.power(0.0) - after.power(0.0) < score.floor:
-        return declined(SLOW_NOISE)
+        return item.but(SLOW_NOISE)
     if does_without_itself(after, after.added[-1], value, score):
-        return declined(f"{ALIKE_WITHOUT} {behaviour_of(variant.effect)}")
+        return item.but(f"{ALIKE_WITHOUT} {behaviour_of(variant.effect)}")
     hidden = score.directions.shape[1] > 0  # what a wrong shape may do hardly counts
     power = state.power(score.floor)
     if hidden and after.share(state, score.floor, power) < -LOOSE:
-        return declined("makes the gap wider")
+        return item.but("makes the gap wider")
     return replace(item, score=value, gain=now - value, state=after)
 
 
@@ -351,7 +339,7 @@ def _not_cut_short(item: Candidate, state: ModelState) -> Candidate:
     position = item.variants[0].position
     if not places or position is None or position > places[-1]:
         return item
-    return Candidate(item.effect, item.place, declined=USED_UP)
+    return item.but(USED_UP)
 
 
 def exactly(item: Candidate, score: Score, now: float) -> Candidate:
@@ -361,7 +349,7 @@ def exactly(item: Candidate, score: Score, now: float) -> Candidate:
     try:
         after, value = finished(item.state, score)
     except CallsUsedUp as error:
-        return Candidate(item.effect, item.place, declined=str(error))
+        return item.but(str(error))
     if end := at_end(after):
-        return Candidate(item.effect, item.place, declined=f"{AT_AN_END}: {end}")
+        return item.but(f"{AT_AN_END}: {end}")
     return replace(item, state=after, score=value, gain=now - value)
