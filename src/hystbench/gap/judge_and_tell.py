@@ -21,7 +21,7 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.uncertainty import (
     beside_errors,
     on_more_samples,
-    size_error_or_none,
+    size_error,
     standard_errors,
 )
 from hystbench.gap.judging.effect_rows import (
@@ -228,7 +228,7 @@ def _effects(
             of_beside,
             by_effect.get(item.effect, ()),
             left,
-            size_error_or_none(finer, floor.rms**2, number),
+            size_error(finer, floor.rms**2, number),
             trust,
         )
         | {"blocks": blocks_of(item, state, model)}

@@ -67,7 +67,7 @@ def test_a_model_comes_back_from_its_file(tiny, added):
         state = with_effect(state, trial.variant, trial.values)
     state = state.settled()
     changes = {k: 1e-3 * step for k, step in enumerate(state.steps)}
-    moved = replace(state, chain=state.moved(changes))
+    moved = state.moved(changes)
     kept = json.loads(json.dumps(state_mapping(moved), allow_nan=False))
     restored = state_of(kept, start)
     assert restored.chain == moved.chain

@@ -78,7 +78,7 @@ def refit(
             )
             change = dict(enumerate(found.values.tolist()))
             try:
-                moved = state.with_chain(state.moved(change, reflected=True))
+                moved = state.moved(change, reflected=True)
                 value = score_beside(moved, score, beside)
             except InputError:
                 continue  # out of what the blocks accept together: go less far
@@ -256,7 +256,7 @@ def scanned(state: ModelState, floor_rms: float) -> ModelState:
 
         def at(number: float, from_: ModelState = found, k: int = k) -> float:
             try:
-                return score_of(from_.with_chain(from_.chain_at({k: number})), score)
+                return score_of(from_.at({k: number}), score)
             except CallsUsedUp:  # half a look decides nothing
                 raise
             except InputError:  # out of what the simulator takes: no candidate
@@ -265,6 +265,5 @@ def scanned(state: ModelState, floor_rms: float) -> ModelState:
         about = {"maxiter": LOOKS, "xatol": 1e-3 * (high - low)}
         there = minimize_scalar(at, bounds=(low, high), method="bounded", options=about)
         if there.fun < best - SCALE:
-            moved = found.with_chain(found.chain_at({k: float(there.x)}))
-            found, best = refit(moved, score)
+            found, best = refit(found.at({k: float(there.x)}), score)
     return found

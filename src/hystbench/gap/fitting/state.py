@@ -152,11 +152,10 @@ class ModelState:
 
     def _tangent(self, k: int, step: float) -> FloatArray:
         try:
-            moved = simulated_with(self, {k: step})
+            change = self._change(k, step)
         except InputError:  # beyond what the block accepts, so the other way
             step = -step
-            moved = simulated_with(self, {k: step})
-        change = self.sample.take(moved) - self._simulated
+            change = self._change(k, step)
         if rms(change) < ROUNDING * rms(self._simulated):
             # As of a play that never moves: divided by its step, it would look like
             # something, and any weight would do.
@@ -176,12 +175,10 @@ class ModelState:
             for k in own if len(own) <= MANY_NUMBERS else ():
                 value = self.value(self.free[k])
                 for factor in FORMS:
-                    change = (factor - 1) * value
                     try:
-                        after = simulated_with(self, {k: change})
+                        column = self._change(k, (factor - 1) * value)
                     except InputError:
                         continue  # outside what the block accepts: no form of it
-                    column = self.sample.take(after) - self._simulated
                     if np.all(np.isfinite(column)):  # else it runs away: no form of it
                         columns.append(column)
         return _stack(columns, len(self.sample))
@@ -278,20 +275,13 @@ class ModelState:
         value = getattr(self.chain[free.block], free.parameter)
         return float(value if free.element is None else value[free.element])
 
-    def moved(
-        self, changes: dict[int, float], reflected: bool = False
-    ) -> tuple[Block, ...]:
-        """Give the chain with some free numbers changed by so much, inside bounds.
-
-        Otherwise as :meth:`chain_at`.
-        """
+    def moved(self, changes: dict[int, float], reflected: bool = False) -> ModelState:
+        """Give the state with some free numbers changed by so much; as :meth:`at`."""
         values = {k: self.value(self.free[k]) + x for k, x in changes.items()}
-        return self.chain_at(values, reflected)
+        return self.at(values, reflected)
 
-    def chain_at(
-        self, values: dict[int, float], reflected: bool = False
-    ) -> tuple[Block, ...]:
-        """Give the chain with other values of some free numbers, inside bounds.
+    def at(self, values: dict[int, float], reflected: bool = False) -> ModelState:
+        """Give the state with other values of some free numbers, inside bounds.
 
         Parameters
         ----------
@@ -323,7 +313,7 @@ class ModelState:
             if reflected and "denominator" in own:
                 own["denominator"] = stable(own["denominator"])
             chain[place] = replace(chain[place], **own)
-        return tuple(chain)
+        return self.with_chain(tuple(chain))
 
     def with_chain(self, chain: tuple[Block, ...]) -> ModelState:
         """Give the state with other values in its chain."""
@@ -353,6 +343,14 @@ class ModelState:
             added=tuple(_moved_effect(item, moved) for item in self.added),
         )
 
+    def _change(self, k: int, by: float) -> FloatArray:
+        """How the output changes where one free number is another."""
+        start = self.free[k].block
+        while isinstance(self.chain[start], AttachedBlock):
+            start -= 1
+        after = self.simulation.tail(start, self.moved({k: by}).chain[start:])
+        return self.sample.take(after) - self._simulated
+
     @cached_property
     def _simulated(self) -> FloatArray:
         return self.reference - self.residual
@@ -366,14 +364,6 @@ class ModelState:
         # A tolerance may leave less room than that.
         size = min(size, (free.high - free.low) / 4)
         return -size if value + size > min(about.high, free.high) else size
-
-
-def simulated_with(state: ModelState, changes: dict[int, float]) -> Signals:
-    """Simulate the chain with some free numbers changed."""
-    start = min(state.free[k].block for k in changes)
-    while isinstance(state.chain[start], AttachedBlock):
-        start -= 1
-    return state.simulation.tail(start, state.moved(changes)[start:])
 
 
 def _moved_effect(item: Added, moved: Mapping[int, int]) -> Added:

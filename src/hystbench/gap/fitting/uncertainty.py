@@ -96,8 +96,16 @@ def size_error(state: ModelState, floor: float, number: int) -> float:
         Mean square of what no model explains, in squared output units.
     number : int
         Place of the effect among those that were added.
+
+    Returns
+    -------
+    float
+        NaN where the records show nothing of it. So it is of a signal beside the chain,
+        of which its own numbers tell, and of an effect that others stand on.
     """
     own = state.added[number].blocks
+    if not own or not removable(state, number):
+        return np.nan
     rest = [k for k, free in enumerate(state.free) if free.block not in own]
     without = without_effect(state, number).settled()
     columns = np.hstack(
@@ -110,18 +118,6 @@ def size_error(state: ModelState, floor: float, number: int) -> float:
     residual = _cleaned(state, np.hstack([state.tangents, state.beside_columns]))
     usable = np.mean(columns**2, axis=0) > SHOWN**2 * floor
     return float(_errors(columns, residual, usable, state, floor, uncounted=1)[0])
-
-
-def size_error_or_none(state: ModelState, floor: float, number: int) -> float | None:
-    """Give the same of an effect whose size can be told, else None.
-
-    Of a signal beside the chain its own numbers tell; of an effect that others stand
-    on, nothing; nor where the records show nothing of it.
-    """
-    if not state.added[number].blocks or not removable(state, number):
-        return None
-    error = size_error(state, floor, number)
-    return error if np.isfinite(error) else None
 
 
 def _cleaned(state: ModelState, columns: FloatArray) -> FloatArray:

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.blocks.other_modes import OtherModes
-from hystbench.gap.fitting.least_squares import at_values
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.scored_samples import ScoredSamples
@@ -108,4 +107,4 @@ class Beginnings:
 
 def with_numbers_of(state: ModelState, other: ModelState) -> ModelState:
     """Give a model with the free numbers of another one of the same blocks."""
-    return at_values(state, np.array([other.value(free) for free in state.free]))
+    return state.at({k: other.value(free) for k, free in enumerate(state.free)})

@@ -194,7 +194,10 @@ def confidence(
         if item.effect != first.effect and item.state is not None
     )
     explained = 1.0 - left.share
-    return min((1.0 - DOUBT) * explained / (1.0 + odds), is_anything(errors))
+    # 2 Phi(1 / e) - 1, Phi the standard normal distribution: the level of the widest
+    # interval about the number that does not hold zero.
+    is_anything = math.erf(1.0 / (errors * math.sqrt(2.0))) if errors > 0 else 1.0
+    return min((1.0 - DOUBT) * explained / (1.0 + odds), is_anything)
 
 
 def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
@@ -214,20 +217,6 @@ def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
         return ""
     told = " and ".join(f"{x['name']} {x['confidence']:.2f}" for x in effects)
     return f"no name is likelier right than wrong: {told}"
-
-
-def is_anything(errors: float) -> float:
-    """Give the probability that a number is anything but nothing.
-
-    ``2 Phi(1 / e) - 1`` with the standard normal distribution ``Phi``: the level of
-    the widest interval about the number that does not hold zero.
-
-    Parameters
-    ----------
-    errors : float
-        The number's standard error ``e``, in times of the number.
-    """
-    return math.erf(1.0 / (errors * math.sqrt(2.0))) if errors > 0 else 1.0
 
 
 def error_of(
