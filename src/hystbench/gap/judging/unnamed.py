@@ -8,7 +8,7 @@ follows known signals speaks against it, however small beside the gap.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -191,13 +191,9 @@ def what_is_unnamed(
         own["path"] = paths(state, allowed=winding) if drifts else path
         slow_power[SLOW_POWER] = generic.pop(SLOW_POWER)
     groups = own | generic | changing | slow_power
-    ends = np.cumsum([0, *(columns.shape[1] for columns in groups.values())])
-    at = {k: range(*ends[n : n + 2]) for n, k in enumerate(groups)}
-    columns = np.hstack(list(groups.values()))
-    table = ColumnProducts.of(columns, state.residual)
+    table = ColumnProducts.of(groups, state.residual)
     alone, with_generic, with_changing = (
-        table.explained([at[name] for name in (*own, *more)])
-        for more in ((), generic, changing)
+        table.explained([*own, *more]) for more in ((), generic, changing)
     )
     structured = max(alone.noise - with_generic.noise, 0.0) / power
     if drifts:
@@ -214,8 +210,8 @@ def what_is_unnamed(
     if not found.told:
         return found
     if not drifts:
-        every = [at[name] for name in own], [at[name] for name in (*own, *generic)]
-        chance = min(_by_chance(state, table, columns, *every) / power, structured)
+        chance = _by_chance(state, table, own, [*own, *generic])
+        chance = min(chance / power, structured)
         if chance > 0 and means_may_differ_by_chance(state):
             chance = structured
         found = replace(
@@ -227,8 +223,7 @@ def what_is_unnamed(
         if not found.told:
             return found
     gains = {
-        name: table.explained([*(at[k] for k in own), at[name]]).evidence
-        - alone.evidence
+        name: table.explained([*own, name]).evidence - alone.evidence
         for name in generic
     }
     return replace(found, gains=gains)
@@ -237,9 +232,8 @@ def what_is_unnamed(
 def _by_chance(
     state: ModelState,
     table: ColumnProducts,
-    columns: FloatArray,
-    own: Sequence[range],
-    every: Sequence[range],
+    own: Collection[str],
+    every: Collection[str],
 ) -> float:
     """Give the power of what seems to follow known signals and does so by chance.
 
@@ -267,7 +261,7 @@ def _by_chance(
         return 0.0
 
     def explained(signal: FloatArray) -> float:
-        other = table.of_another(columns, signal)
+        other = table.of_another(signal)
         return other.explained(own).noise - other.explained(every).noise
 
     left = state.sample.about_means(state.residual)
@@ -277,7 +271,7 @@ def _by_chance(
             continue
         output = state.sample.about_means(state.measured - state.residual)
         output = _moved(state, output, k)
-        stays = table.of_another(columns, output).explained(every).noise
+        stays = table.of_another(output).explained(every).noise
         return max(structured, 0.0) if stays > MOST * np.mean(output**2) else 0.0
     return 0.0
 
