@@ -31,9 +31,9 @@ def same(signals, others):
 def test_stages_are_those_of_the_chain_cut_short(name):
     chain = chains()[name]
     simulation = Simulation(chain, records())
-    same(simulation.before[0], [one.u for one in records()])
+    same(simulation.at(0), [one.u for one in records()])
     for end in range(1, len(chain) + 1):
-        same(simulation.before[end], from_scratch(chain[:end]))
+        same(simulation.at(end), from_scratch(chain[:end]))
     same(simulation.output, from_scratch(chain))
 
 

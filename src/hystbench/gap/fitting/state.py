@@ -118,11 +118,8 @@ class ModelState:
     @cached_property
     def reference(self) -> FloatArray:
         """Scored samples that a quick simulation is taken off, to give a residual."""
-        return (
-            self.measured
-            if self.correction is None
-            else (self.measured - self.correction)
-        )
+        lacks = self.correction
+        return self.measured if lacks is None else self.measured - lacks
 
     @cached_property
     def measured(self) -> FloatArray:
@@ -184,14 +181,12 @@ class ModelState:
         return _stack(columns, len(self.sample))
 
     @cached_property
-    def reshapings(self) -> FloatArray:
-        """What reshaping the hysteresis could do, shape (scored samples, k)."""
-        return reshapings(self.simulation, self.sample)
-
-    @cached_property
     def wrong_shape(self) -> FloatArray:
-        """An orthonormal basis of :attr:`reshapings`."""
-        return orthonormal(self.reshapings)
+        """Basis of what reshaping the hysteresis could do, shape (scored samples, k).
+
+        Orthonormal.
+        """
+        return orthonormal(reshapings(self.simulation, self.sample))
 
     @cached_property
     def held(self) -> Held:

@@ -50,7 +50,7 @@ def on_folds(item: Candidate, before: ModelState, score: Score) -> Candidate:
         return item.but(str(error))
     charge = PARAMETER * (item.state.freedom - before.freedom)
     lost = max(item.gain - (held - charge), 0.0)
-    return replace(item, score=item.score + lost, gain=item.gain - lost, held_back=held)
+    return replace(item.dearer(lost), held_back=held)
 
 
 def by_all_their_laws(candidates: Sequence[Candidate]) -> list[Candidate]:
@@ -67,8 +67,7 @@ def by_all_their_laws(candidates: Sequence[Candidate]) -> list[Candidate]:
             return item
         scores = np.array([x.score for x in item.variants])
         likely = np.exp((scores.min() - scores) / SCALE)
-        dearer = -SCALE * float(np.log(np.mean(likely)))
-        return replace(item, score=item.score + dearer, gain=item.gain - dearer)
+        return item.dearer(-SCALE * float(np.log(np.mean(likely))))
 
     return in_order(summed(item) for item in candidates)
 
@@ -97,8 +96,7 @@ def beyond_simpler_laws(
                 continue
             simpler = item.state.freedom >= other.state.freedom
             if simpler and item.state.share(other.state, floor, gap) < more:
-                dearer, gain = item.score + CERTAIN, item.gain - CERTAIN
-                return replace(item, score=dearer, gain=gain)
+                return item.dearer(CERTAIN)
         return item
 
     return in_order(charged(item) for item in candidates)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -47,6 +47,10 @@ class Candidate:
     """What a finalist that pays gains on folds."""
     variants: tuple[TriedVariant, ...] = ()
     """Every place and form of it that could be scored, best first."""
+
+    def dearer(self, by: float) -> Candidate:
+        """Give the same with a score that is so much worse."""
+        return replace(self, score=self.score + by, gain=self.gain - by)
 
     def but(self, why: str) -> Candidate:
         """Give the same as one that declined."""

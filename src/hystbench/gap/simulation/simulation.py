@@ -44,16 +44,11 @@ class Simulation:
     that turning points between samples are met: what the chain says of physics, without
     the error of its own steps."""
 
-    @cached_property
-    def before(self) -> tuple[Signals, ...]:
-        """Signals before each block, and behind the last: shape (blocks + 1, records).
+    def at(self, place: int) -> Signals:
+        """Signals before a block, or behind the last; what is attached is run with it.
 
         Before a wrapping block stands the output of what it wraps, without it.
         """
-        return tuple(self.at(k) for k in range(len(self.chain) + 1))
-
-    def at(self, place: int) -> Signals:
-        """Signals before one block; what is attached to a block is run with it."""
         if place not in self._at:
             start = place - 1
             while isinstance(self.chain[start], AttachedBlock):
