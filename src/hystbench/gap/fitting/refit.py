@@ -12,12 +12,7 @@ from hystbench.errors import InputError
 from hystbench.gap.fitting.beside import beside_slope
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
-from hystbench.gap.fitting.model_score import (
-    beside_of,
-    make_score,
-    score_beside,
-    score_of,
-)
+from hystbench.gap.fitting.model_score import beside_of, make_score, score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
@@ -63,8 +58,7 @@ def refit(
         Never worse than the one given.
     score : float
     """
-    beside = beside_of(state, score)
-    best = score_beside(state, score, beside)
+    best = score_of(state, score)
     for left in reversed(range(rounds if state.free else 0)):
         size = sizes(state)
         before = best
@@ -74,12 +68,12 @@ def refit(
                 state.tangents,
                 state.freedom,
                 state.held.in_steps(damping / size**2),
-                beside=beside,
+                beside=beside_of(state, score),
             )
             change = dict(enumerate(found.values.tolist()))
             try:
                 moved = state.moved(change, reflected=True)
-                value = score_beside(moved, score, beside)
+                value = score_of(moved, score)
             except InputError:
                 continue  # out of what the blocks accept together: go less far
             # At the floor the score is flat, and a short step still right. What a fold
