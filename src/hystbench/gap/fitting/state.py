@@ -91,7 +91,7 @@ class ModelState:
     @cached_property
     def simulation(self) -> Simulation:
         """The chain on the records, simulated quickly."""
-        return shared(self.chain, self.records, self.hold, quick=True)
+        return shared(self.chain, self.records, self.hold, "quick")
 
     def on(
         self, records: tuple[Record, ...], sample: ScoredSamples, rows: NDArray[Any]
@@ -103,7 +103,7 @@ class ModelState:
     @cached_property
     def exact(self) -> Signals:
         """The chain's output, simulated in short steps."""
-        return shared(self.chain, self.records, self.hold, quick=False).output
+        return shared(self.chain, self.records, self.hold, "fine").output
 
     def settled(self) -> ModelState:
         """Give the state with what the quick simulation lacks made up for."""
