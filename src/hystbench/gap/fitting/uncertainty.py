@@ -254,21 +254,14 @@ def beside_errors(state: ModelState, score: Score) -> list[Errors]:
         behind = columns.shape[1] + np.arange(len(searched))
         places.append([*rows.ravel(), *behind])
         columns = np.column_stack([columns, *searched])
-    covariance = _covariance(columns, residual, state, score.floor)
+    scale = np.sqrt(np.mean(columns**2, axis=0))
+    scale[scale == 0] = np.inf
+    pieces = _by_record(columns / scale, residual, state, score.floor)
+    covariance = _between_stretches(pieces) / np.outer(scale, scale)
     return [
         _told(state, *item, size, covariance[np.ix_(at, at)])
         for item, size, at in zip(state.beside, amplitudes, places, strict=True)
     ]
-
-
-def _covariance(
-    columns: FloatArray, residual: FloatArray, state: ModelState, floor: float
-) -> FloatArray:
-    """Covariance of weighted least squares, robust inside stretches of a record."""
-    scale = np.sqrt(np.mean(columns**2, axis=0))
-    scale[scale == 0] = np.inf
-    pieces = _by_record(columns / scale, residual, state, floor)
-    return np.asarray(_between_stretches(pieces) / np.outer(scale, scale))
 
 
 def _told(
