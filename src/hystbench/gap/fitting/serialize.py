@@ -26,8 +26,8 @@ from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.simulation.simulation import Simulation
 
 Mapped = dict[str, Any]
-MODEL = "model"
-"""Key under which a model stands in a result."""
+MODEL = "a model"
+"""Key under which a model stands in a result: no number has such a name."""
 
 
 def state_mapping(state: ModelState) -> Mapped:
