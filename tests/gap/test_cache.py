@@ -146,8 +146,6 @@ def test_what_a_strangers_simulator_gives_is_never_looked_up(kind, tmp_path):
                 SimpleNamespace(chain=(block,)),
                 lambda: ["word"],
                 lambda n=n: made.append(n) or n,
-                str,
-                int,
             )
             assert given == n
     assert made == [0, 1]

@@ -21,7 +21,7 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.uncertainty import (
     beside_errors,
     on_more_samples,
-    size_error_or_none,
+    size_error,
     standard_errors,
 )
 from hystbench.gap.judging.effect_rows import (
@@ -30,9 +30,7 @@ from hystbench.gap.judging.effect_rows import (
     ranking_rows,
     simulator_mapping,
 )
-from hystbench.gap.judging.fit_result import FitResult
-from hystbench.gap.judging.left import Left, what_is_left
-from hystbench.gap.judging.size_of_noise import size_follows
+from hystbench.gap.judging.left import Left, size_follows, what_is_left
 from hystbench.gap.judging.unnamed import Unnamed, what_is_unnamed
 from hystbench.gap.judging.verdict import (
     Verdict,
@@ -44,7 +42,7 @@ from hystbench.gap.locate import curves, locate
 from hystbench.gap.locate.forms import LEAST_SHARE
 from hystbench.gap.locate.level_classes import beside_level
 from hystbench.gap.naming.add_effects import LITTLE, Named
-from hystbench.gap.naming.ladder import contributions, rungs
+from hystbench.gap.naming.ladder import FitResult, contributions, rungs
 from hystbench.gap.records.black_box import BlackBox, black_box
 from hystbench.gap.records.floor import Floor, lone_share, unrepeated
 from hystbench.gap.records.scored_samples import Compared
@@ -127,7 +125,7 @@ def judge_and_tell(
         "reason": reason,
         "effects": effects,
         "fit": _fit(start, state, floor, left),
-        "unnamed": found.unnamed.mapping(share),
+        "unnamed": found.unnamed.mapping(),
         "where": [view.to_mapping() for view in where],
         "ranking": ranking_rows(named),
         "record_values": own.mapping(unit),
@@ -180,7 +178,7 @@ def _judged(
     box = black_box(before, floor.rms)
     unnamed = what_is_unnamed(start, state, floor.rms, share)
     bound = floor.method == "upper-bound"
-    size_tells = bound or left.is_new or unnamed.follows_nothing(share)
+    size_tells = bound or left.is_new or unnamed.follows_nothing
     verdict, why = judge(
         left,
         bool(state.added),
@@ -189,7 +187,6 @@ def _judged(
         bound,
         not state.added and size_tells and size_follows(state),
         unnamed,
-        share,
         what_mends(start.records),
     )
     beside = f"beside {own.words} of some records' own" if own.records else ""
@@ -203,7 +200,7 @@ def _judged(
         _predicts_nothing(state),
         _used_up(current()),
     )
-    trust = unnamed.trust(share, left.may_be_of_base)
+    trust = unnamed.trust(left.may_be_of_base)
     reason = "; ".join(part for part in parts if part)
     return _Judged(verdict, reason, trust, unnamed, box)
 
@@ -224,7 +221,7 @@ def _effects(
             of_beside,
             by_effect.get(item.effect, ()),
             left,
-            size_error_or_none(finer, floor.rms**2, number),
+            size_error(finer, floor.rms**2, number),
             trust,
         )
         | {"blocks": blocks_of(item, state, model)}

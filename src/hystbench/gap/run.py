@@ -21,15 +21,14 @@ from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.on_records import compared_records, run_base, start_state
 from hystbench.gap.fitting.own_steps import too_long_steps
 from hystbench.gap.fitting.own_values import OwnValues
-from hystbench.gap.fitting.serialize import Restorer, state_mapping
+from hystbench.gap.fitting.serialize import state_mapping, state_of
 from hystbench.gap.holdout.outcome import show_on_hold_out
 from hystbench.gap.holdout.show import Outcome
 from hystbench.gap.inside.named_inside import quantities_if_linear
 from hystbench.gap.judge_and_tell import Decision
-from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.naming.built_in import BuiltIn, build_in
 from hystbench.gap.naming.forecast_calls import reserve_calls
-from hystbench.gap.naming.ladder import Rung
+from hystbench.gap.naming.ladder import FitResult, Rung
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.black_box import black_box
 from hystbench.gap.records.evidence import Evidence, check_units
@@ -295,12 +294,11 @@ def _decided_in(folder: Path, evidence: Evidence, base: Model) -> Decided:
     leads = zip(evidence.fit, kept["leads"], strict=True)
     fit = tuple(replace(record, lead=lead) for record, lead in leads)
     fit = own.taken_off(fit, evidence.input_hold)
-    restorer = Restorer(fit, base.chain)
-    state = restorer.state(kept["state"])
-    rungs = tuple(
-        Rung(item["name"], restorer.state(item["state"])) for item in kept["rungs"]
-    )
     start, _ = start_state(fit, base, evidence.input_hold, evidence.noise_rms)
+    state = state_of(kept["state"], start)
+    rungs = tuple(
+        Rung(item["name"], state_of(item["state"], start)) for item in kept["rungs"]
+    )
     box = black_box(compared_records(start), floor.rms)
     first = base
     if kept["identified"]:

@@ -131,7 +131,7 @@ def _hysteresis(state: ModelState) -> list[Shape]:
     block = simulation.chain[place]
     gain = block_class("gain").from_mapping({"value": 1.0})
     straight = simulation.run(
-        (gain, *simulation.chain[place + 1 :]), simulation.before[place]
+        (gain, *simulation.chain[place + 1 :]), simulation.at(place)
     )
     plain = sample.take(straight)
     line = np.column_stack([np.ones(len(sample)), plain])

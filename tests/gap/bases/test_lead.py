@@ -9,7 +9,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.judging.fit_result import FitResult
+from hystbench.gap.naming.ladder import FitResult
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.scored_samples import ScoredSamples

@@ -14,8 +14,8 @@ from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import refit
 from hystbench.gap.fitting.state import Free
 from hystbench.gap.naming import rank as ranked
-from hystbench.gap.naming.on_folds import on_folds
 from hystbench.gap.naming.rank import rank
+from hystbench.gap.naming.rivals import on_folds
 from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.records.folds import make_folds
 from hystbench.gap.thresholds import CERTAIN, PARAMETER, PAYS, SCALE
@@ -167,7 +167,7 @@ def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
     def told(before, after, score):
         return 1e3 if after.added[-1].effect == last.effect else -1e3
 
-    monkeypatch.setattr("hystbench.gap.naming.on_folds.gain_held_back", told)
+    monkeypatch.setattr("hystbench.gap.naming.rivals.gain_held_back", told)
     monkeypatch.setattr(ranked, "finished", noted)
     monkeypatch.setattr(ranked, "EXACT", 1)
     ranking = rank(before, score)

@@ -9,8 +9,7 @@ from scipy.signal import lfilter
 from hystbench.blocks.drive_lag import DriveLag
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.fitting.model_score import make_score
-from hystbench.gap.fitting.refit import refit
-from hystbench.gap.fitting.scan import scanned
+from hystbench.gap.fitting.refit import refit, scanned
 from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.records.evidence import Evidence
 from tests.gap.made import record

@@ -13,7 +13,7 @@ from hystbench.gap.effects.effect import Declined
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state
-from hystbench.gap.fitting.serialize import Restorer, state_mapping
+from hystbench.gap.fitting.serialize import state_mapping, state_of
 from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.fitting.variant_search import Attempt
 from hystbench.gap.records.evidence import load_evidence
@@ -31,20 +31,18 @@ def tiny(tmp_path_factory):
     data, base = write_tiny(tmp_path_factory.mktemp("tiny"))
     evidence = load_evidence(data, "fit")
     model = load_model(base)
-    return model, *start_state(
-        evidence.fit, model, evidence.input_hold, evidence.noise_rms
-    )
+    return start_state(evidence.fit, model, evidence.input_hold, evidence.noise_rms)
 
 
 def test_what_is_known_of_a_number_comes_back_from_its_file(tiny):
-    model, state, _ = tiny
+    state, _ = tiny
     place = len(state.chain) - 1
     name = next(iter(state.chain[place].to_mapping()))
     free = (Free(place, name, None, 0.1, given=1.5, refused="upper"),)
     item = Added("outflow", "inside", "root", (place,), {}, 1.0, was_free=free)
     known = replace(state, free=free, added=(item,))
     kept = json.loads(json.dumps(state_mapping(known), allow_nan=False))
-    restored = Restorer(state.records, model.chain).state(kept)
+    restored = state_of(kept, state)
     assert restored.free == free
     assert restored.added == (item,)
 
@@ -55,7 +53,8 @@ CHAINED = sorted(name for name, item in effects().items() if item.place != "insi
 @pytest.mark.parametrize("added", CHAINED)
 def test_a_model_comes_back_from_its_file(tiny, added):
     """Every effect, added to a chain that lags: it simulates the same."""
-    model, state, floor = tiny
+    start, floor = tiny
+    state = start
     score = make_score(state, floor.rms)
     chain = ["drive-lag", *NEEDS.get(added, []), added]
     for effect in dict.fromkeys(chain):
@@ -68,9 +67,9 @@ def test_a_model_comes_back_from_its_file(tiny, added):
         state = with_effect(state, trial.variant, trial.values)
     state = state.settled()
     changes = {k: 1e-3 * step for k, step in enumerate(state.steps)}
-    moved = replace(state, chain=state.moved(changes))
+    moved = state.moved(changes)
     kept = json.loads(json.dumps(state_mapping(moved), allow_nan=False))
-    restored = Restorer(moved.records, model.chain).state(kept)
+    restored = state_of(kept, start)
     assert restored.chain == moved.chain
     assert restored.free == moved.free
     assert restored.added == moved.added

@@ -33,7 +33,7 @@ def steps_of(chain, one):
 def left_with(size, chain, seed=7):
     """A model that leaves white noise of an RMS on every record."""
     rng = np.random.default_rng(seed)
-    exact = Simulation(chain, records(), "band-limited", fine=True).output
+    exact = Simulation(chain, records(), "band-limited", "fine").output
     made = tuple(
         record(one.u, y + size * rng.standard_normal(len(y)), name=one.name, dt=one.dt)
         for one, y in zip(records(), exact, strict=True)

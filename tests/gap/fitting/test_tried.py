@@ -21,14 +21,15 @@ def looked_at(effect, gain, score, begun=False, freedom=0.0):
     def at(point):
         if score is None:
             raise Declined("refused")
-        return Trial(variant, {"x": point[0]}, score)
+        return Trial(one, {"x": point[0]}, score)
 
-    return Seen(SimpleNamespace(variant=variant, at=at), ((1.0,),), gain)
+    one = SimpleNamespace(variant=variant, at=at)
+    return Seen(one, ((1.0,),), gain)
 
 
 def gains_of(looks, least):
     found, refused = on_all_records(looks, NOW, least)
-    return [NOW - trial.score for _, trial in found], refused
+    return [NOW - trial.score for trial in found], refused
 
 
 def test_what_gains_too_little_at_a_glance_stays_as_it_was_seen():

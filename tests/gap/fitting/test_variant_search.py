@@ -21,9 +21,10 @@ def attempt(axes, score):
     def at(point):
         if point not in asked:
             asked.append(point)
-        return Trial(variant, {}, score(*point))
+        return Trial(one, {}, score(*point))
 
-    return SimpleNamespace(variant=variant, at=at), asked
+    one = SimpleNamespace(variant=variant, at=at)
+    return one, asked
 
 
 @given(st.integers(1, 25), st.integers(0, 24))

@@ -15,8 +15,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.on_records import compared_records, start_state
 from hystbench.gap.holdout.show import RUNS_AWAY_RATIO, bounded, reach, score_hold_out
-from hystbench.gap.judging.fit_result import FitResult
-from hystbench.gap.naming.ladder import Rung
+from hystbench.gap.naming.ladder import FitResult, Rung
 from hystbench.gap.records.black_box import black_box
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.report.tables import write_table

@@ -69,7 +69,7 @@ def test_free_numbers_are_found_again_between_the_blocks_of_effects():
     after = with_named(state, "drive-lag", time_constant_s=1e-3)
     after = with_named(after, "sensor-lag", time_constant_s=1e-3)
     # The free numbers are in the order of the base's list, the blocks in the chain's.
-    after = after.with_chain(after.moved({0: 0.5, 2: 0.25}))
+    after = after.moved({0: 0.5, 2: 0.25})
     found = base_parameters(base, after)
     assert {key: item["after"] for key, item in found.items()} == {
         "gain#2.value": 3.5,

@@ -1,12 +1,10 @@
 """Groups of columns with variances of their own, on problems with a known answer."""
 
-import itertools
-
 import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from hystbench.gap.judging.grouped_evidence import ColumnProducts, _factored
+from hystbench.gap.judging.grouped_evidence import ColumnProducts, Grouped, _factored
 
 ROWS = 2000
 
@@ -18,9 +16,17 @@ def made(seed, counts, sizes, noise):
     columns /= np.sqrt(np.mean(columns**2, axis=0))
     amplitudes = rng.standard_normal(sum(counts)) * np.repeat(sizes, counts)
     signal = columns @ amplitudes + noise * rng.standard_normal(ROWS)
-    ends = np.cumsum([0, *counts])
-    groups = [range(a, b) for a, b in itertools.pairwise(ends)]
-    return columns, signal, groups
+    return columns, signal, in_groups(columns, counts)
+
+
+def in_groups(columns, counts):
+    """Columns by group, so many each."""
+    parts = np.split(columns, np.cumsum(counts)[:-1], axis=1)
+    return {str(k): part for k, part in enumerate(parts)}
+
+
+def explained(groups, signal, sizes=None):
+    return ColumnProducts.of(groups, signal, sizes).explained(groups)
 
 
 def test_of_orthogonal_columns_the_variance_has_a_closed_form():
@@ -28,11 +34,11 @@ def test_of_orthogonal_columns_the_variance_has_a_closed_form():
     rng = np.random.default_rng(1)
     columns = np.linalg.qr(rng.standard_normal((ROWS, 12)))[0] * np.sqrt(ROWS)
     signal = columns @ rng.normal(0, 0.3, 12) + rng.standard_normal(ROWS)
-    found = ColumnProducts.of(columns, signal).explained([range(12)])
+    found = explained({"all": columns}, signal)
     amplitudes = columns.T @ signal / ROWS
     left = signal - columns @ amplitudes
     # At a fixed point the noise is charged for what the amplitudes determine.
-    assert found.variances[0] + found.noise / ROWS == pytest.approx(
+    assert found.variances["all"] + found.noise / ROWS == pytest.approx(
         np.mean(amplitudes**2), rel=1e-6
     )
     assert found.noise == pytest.approx(left @ left / (ROWS - 12), rel=1e-3)
@@ -41,10 +47,11 @@ def test_of_orthogonal_columns_the_variance_has_a_closed_form():
 @pytest.mark.parametrize("seed", range(5))
 def test_noise_and_sizes_are_found_again(seed):
     counts, sizes = (30, 40, 20), (2.0, 0.0, 0.5)
-    columns, signal, groups = made(seed, counts, sizes, 1.0)
-    found = ColumnProducts.of(columns, signal).explained(groups)
+    _, signal, groups = made(seed, counts, sizes, 1.0)
+    found = explained(groups, signal)
     assert found.noise == pytest.approx(1.0, abs=4 * np.sqrt(2 / ROWS))
-    for size, count, variance in zip(sizes, counts, found.variances, strict=True):
+    variances = found.variances.values()
+    for size, count, variance in zip(sizes, counts, variances, strict=True):
         error = 4 * np.sqrt(2 / count) * size**2 + 4 / ROWS
         assert variance == pytest.approx(size**2, abs=error)
 
@@ -52,19 +59,19 @@ def test_noise_and_sizes_are_found_again(seed):
 @pytest.mark.parametrize("seed", range(5))
 def test_groups_that_explain_nothing_take_no_noise_away(seed):
     # By least squares 200 columns would take a tenth of it.
-    columns, signal, groups = made(seed, (5, 200), (1.0, 0.0), 1.0)
-    products = ColumnProducts.of(columns, signal)
-    few, all_of_them = (products.explained(groups[:k]) for k in (1, 2))
+    _, signal, groups = made(seed, (5, 200), (1.0, 0.0), 1.0)
+    products = ColumnProducts.of(groups, signal)
+    few, all_of_them = (products.explained(names) for names in (["0"], groups))
     assert all_of_them.noise == pytest.approx(few.noise, rel=0.02)
     assert all_of_them.evidence <= few.evidence + 3.0
 
 
 def test_the_evidence_is_the_density_of_the_signal():
-    columns, signal, groups = made(3, (4, 6), (1.0, 0.2), 0.7)
+    columns, signal, _ = made(3, (4, 6), (1.0, 0.2), 0.7)
     columns, signal = columns[:300], signal[:300]
     columns = columns / np.sqrt(np.mean(columns**2, axis=0))
-    found = ColumnProducts.of(columns, signal).explained(groups)
-    spread = np.repeat(found.variances, [len(group) for group in groups])
+    found = explained(in_groups(columns, (4, 6)), signal)
+    spread = np.repeat(list(found.variances.values()), (4, 6))
     covariance = (columns * spread) @ columns.T + found.noise * np.eye(300)
     density = multivariate_normal(cov=covariance).logpdf(signal)
     assert found.evidence == pytest.approx(density, rel=1e-6)
@@ -72,27 +79,24 @@ def test_the_evidence_is_the_density_of_the_signal():
 
 def test_a_group_offered_twice_explains_no_more():
     columns, signal, groups = made(4, (15,), (1.0,), 1.0)
-    twice = ColumnProducts.of(np.hstack([columns, columns]), signal)
-    once = ColumnProducts.of(columns, signal).explained(groups)
-    assert twice.explained([range(15), range(15, 30)]).noise == pytest.approx(
-        once.noise, rel=1e-3
-    )
+    once, twice = explained(groups, signal), explained({**groups, "1": columns}, signal)
+    assert twice.noise == pytest.approx(once.noise, rel=1e-3)
 
 
 def test_scales_of_columns_do_not_matter():
     columns, signal, groups = made(5, (10, 10), (1.0, 0.0), 1.0)
     scales = 10.0 ** np.arange(-10, 10)
-    one = ColumnProducts.of(columns, signal).explained(groups)
-    other = ColumnProducts.of(columns * scales, signal).explained(groups)
+    one = explained(groups, signal)
+    other = explained(in_groups(columns * scales, (10, 10)), signal)
     assert other.noise == pytest.approx(one.noise, rel=1e-9)
 
 
 def test_a_column_of_zeros_and_no_group_at_all():
     _, signal, _ = made(6, (1,), (1.0,), 1.0)
-    products = ColumnProducts.of(np.zeros((ROWS, 2)), signal)
+    products = ColumnProducts.of({"zeros": np.zeros((ROWS, 2))}, signal)
     power = np.mean(signal**2)
     assert products.explained([]).noise == pytest.approx(power)
-    assert products.explained([range(2)]).noise == pytest.approx(power)
+    assert products.explained(["zeros"]).noise == pytest.approx(power)
 
 
 def test_products_over_a_tiny_noise_are_inverted_where_rounding_hides_the_one():
@@ -117,12 +121,11 @@ def test_sizes_say_which_columns_of_a_group_are_expected_to_be_large():
     sizes = 1.0 / np.arange(1, 41)
     signal = columns @ (sizes * rng.standard_normal(40)) + rng.standard_normal(ROWS)
     alike, falling = (
-        ColumnProducts.of(columns, signal, each).explained([range(40)])
-        for each in (1.0, sizes)
+        explained({"all": columns}, signal, each) for each in (None, {"all": sizes})
     )
     assert falling.evidence > alike.evidence
     scale = np.sqrt(np.mean(columns**2, axis=0))
-    prior = np.diag(falling.variances[0] * sizes**2)
+    prior = np.diag(falling.variances["all"] * sizes**2)
     unit = columns / scale
     covariance = unit @ prior @ unit.T + falling.noise * np.eye(ROWS)
     expected = multivariate_normal(cov=covariance).logpdf(signal)
@@ -134,12 +137,13 @@ def test_the_power_beyond_others_is_that_of_ridge_regression():
     columns = rng.standard_normal((ROWS, 8))
     columns[:, 5] += 3 * columns[:, 0]
     columns /= np.sqrt(np.mean(columns**2, axis=0))
-    products = ColumnProducts.of(columns, np.zeros(ROWS))
+    products = ColumnProducts.of(in_groups(columns, (5, 3)), np.zeros(ROWS))
     amplitudes, variances, noise = rng.standard_normal(3), np.full(5, 0.1), 2.0
     total = columns[:, 5:] @ amplitudes
     own = columns[:, :5] * np.sqrt(variances)
     ridge = np.vstack([own, np.sqrt(noise) * np.eye(5)])
     taken = np.linalg.lstsq(ridge, np.concatenate([total, np.zeros(5)]))[0]
     expected = np.mean((total - own @ taken) ** 2)
-    found = products.power_beyond(range(5, 8), amplitudes, range(5), noise, variances)
+    given = Grouped(noise, {"0": 0.1}, 0.0, {"1": amplitudes})
+    found = products.power_beyond(["1"], ["0"], given)
     assert found == pytest.approx(expected, rel=1e-9)

@@ -93,7 +93,7 @@ def test_the_right_name_owns_all_that_it_leaves():
     given = measured((GAIN, block("sensor-lag", time_constant_s=4e-3)), NOISE)
     for tau in (4e-3, 4.2e-3):  # a number a little off is its own
         found = what_is_unnamed(*lagging(given, tau), NOISE)
-        assert not found.too_much()
+        assert not found.too_much
         assert found.structured < 1e-3
         assert found.changing is not None
         assert found.changing < 1e-3
@@ -128,8 +128,8 @@ def test_a_strength_that_differs_between_records_is_found_with_its_factors(sprea
     added = Added("calibration-error", "sensor", "", (1,), {}, 1)
     state = state_of((GAIN, named), given, count=800, added=(added,))
     found = what_is_unnamed(start, state, NOISE)
-    assert found.too_much()
-    assert found.sort() == "strength"
+    assert found.too_much
+    assert found.sort == "strength"
     assert found.factors == pytest.approx(strength, abs=0.02)
     # Of strengths 1 + e_k the mean of e_k^2 over the mean of (1 + e_k)^2 goes, but for
     # a common gain, which the name may own: the records' own powers weigh both.
@@ -153,7 +153,7 @@ def test_with_no_name_the_sort_of_the_gap_is_told(sort):
     given = with_output(SHAPES[sort])
     start = state_of((GAIN,), given, count=800)
     found = what_is_unnamed(start, start, NOISE)
-    assert found.sort() == sort
+    assert found.sort == sort
     assert found.changing is None
     assert found.factors == ()
     if sort == "unrelated":
@@ -175,9 +175,9 @@ def test_another_effect_than_the_hidden_one_is_withdrawn():
     given = with_output(lambda k, one: lag_of(4e-3)(k, one) + 6.0 * one.u**3)
     start, state = lagging(given, 4e-3)
     found = what_is_unnamed(start, state, NOISE)
-    assert found.too_much()
-    assert found.sort() == "curve"
-    assert SORTS["curve"] in found.reason()
+    assert found.too_much
+    assert found.sort == "curve"
+    assert SORTS["curve"] in found.reason
 
 
 def test_a_path_that_is_named_owns_slow_paths():
@@ -196,7 +196,7 @@ def test_a_path_that_is_named_owns_slow_paths():
     added = Added("drift", "sensor", "", (), {}, 1)
     state = state_of((GAIN,), given, count=800, added=(added,), beside=((beside, {}),))
     assert what_is_unnamed(start, start, NOISE).structured > 0.5
-    assert not what_is_unnamed(start, state, NOISE).too_much()
+    assert not what_is_unnamed(start, state, NOISE).too_much
     # In windows of a free mass any small error of a force makes such a path.
     cut = state_of((GAIN,), [replace(one, decay_s=1.0) for one in given], count=800)
     assert what_is_unnamed(cut, cut, NOISE).structured < 0.1
@@ -213,7 +213,7 @@ def test_a_path_that_is_named_owns_what_its_most_winding_form_could_do():
     added = Added("drift", "sensor", "path", (), {}, 1)
     state = state_of((GAIN,), given, count=800, added=(added,), beside=((plain, {}),))
     found = what_is_unnamed(start, state, NOISE)
-    assert not found.too_much()
+    assert not found.too_much
     assert found.stays < 0.05
     # Without its name such a path stays what follows no known signal.
     assert what_is_unnamed(start, start, NOISE).stays > 0.5
@@ -221,16 +221,16 @@ def test_a_path_that_is_named_owns_what_its_most_winding_form_could_do():
 
 def test_one_number_sets_both_limits():
     for share in (0.01, 0.05):
-        assert Unnamed(1.01 * share).too_much(share)
-        assert not Unnamed(0.99 * share, changing=0.5).too_much(share)
+        assert Unnamed(1.01 * share, share).too_much
+        assert not Unnamed(0.99 * share, share, 0.5).too_much
 
 
 def test_a_sort_is_told_where_more_stays_than_may():
-    found = Unnamed(0.02, 0.004, 0.0, {"statics": 50.0, "rate": 20.0})
-    assert found.sort() == "curve"
-    assert "2 %" in found.reason()
+    found = Unnamed(0.02, gains={"statics": 50.0, "rate": 20.0})
+    assert found.sort == "curve"
+    assert "2 %" in found.reason
     assert found.mapping()["sentence"] == SORTS["curve"]
-    fine = Unnamed(0.002, 0.001, 0.1, {"statics": 50.0}).mapping()
+    fine = Unnamed(0.002, unrelated=0.1, gains={"statics": 50.0}).mapping()
     assert fine["sort"] is fine["sentence"] is None
 
 
@@ -348,13 +348,13 @@ def walk(rng, u):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_what_a_path_leaves_of_a_random_walk_follows_slow_signals_by_chance_alone(seed):
-    assert not named_drift(walk, seed).too_much()
+    assert not named_drift(walk, seed).too_much
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_curve_stays_structure_beside_a_drift_that_is_a_random_walk(seed):
     found = named_drift(lambda rng, u: walk(rng, u) + 3.0 * np.maximum(u, 0) ** 2, seed)
-    assert found.too_much()
+    assert found.too_much
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -367,9 +367,9 @@ def test_a_slow_path_that_the_inputs_power_causes_is_no_drift(seed):
 
     found = named_drift(heat, seed, sizes)
     assert found.structured > LOOSE
-    assert found.sort() == "history"
+    assert found.sort == "history"
     # A random walk that is as large in records of other sizes is none of it.
-    assert not named_drift(walk, seed, sizes).too_much()
+    assert not named_drift(walk, seed, sizes).too_much
 
 
 def test_a_longer_run_has_the_larger_random_walk():
@@ -435,7 +435,7 @@ def test_a_zero_of_each_record_is_no_chance():
     given = broad(lambda k, one: np.full(len(one), zeros[k]), 3)
     start = state_of((GAIN,), given, count=800)
     found = what_is_unnamed(start, start, NOISE)
-    assert found.too_much()
+    assert found.too_much
     assert found.structured > 0.5
 
 

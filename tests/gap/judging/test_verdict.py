@@ -160,8 +160,8 @@ def test_a_percent_of_the_output_that_reshaping_explains_is_no_gap():
 
 @given(SHARES, SHARES, SHARES, st.floats(1e-3, 0.5))
 def test_what_stays_unnamed_decides_whether_a_name_holds(follows, changes, rest, share):
-    found = Unnamed(follows, changes, rest)
-    word, reason = judge(left(1.0), True, unnamed=found, unnamed_share=share)
+    found = Unnamed(follows, share, changes, rest)
+    word, reason = judge(left(1.0), True, unnamed=found)
     known = follows > share
     assert word == ("unnamed" if known or follows + rest > LOOSE else "named")
     assert ("too much stays" in reason) == (not known and follows + rest > LOOSE)
@@ -194,7 +194,7 @@ def test_what_would_be_no_gap_does_not_speak_against_a_name():
     for other in (large, alien, lone, differing):
         assert judge(other, True, unnamed=structure)[0] == "unnamed"
     # Nor does a name stand where most of the gap is left.
-    assert judge(found, True, unnamed=Unnamed(0.03, 0.0, 0.3))[0] == "unnamed"
+    assert judge(found, True, unnamed=Unnamed(0.03, unrelated=0.3))[0] == "unnamed"
     for much, word in ((0.039, "named"), (0.041, "unnamed")):
         assert judge(found, True, unnamed=Unnamed(much))[0] == word
     word, reason = judge(found, True, unnamed=Unnamed(0.3))
@@ -347,7 +347,7 @@ def test_what_is_new_in_each_period_is_told_as_that():
 def test_noise_that_follows_nothing_is_no_gap_but_where_the_noise_is_known():
     """As surrogates tell it where no record repeats."""
     found = replace(left(30.0), output=2e4)
-    chance = Unnamed(0.0, None, 0.3, by_chance=0.3)
+    chance = Unnamed(0.0, unrelated=0.3, by_chance=0.3)
     for bound, expected in ((True, "no-gap"), (False, "unnamed")):
         word, reason = judge(
             found, False, -0.1, unnamed=chance, floor_is_upper_bound=bound

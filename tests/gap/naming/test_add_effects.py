@@ -145,9 +145,9 @@ def test_another_shape_is_fitted_to_what_it_is_to_take():
     )
     start = state_of(one, measured(five, 0.006, given=given), count=1000)
     score = make_score(start, 0.006)
-    ((attempt, trial),), _ = tried(effects()["hysteresis-shape"], start, score)
+    (trial,), _ = tried(effects()["hysteresis-shape"], start, score)
     state, value = added(start, trial, score)
-    first = Candidate(attempt.variant.effect, "material", score=value, state=state)
+    first = Candidate(trial.variant.effect, "material", score=value, state=state)
     rounds = (Round(start, value + 50.0, (first,), True),)
     found = replace(SoFar.begun(start, 0.006), state=state, rounds=rounds)
     named = add_effects.settled(found, start, 0.006, silent).state

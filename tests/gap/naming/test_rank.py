@@ -218,7 +218,7 @@ def test_one_that_was_not_judged_on_records_held_back_is_never_first(monkeypatch
     monkeypatch.setattr(module, "EXACT", 1)
     for name in judges:
         monkeypatch.setattr(module, name, judge(name))
-    inside = "hystbench.gap.naming.on_folds.on_folds"
+    inside = "hystbench.gap.naming.rivals.on_folds"
     monkeypatch.setattr(inside, judge("on_folds"))
     names = ("sensor-lag", "rate-dependent-hysteresis", "eddy-diffusion", "drive-lag")
     lag = block("sensor-lag", time_constant_s=0.004)

@@ -13,7 +13,7 @@ from hystbench.gap.fitting.tried import tried
 from hystbench.gap.judging.effect_rows import ranking_rows
 from hystbench.gap.naming import second_looks as reconsider
 from hystbench.gap.naming.add_effects import Named
-from hystbench.gap.naming.rounds import Candidate, Round, reasons
+from hystbench.gap.naming.rounds import Candidate, Round
 from hystbench.gap.naming.second_looks import reconsidered
 from hystbench.gap.progress import silent
 from hystbench.gap.thresholds import PAYS
@@ -63,7 +63,8 @@ def test_a_second_look_counts_only_where_the_effect_itself_could_be_judged(
         None if declined else "drive-lag",
         "asymmetry",
     ]
-    by_effect = reasons([*rounds, replace(rounds[0], taken=False, looks=looks)])
+    again = replace(rounds[0], taken=False, looks=looks)
+    by_effect = Named(state, (*rounds, again)).reasons
     last = rounds[0].ranking if declined else looks[0].ranking
     assert by_effect["drive-lag"] is last
     # The model that is there scores better than what the second look came to.
@@ -222,7 +223,7 @@ def test_a_hysteresis_without_a_loop_gives_way_to_a_curve(loop):
     before = state_of((gain,), measured((device, gain), NOISE), count=600)
     score = make_score(before, NOISE)
     every, _ = tried(effects()["hysteresis"], before, score)
-    plays = next(trial for _, trial in every if trial.variant.form == FORMS[loop])
+    plays = next(trial for trial in every if trial.variant.form == FORMS[loop])
     state, _ = added(before, plays, score)
     kept, _ = reconsidered(state, (), NOISE, silent)
     names = [item.effect for item in kept.added]

@@ -31,9 +31,9 @@ def same(signals, others):
 def test_stages_are_those_of_the_chain_cut_short(name):
     chain = chains()[name]
     simulation = Simulation(chain, records())
-    same(simulation.before[0], [one.u for one in records()])
+    same(simulation.at(0), [one.u for one in records()])
     for end in range(1, len(chain) + 1):
-        same(simulation.before[end], from_scratch(chain[:end]))
+        same(simulation.at(end), from_scratch(chain[:end]))
     same(simulation.output, from_scratch(chain))
 
 
@@ -116,7 +116,7 @@ def test_a_second_wrapping_block_goes_around_the_first():
 def test_quick_with_its_correction_is_exact_for_the_chain_itself(name, hold):
     model = Model("whole", CURRENT, DISPLACEMENT, chains()[name]).with_hold(hold)
     state = state_of(model.chain, hold=hold)
-    exact = Simulation(model.chain, records(), hold, fine=True).output
+    exact = Simulation(model.chain, records(), hold, "fine").output
     size = max(np.abs(y).max() for y in exact)
     residual = state.measured - state.sample.take(exact)
     assert state.residual == pytest.approx(residual, abs=1e-11 * size)
@@ -130,14 +130,16 @@ def test_plain_is_the_model_and_fine_steps_through_the_hysteresis_alone():
     for one in records():
         u = finer(one.u, 8)
         wanted.append(model.simulate(u, one.dt / 8)[::8])
-    same(Simulation(chain, records(), "band-limited", fine=True).output, wanted)
+    same(Simulation(chain, records(), "band-limited", "fine").output, wanted)
 
 
 def test_quick_is_not_exact_where_a_mode_takes_a_band_limited_signal():
     """Otherwise the test above would show nothing."""
     model = Model("whole", CURRENT, DISPLACEMENT, chains()["hysteresis and mode"])
     chain = model.with_hold("band-limited").chain
-    quick, exact = (Simulation(chain, records(), quick=q).output for q in (True, False))
+    quick, exact = (
+        Simulation(chain, records(), steps=steps).output for steps in ("quick", "plain")
+    )
     difference = np.abs(quick[1] - exact[1]).max()
     assert 1e-6 < difference < 0.05 * np.abs(exact[1]).max()
 
@@ -186,7 +188,7 @@ def test_a_mode_that_is_not_linear_takes_longer_steps_where_models_are_compared(
     hardening = block("stiffness-hardening", coefficient=2e-3, **MODE)
     plain = Simulation((hysteresis(), hardening), records())
     for quick, exact in zip(
-        replace(plain, quick=True).output, plain.output, strict=True
+        replace(plain, steps="quick").output, plain.output, strict=True
     ):
         missed = np.abs(quick - exact).max() / np.ptp(exact)
         assert 0.0 < missed < 1e-3
@@ -200,10 +202,9 @@ def test_a_mode_beside_others_takes_the_steps_that_it_takes_alone(steps):
     modes = block(
         "other-modes", numerator=[2.0], denominator=[1.0, 3.0, 900.0], hold="linear"
     )
-    how = {steps: True}
 
     def simulated(*chain):
-        return Simulation(chain, records(), "linear", **how).output
+        return Simulation(chain, records(), "linear", steps).output
 
     alone = simulated(mode, force)
     bare = [a - b for a, b in zip(simulated(mode, modes), simulated(mode), strict=True)]

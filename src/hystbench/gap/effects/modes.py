@@ -90,7 +90,7 @@ def peaks(simulation: Simulation, low: float, high: float) -> FloatArray:
     x = np.exp(width * np.arange(first, last + 1))
     mode = 1 / (1 - x**2 + 2j * LIGHT * x) - 1
     bins = np.zeros((3, (count - 1) * BINS + len(x)))
-    inputs = simulation.before[simulation.behind_linear]
+    inputs = simulation.at(simulation.behind_linear)
     for record, v, simulated in zip(
         simulation.records, inputs, simulation.output, strict=True
     ):

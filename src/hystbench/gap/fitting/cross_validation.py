@@ -63,8 +63,6 @@ def gain_held_back(before: ModelState, after: ModelState, score: Score) -> float
         after,
         lambda: ["held back", *state_key(before), score.digest],
         lambda: _gain(before, after, score),
-        float,
-        float,
     )
 
 

@@ -96,7 +96,8 @@ def fitted(
         return np.where(logs, values * times, values + point * sizes)
 
     def moved(point: FloatArray) -> ModelState:
-        return at_values(state, values_at(point)) if point.any() else state
+        values = dict(enumerate(values_at(point).tolist()))
+        return state.at(values) if point.any() else state
 
     def residual(point: FloatArray) -> FloatArray:
         try:
@@ -150,17 +151,6 @@ def judged(state: ModelState, score: Score) -> float:
     return score.of(residual, state.freedom) + state.moved_charge
 
 
-def at_values(state: ModelState, values: FloatArray) -> ModelState:
-    """Give a model with other values of its free numbers, within their bounds.
-
-    Raises
-    ------
-    InputError
-        If a block does not take them together.
-    """
-    return state.with_chain(state.chain_at(dict(enumerate(values.tolist()))))
-
-
 def _tangents(state: ModelState, steps: FloatArray) -> FloatArray:
     """How the output changes with each free number, shape (scored samples, k).
 
@@ -179,7 +169,7 @@ def _tangents(state: ModelState, steps: FloatArray) -> FloatArray:
     chains = []
     for k, step in enumerate(steps.tolist()):
         try:
-            chains.append(state.moved({k: step}))
+            chains.append(state.moved({k: step}).chain)
         except InputError:
             chains.append(state.chain)
     found = state.sample.take(state.simulation.near(chains))

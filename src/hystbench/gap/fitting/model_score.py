@@ -74,7 +74,9 @@ def score_of(state: ModelState, score: Score) -> float:
 
     Amplitudes of what lies beside are solved for.
     """
-    return score_beside(state, score, beside_of(state, score))
+    nothing, beside = np.zeros((len(state.sample), 0)), beside_of(state, score)
+    found = score.amplitudes(state.residual, nothing, state.freedom, beside=beside)
+    return found.score + state.moved_charge
 
 
 def beside_of(state: ModelState, score: Score) -> Shared | None:
@@ -90,13 +92,6 @@ def _products(given: Same, score: Score) -> Shared:
     beside, records, sample = given.objects
     columns = ModelState((), records, sample, beside=beside).beside_columns
     return score.shared(columns)
-
-
-def score_beside(state: ModelState, score: Score, beside: Shared | None) -> float:
-    """Score a model where the products of what lies beside it are known."""
-    nothing, residual = np.zeros((len(state.sample), 0)), state.residual
-    found = score.amplitudes(residual, nothing, state.freedom, beside=beside)
-    return found.score + state.moved_charge
 
 
 def step_error(state: ModelState) -> float | None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 from hystbench.blocks.held import Hold
 from hystbench.gap.fitting.state import Free, ModelState
@@ -99,23 +100,31 @@ def free_numbers(base: Model) -> tuple[Free, ...]:
     a number may change by; a step of a refit is damped by its size.
     """
     places = {label: k for k, (label, _) in enumerate(base.labelled())}
-    found = []
+    found: list[Free] = []
     for name in base.free:
         label, _, parameter = name.rpartition(".")
-        share, value = base.tolerances.get(name), base.value(name)
-        numbers = value if isinstance(value, tuple) else (value,)
-        for element, number in enumerate(numbers):
-            if isinstance(number, str):
-                continue
-            if share and not number and isinstance(value, tuple):
-                continue
-            size = None if not share or not number else share * abs(number)
-            place = element if isinstance(value, tuple) else None
-            own = Free(places[label], parameter, place, size)
-            if size is not None:
-                own = own._replace(low=number - size, high=number + size, given=number)
-            found.append(own)
+        share = base.tolerances.get(name)
+        found += free_within(places[label], parameter, base.value(name), share)
     return tuple(found)
+
+
+def free_within(
+    place: int, name: str, value: Any, share: float | None
+) -> Iterator[Free]:
+    """Free a parameter, each of its numbers within a share of what it is.
+
+    Without a share it goes anywhere. So does a zero alone; one among others stays.
+    """
+    many = isinstance(value, tuple)
+    for element, number in enumerate(value if many else (value,)):
+        if isinstance(number, str) or (many and share and not number):
+            continue
+        own = Free(place, name, element if many else None)
+        if share and number:
+            size = share * abs(number)
+            ends = {"low": number - size, "high": number + size}
+            own = own._replace(tolerance=size, given=number, **ends)
+        yield own
 
 
 def compared_records(state: ModelState) -> list[Compared]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.gap.bases.known_about import LATE, in_time, stated
 from hystbench.gap.fitting.model_score import beside_of
+from hystbench.gap.fitting.on_records import free_within
 from hystbench.gap.fitting.score import Held, Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.thresholds import ABOUT, PARAMETER
@@ -60,8 +60,12 @@ def charge_of_base(state: ModelState, score: Score) -> float:
 
 def _loosened(state: ModelState) -> ModelState:
     """Free the numbers that a base states beside effects, and its timing."""
-    own = state.places_added
-    numbers = [free for free in _numbers_about(state) if free.block not in own]
+    known = {(free.block, free.parameter) for free in state.free}
+    numbers: list[Free] = []
+    for place, block in enumerate(state.chain):
+        for name in () if place in state.places_added else stated(block):
+            if (place, name) not in known:
+                numbers += free_within(place, name, getattr(block, name), ABOUT)
     state = replace(state, free=(*state.free, *numbers))
     most = LATE * min(record.dt for record in state.records)
     chain = in_time(state.chain, most)
@@ -69,20 +73,6 @@ def _loosened(state: ModelState) -> ModelState:
     timing = Free(0, "delay_s", None, most, 0.0, 2 * most, given=most)
     state = replace(state, free=(*state.free, timing))
     return state.settled()
-
-
-def _numbers_about(state: ModelState) -> Iterator[Free]:
-    """Give the numbers that blocks state and nobody freed, within what they may be."""
-    known = {(free.block, free.parameter) for free in state.free}
-    for place, block in enumerate(state.chain):
-        for name in stated(block):
-            value = getattr(block, name)
-            many = isinstance(value, tuple)
-            for element, number in enumerate(value if many else (value,)):
-                if number and (place, name) not in known:
-                    at, size = element if many else None, ABOUT * abs(number)
-                    ends = number - size, number + size
-                    yield Free(place, name, at, size, *ends, given=number)
 
 
 def re_tuned_words(start: ModelState, state: ModelState) -> str:

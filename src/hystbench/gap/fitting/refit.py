@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from hystbench.blocks.calls import CallsUsedUp
+from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError
 from hystbench.gap.fitting.beside import beside_slope
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
-from hystbench.gap.fitting.model_score import beside_of, score_beside, score_of
+from hystbench.gap.fitting.model_score import beside_of, make_score, score_of
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.serialize import (
-    remembered_of,
-    state_again,
-    state_with_correction,
-)
+from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.variant_search import Trial
 from hystbench.gap.thresholds import SCALE
@@ -36,6 +31,11 @@ FAR, NOWHERE = 1e6, 1e100
 
 ENOUGH = 0.05
 """A round that lowers the score by less is the last."""
+
+RANGE = 1.5
+"""Times a number, up and down, that is looked over before a simulator."""
+LOOKS = 16
+"""Simulations a number at most."""
 
 
 def refit(
@@ -58,8 +58,7 @@ def refit(
         Never worse than the one given.
     score : float
     """
-    beside = beside_of(state, score)
-    best = score_beside(state, score, beside)
+    best = score_of(state, score)
     for left in reversed(range(rounds if state.free else 0)):
         size = sizes(state)
         before = best
@@ -69,12 +68,12 @@ def refit(
                 state.tangents,
                 state.freedom,
                 state.held.in_steps(damping / size**2),
-                beside=beside,
+                beside=beside_of(state, score),
             )
             change = dict(enumerate(found.values.tolist()))
             try:
-                moved = state.with_chain(state.moved(change, reflected=True))
-                value = score_beside(moved, score, beside)
+                moved = state.moved(change, reflected=True)
+                value = score_of(moved, score)
             except InputError:
                 continue  # out of what the blocks accept together: go less far
             # At the floor the score is flat, and a short step still right. What a fold
@@ -130,25 +129,10 @@ def added(
     variant = trial.variant
     about = [variant.effect, variant.place, variant.form, variant.start]
     about.append(variant.operates)
-    return _remembered(
+    return remembered_of(
         state,
         lambda: ["added", *about, trial.values, score.digest, wanted],
         lambda: _added(state, trial, score, wanted),
-    )
-
-
-def _remembered(
-    state: ModelState,
-    key: Callable[[], list[Any]],
-    compute: Callable[[], tuple[ModelState, float]],
-) -> tuple[ModelState, float]:
-    """Compute a model that follows from another one, or look it up."""
-    return remembered_of(
-        state,
-        key,
-        compute,
-        lambda found: [state_with_correction(found[0]), found[1]],
-        lambda kept: (state_again(kept[0], state), kept[1]),
     )
 
 
@@ -194,7 +178,7 @@ def tuned(state: ModelState, score: Score) -> ModelState:
 
 def finished(state: ModelState, score: Score) -> tuple[ModelState, float]:
     """Simulate a model exactly and refit it to the end."""
-    return _remembered(
+    return remembered_of(
         state,
         lambda: ["finished", score.digest],
         lambda: _finished(state, score),
@@ -226,10 +210,54 @@ def finished_to_the_end(state: ModelState, score: Score) -> ModelState:
     return best
 
 
-def ready(state: ModelState, score: Score) -> ModelState:
-    """Refit a model under the score that its further effects are to lower.
+def scanned(state: ModelState, floor_rms: float) -> ModelState:
+    """Look over the numbers of effects before a simulator, one after the other.
 
-    The score allows for other forms of the effects that the model has, which it was
-    fitted without: what a refit gains no further effect may count as its own.
+    What a simulator of relays or of rounded numbers gives is a staircase of what it
+    takes: the slope over a small step says nothing, and a refit stays where it began.
+
+    Parameters
+    ----------
+    state : ModelState
+    floor_rms : float
+
+    Returns
+    -------
+    ModelState
+        The same where nothing scores better by more than a tie, as where no effect
+        stands before a simulator.
     """
-    return finished(state, score)[0] if state.added else state
+    last = max(
+        (k for k, block in enumerate(state.chain) if isinstance(block, Simulator)),
+        default=-1,
+    )
+    own = {place for item in state.added for place in item.blocks if place < last}
+    places = [
+        k
+        for k, free in enumerate(state.free)
+        if free.block in own and free.element is None and state.value(free) != 0.0
+    ]
+    if not places:
+        return state
+    from scipy.optimize import minimize_scalar  # late: few searches need it
+
+    score = make_score(state, floor_rms, forms=False)
+    best, found = score_of(state, score), state
+    for k in places:
+        value, free = found.value(found.free[k]), found.free[k]
+        ends = sorted((value / RANGE, value * RANGE))
+        low, high = np.clip(ends, free.low, free.high).tolist()
+
+        def at(number: float, from_: ModelState = found, k: int = k) -> float:
+            try:
+                return score_of(from_.at({k: number}), score)
+            except CallsUsedUp:  # half a look decides nothing
+                raise
+            except InputError:  # out of what the simulator takes: no candidate
+                return np.inf
+
+        about = {"maxiter": LOOKS, "xatol": 1e-3 * (high - low)}
+        there = minimize_scalar(at, bounds=(low, high), method="bounded", options=about)
+        if there.fun < best - SCALE:
+            found, best = refit(found.at({k: float(there.x)}), score)
+    return found

@@ -1,15 +1,15 @@
-"""A model as far as it has come, as JSON.
+"""A model as far as it has come, as JSON, and results that follow from it, kept.
 
-Arrays are not kept. They follow from the chain and the records, and are computed anew;
-effects give back the shapes of what lies beside a chain. The correction of the quick
-simulation alone may be kept beside it, as it costs an exact one.
+Of arrays only the correction of the quick simulation is kept, as it costs an exact
+one. All others follow from the chain and the records, and are computed anew; effects
+give back the shapes of what lies beside a chain.
 """
 
 from __future__ import annotations
 
 import json
 from base64 import b64decode, b64encode
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -23,19 +23,19 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.sensor import Drift
 from hystbench.gap.effects.variant import Beside
 from hystbench.gap.fitting.state import Added, Free, ModelState
-from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
-from hystbench.record import FloatArray, Record
 
 Mapped = dict[str, Any]
+MODEL = "a model"
+"""Key under which a model stands in a result: no number has such a name."""
 
 
 def state_mapping(state: ModelState) -> Mapped:
     """Give a model as far as it has come, as JSON holds it."""
-    at = state.corrected_at
+    lacks = state.correction
     return {
         "hold": state.hold,
-        "chain": _chain_mapping(state.chain),
+        "chain": [_block_mapping(block) for block in state.chain],
         "free": [_free_mapping(item) for item in state.free],
         "added": [
             item._asdict()
@@ -49,53 +49,71 @@ def state_mapping(state: ModelState) -> Mapped:
             {"effect": beside.effect, "order": beside.order, "values": dict(values)}
             for beside, values in state.beside
         ],
-        # The chain at which the quick simulation was last held against the exact one.
-        "corrected_at": None if at is None else _chain_mapping(at),
+        "correction": None if lacks is None else _text(lacks),
     }
+
+
+def state_of(content: Mapped, like: ModelState) -> ModelState:
+    """Give the model that :func:`state_mapping` wrote.
+
+    Parameters
+    ----------
+    content : dict
+    like : ModelState
+        On the same records. Blocks of its own are given back where they are the same:
+        one may hold more than JSON does, such as the output of a simulator that ran
+        elsewhere.
+    """
+
+    def block(content: Mapping[str, Any]) -> Block:
+        ((name, values),) = content.items()
+        found = block_class(name).from_mapping(values)
+        kept = _block_mapping(found)
+        own = (item for item in like.chain if _block_mapping(item) == kept)
+        return next(own, found)
+
+    def added(content: Mapped) -> Added:
+        old = content["replaced"]
+        return Added(
+            **content
+            | {
+                "blocks": tuple(content["blocks"]),
+                "replaced": None if old is None else block(old),
+                "was_free": tuple(map(_free, content["was_free"])),
+            }
+        )
+
+    lacks = content["correction"]
+    state = replace(
+        like,
+        chain=tuple(map(block, content["chain"])),
+        free=tuple(map(_free, content["free"])),
+        added=tuple(map(added, content["added"])),
+        hold=content["hold"],
+        correction=None
+        if lacks is None
+        else np.frombuffer(b64decode(lacks), dtype=np.float64).copy(),
+    )
+    beside = tuple(
+        (_beside(item["effect"], item["order"], state.simulation), item["values"])
+        for item in content["beside"]
+    )
+    return replace(state, beside=beside)
 
 
 def state_key(state: ModelState) -> list[str]:
     """Tell all that a model computes from, in words and digests."""
     return [
         records_digest(state.records),
-        json.dumps(state_with_correction(state), sort_keys=True),
+        json.dumps(state_mapping(state), sort_keys=True),
         *(_text(positions) for positions in state.sample.positions),
     ]
-
-
-def state_with_correction(state: ModelState) -> Mapped:
-    """Give a model as JSON holds it, and what the quick simulation lacks."""
-    lacks = None if state.correction is None else _text(state.correction)
-    return state_mapping(state) | {"correction": lacks}
-
-
-def state_again(content: Mapped, like: ModelState) -> ModelState:
-    """Give the model that :func:`state_with_correction` wrote.
-
-    Parameters
-    ----------
-    content : dict
-    like : ModelState
-        On the same records, with the same blocks where they are the base's own.
-    """
-    plain = content | {"corrected_at": None}
-    restorer = Restorer(like.records, like.chain)
-    at, lacks = content["corrected_at"], content["correction"]
-    return replace(
-        restorer.state(plain),
-        sample=like.sample,
-        offered=like.offered,
-        correction=None if lacks is None else _array(lacks),
-        corrected_at=None if at is None else restorer.chain(at),
-    )
 
 
 def remembered_of(
     state: ModelState,
     more: Callable[[], list[Any]],
     compute: Callable[[], Result],
-    write: Callable[[Result], Any],
-    read: Callable[[Any], Result],
 ) -> Result:
     """Give a result that follows from a model, by all that it is made of.
 
@@ -106,89 +124,36 @@ def remembered_of(
         not known. Its outputs are kept elsewhere.
     more : callable
         Gives what the result depends on beside it: words and digests.
-    compute, write, read : callable
-        As for :meth:`hystbench.gap.cache.Remembered.result`.
+    compute : callable
+        Gives what JSON can hold, or models on the same records, or tuples of both.
     """
     if any(isinstance(block, Simulator) for block in state.chain):
         return compute()
-    return remembered(lambda: [*more(), *state_key(state)], compute, write, read)
+    found: Result = remembered(
+        lambda: [*more(), *state_key(state)],
+        compute,
+        _written,
+        lambda content: _read(content, state),
+    )
+    return found
+
+
+def _written(result: Any) -> Any:
+    if isinstance(result, ModelState):
+        return {MODEL: state_mapping(result)}
+    return list(map(_written, result)) if isinstance(result, tuple) else result
+
+
+def _read(content: Any, like: ModelState) -> Any:
+    if isinstance(content, dict) and MODEL in content:
+        return state_of(content[MODEL], like)
+    if isinstance(content, list):
+        return tuple(_read(item, like) for item in content)
+    return content
 
 
 def _text(array: np.ndarray[Any, Any]) -> str:
     return b64encode(np.ascontiguousarray(array).tobytes()).decode("ascii")
-
-
-def _array(text: str) -> FloatArray:
-    return np.frombuffer(b64decode(text), dtype=np.float64).copy()
-
-
-class Restorer:
-    """Makes models of JSON on the same records; what they share is computed once.
-
-    Parameters
-    ----------
-    records : tuple of Record
-        The fit records.
-    own : sequence of Block
-        Blocks to be given back: one may hold more than a file does, such as the output
-        of a simulator that ran elsewhere.
-    """
-
-    def __init__(self, records: tuple[Record, ...], own: Sequence[Block]) -> None:
-        self.records, self.sample = records, ScoredSamples.of(records)
-        self._own = own
-        self._corrections: dict[tuple[Block, ...], FloatArray | None] = {}
-
-    def state(self, content: Mapped) -> ModelState:
-        """Give the model that :func:`state_mapping` wrote."""
-        hold = content["hold"]
-        state = ModelState(
-            self.chain(content["chain"]),
-            self.records,
-            self.sample,
-            tuple(map(_free, content["free"])),
-            tuple(self._added(item) for item in content["added"]),
-            hold=hold,
-        )
-        beside = tuple(
-            (_beside(item["effect"], item["order"], state.simulation), item["values"])
-            for item in content["beside"]
-        )
-        at = content["corrected_at"]
-        if at is None:
-            return replace(state, beside=beside)
-        chain = self.chain(at)
-        if chain not in self._corrections:
-            settled = ModelState(chain, self.records, self.sample, hold=hold).settled()
-            self._corrections[chain] = settled.correction
-        return replace(
-            state,
-            beside=beside,
-            correction=self._corrections[chain],
-            corrected_at=chain,
-        )
-
-    def _block(self, content: Mapping[str, Any]) -> Block:
-        ((name, values),) = content.items()
-        block = block_class(name).from_mapping(values)
-        kept = _block_mapping(block)
-        own = (item for item in self._own if _block_mapping(item) == kept)
-        return next(own, block)
-
-    def chain(self, content: Sequence[Mapping[str, Any]]) -> tuple[Block, ...]:
-        """Give the blocks of a chain."""
-        return tuple(self._block(item) for item in content)
-
-    def _added(self, content: Mapped) -> Added:
-        old = content["replaced"]
-        return Added(
-            **content
-            | {
-                "blocks": tuple(content["blocks"]),
-                "replaced": None if old is None else self._block(old),
-                "was_free": tuple(map(_free, content["was_free"])),
-            }
-        )
 
 
 def _free_mapping(item: Free) -> Mapped:
@@ -212,10 +177,6 @@ def _limit(value: float | None, sign: int = 1) -> float:
 
 def _block_mapping(block: Block) -> Mapped:
     return {block.name: block.to_mapping()}
-
-
-def _chain_mapping(chain: Sequence[Block]) -> list[Mapped]:
-    return [_block_mapping(block) for block in chain]
 
 
 def _beside(effect: str, order: int, simulation: Simulation) -> Beside:

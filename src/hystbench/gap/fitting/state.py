@@ -86,15 +86,13 @@ class ModelState:
     correction: FloatArray | None = None
     """Shape (scored samples,). By how much the exact simulation is above the quick one.
     It changes little from candidate to candidate; :meth:`settled` measures it anew."""
-    corrected_at: tuple[Block, ...] | None = None
-    """The chain at which the correction was measured."""
     offered: tuple[str, ...] | None = None
     """Effects that may be added; all by default."""
 
     @cached_property
     def simulation(self) -> Simulation:
         """The chain on the records, simulated quickly."""
-        return shared(self.chain, self.records, self.hold, quick=True)
+        return shared(self.chain, self.records, self.hold, "quick")
 
     def on(
         self, records: tuple[Record, ...], sample: ScoredSamples, rows: NDArray[Any]
@@ -106,12 +104,12 @@ class ModelState:
     @cached_property
     def exact(self) -> Signals:
         """The chain's output, simulated in short steps."""
-        return shared(self.chain, self.records, self.hold, quick=False).output
+        return shared(self.chain, self.records, self.hold, "fine").output
 
     def settled(self) -> ModelState:
         """Give the state with what the quick simulation lacks made up for."""
         lacks = self.sample.take(self.exact) - self.sample.take(self.simulation.output)
-        return replace(self, correction=lacks, corrected_at=self.chain)
+        return replace(self, correction=lacks)
 
     @cached_property
     def residual(self) -> FloatArray:
@@ -121,11 +119,8 @@ class ModelState:
     @cached_property
     def reference(self) -> FloatArray:
         """Scored samples that a quick simulation is taken off, to give a residual."""
-        return (
-            self.measured
-            if self.correction is None
-            else (self.measured - self.correction)
-        )
+        lacks = self.correction
+        return self.measured if lacks is None else self.measured - lacks
 
     @cached_property
     def measured(self) -> FloatArray:
@@ -155,11 +150,10 @@ class ModelState:
 
     def _tangent(self, k: int, step: float) -> FloatArray:
         try:
-            moved = simulated_with(self, {k: step})
+            change = self._change(k, step)
         except InputError:  # beyond what the block accepts, so the other way
             step = -step
-            moved = simulated_with(self, {k: step})
-        change = self.sample.take(moved) - self._simulated
+            change = self._change(k, step)
         if rms(change) < ROUNDING * rms(self._simulated):
             # As of a play that never moves: divided by its step, it would look like
             # something, and any weight would do.
@@ -179,25 +173,21 @@ class ModelState:
             for k in own if len(own) <= MANY_NUMBERS else ():
                 value = self.value(self.free[k])
                 for factor in FORMS:
-                    change = (factor - 1) * value
                     try:
-                        after = simulated_with(self, {k: change})
+                        column = self._change(k, (factor - 1) * value)
                     except InputError:
                         continue  # outside what the block accepts: no form of it
-                    column = self.sample.take(after) - self._simulated
                     if np.all(np.isfinite(column)):  # else it runs away: no form of it
                         columns.append(column)
         return _stack(columns, len(self.sample))
 
     @cached_property
-    def reshapings(self) -> FloatArray:
-        """What reshaping the hysteresis could do, shape (scored samples, k)."""
-        return reshapings(self.simulation, self.sample)
-
-    @cached_property
     def wrong_shape(self) -> FloatArray:
-        """An orthonormal basis of :attr:`reshapings`."""
-        return orthonormal(self.reshapings)
+        """Basis of what reshaping the hysteresis could do, shape (scored samples, k).
+
+        Orthonormal.
+        """
+        return orthonormal(reshapings(self.simulation, self.sample))
 
     @cached_property
     def held(self) -> Held:
@@ -281,20 +271,13 @@ class ModelState:
         value = getattr(self.chain[free.block], free.parameter)
         return float(value if free.element is None else value[free.element])
 
-    def moved(
-        self, changes: dict[int, float], reflected: bool = False
-    ) -> tuple[Block, ...]:
-        """Give the chain with some free numbers changed by so much, inside bounds.
-
-        Otherwise as :meth:`chain_at`.
-        """
+    def moved(self, changes: dict[int, float], reflected: bool = False) -> ModelState:
+        """Give the state with some free numbers changed by so much; as :meth:`at`."""
         values = {k: self.value(self.free[k]) + x for k, x in changes.items()}
-        return self.chain_at(values, reflected)
+        return self.at(values, reflected)
 
-    def chain_at(
-        self, values: dict[int, float], reflected: bool = False
-    ) -> tuple[Block, ...]:
-        """Give the chain with other values of some free numbers, inside bounds.
+    def at(self, values: dict[int, float], reflected: bool = False) -> ModelState:
+        """Give the state with other values of some free numbers, inside bounds.
 
         Parameters
         ----------
@@ -326,7 +309,7 @@ class ModelState:
             if reflected and "denominator" in own:
                 own["denominator"] = stable(own["denominator"])
             chain[place] = replace(chain[place], **own)
-        return tuple(chain)
+        return self.with_chain(tuple(chain))
 
     def with_chain(self, chain: tuple[Block, ...]) -> ModelState:
         """Give the state with other values in its chain."""
@@ -356,6 +339,14 @@ class ModelState:
             added=tuple(_moved_effect(item, moved) for item in self.added),
         )
 
+    def _change(self, k: int, by: float) -> FloatArray:
+        """How the output changes where one free number is another."""
+        start = self.free[k].block
+        while isinstance(self.chain[start], AttachedBlock):
+            start -= 1
+        after = self.simulation.tail(start, self.moved({k: by}).chain[start:])
+        return self.sample.take(after) - self._simulated
+
     @cached_property
     def _simulated(self) -> FloatArray:
         return self.reference - self.residual
@@ -369,14 +360,6 @@ class ModelState:
         # A tolerance may leave less room than that.
         size = min(size, (free.high - free.low) / 4)
         return -size if value + size > min(about.high, free.high) else size
-
-
-def simulated_with(state: ModelState, changes: dict[int, float]) -> Signals:
-    """Simulate the chain with some free numbers changed."""
-    start = min(state.free[k].block for k in changes)
-    while isinstance(state.chain[start], AttachedBlock):
-        start -= 1
-    return state.simulation.tail(start, state.moved(changes)[start:])
 
 
 def _moved_effect(item: Added, moved: Mapping[int, int]) -> Added:

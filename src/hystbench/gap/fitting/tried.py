@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from math import ceil
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,9 +51,6 @@ EACH = 3
 MORE = 4.0
 """Times as much as at a glance that a variant may gain on all records, uncharged."""
 
-Tried = tuple[Attempt, Trial]
-"""A variant beside a model, and how it does over its grid."""
-
 
 class Seen(NamedTuple):
     """A variant of which a part of the records was looked at."""
@@ -79,10 +76,10 @@ class Seen(NamedTuple):
     def as_seen(self, now: float) -> Trial:
         """Give it as it was seen, beside a model of such a score."""
         values = dict(zip(self.attempt.variant.grids, self.points[0], strict=True))
-        return Trial(self.attempt.variant, values, now - self.gain)
+        return Trial(self.attempt, values, now - self.gain)
 
 
-def tried(effect: Effect, state: ModelState, score: Score) -> tuple[list[Tried], str]:
+def tried(effect: Effect, state: ModelState, score: Score) -> tuple[list[Trial], str]:
     """Score every variant of an effect over its grid; or say why it declines."""
     looks, why = seen(effect, state, score)
     found, refused = on_all_records(looks, 0.0, lambda most: -np.inf)
@@ -91,7 +88,7 @@ def tried(effect: Effect, state: ModelState, score: Score) -> tuple[list[Tried],
 
 def on_all_records(
     looks: Sequence[Seen], now: float, least: Callable[[float], float]
-) -> tuple[list[Tried], dict[str, str]]:
+) -> tuple[list[Trial], dict[str, str]]:
     """Score variants on all records, best first; leave as seen what gains too little.
 
     Parameters
@@ -104,7 +101,7 @@ def on_all_records(
 
     Returns
     -------
-    found : list of Tried
+    found : list of Trial
         In the order of the looks.
     refused : dict of str to str
         Why, of each effect whose variants all decline.
@@ -114,16 +111,16 @@ def on_all_records(
         item = looks[number]
         variant = item.attempt.variant
         if item.most < least(most) and not variant.begun:
-            found[number] = item.attempt, item.as_seen(now)
+            found[number] = item.as_seen(now)
             continue
         try:
-            found[number] = item.attempt, item.on_all()
+            found[number] = item.on_all()
         except Declined as reason:
             refused[variant.effect] = str(reason)
             continue
-        most = max(most, now - found[number][1].score)
-    for attempt, _ in found.values():
-        refused.pop(attempt.variant.effect, None)
+        most = max(most, now - found[number].score)
+    for trial in found.values():
+        refused.pop(trial.variant.effect, None)
     return [found[number] for number in sorted(found)], refused
 
 
@@ -140,58 +137,48 @@ def seen(effect: Effect, state: ModelState, score: Score) -> tuple[list[Seen], s
     ]
     if variants and not runnable:
         return [], NEEDS_RERUN
-
-    def read(content: Any) -> tuple[list[Seen], str]:
-        kept, why = content
-        found = [
-            Seen(
-                _thinned(Attempt(state, variants[number], score, number)),
-                tuple(map(tuple, points)),
-                gain,
-            )
-            for number, points, gain in kept
-        ]
-        return found, why
-
-    return remembered_of(
+    looks, why = remembered_of(
         state,
         lambda: ["seen", effect.name, score.digest],
         lambda: _seen(runnable, state, score),
-        lambda result: [
-            [[x.attempt.number, x.points, x.gain] for x in result[0]],
-            result[1],
-        ],
-        read,
     )
+    found = [
+        Seen(_thinned(Attempt(state, variants[number], score, number)), points, gain)
+        for number, points, gain in looks
+    ]
+    return found, why
+
+
+Look = tuple[int, tuple[Point, ...], float]
+"""Number of a variant among all of its effect, and what :class:`Seen` tells of it."""
 
 
 def _seen(
     runnable: Sequence[tuple[int, Variant]], state: ModelState, score: Score
-) -> tuple[list[Seen], str]:
+) -> tuple[tuple[Look, ...], str]:
     """Look at variants over their grids; say why none can be, if so."""
-    found: list[Seen] = []
+    found: list[Look] = []
     refused = ""
     for number, item in runnable:
-        attempt = Attempt(state, item, score, number)
+        look: tuple[tuple[Point, ...], float] = ((),), np.inf
         try:
             if item.grids:
-                found.append(_at_a_glance(attempt))
-            else:
-                found.append(Seen(_thinned(attempt), ((),), np.inf))
+                look = _at_a_glance(Attempt(state, item, score))
         except Declined as reason:
             refused = str(reason)
-    return found, "" if found else refused
+        else:
+            found.append((number, *look))
+    return tuple(found), "" if found else refused
 
 
-def _at_a_glance(attempt: Attempt) -> Seen:
-    """Look at a variant over its grid on few samples."""
+def _at_a_glance(attempt: Attempt) -> tuple[tuple[Point, ...], float]:
+    """Look at a variant over its grid on few samples: its best points, and the gain."""
     look = _glance_of(attempt)
     best = best_points(look)
     charge = PARAMETER * attempt.variant.freedom
     gain = _score_of(look.state, look.score) - best[0][0] + charge
     more = _evidence(attempt.score) / _evidence(look.score)
-    points = tuple(point for _, point in best)
-    return Seen(_thinned(attempt), points, more * gain - charge)
+    return tuple(point for _, point in best), more * gain - charge
 
 
 _score_of = lru_cache(maxsize=2)(score_of)

@@ -96,8 +96,16 @@ def size_error(state: ModelState, floor: float, number: int) -> float:
         Mean square of what no model explains, in squared output units.
     number : int
         Place of the effect among those that were added.
+
+    Returns
+    -------
+    float
+        NaN where the records show nothing of it. So it is of a signal beside the chain,
+        of which its own numbers tell, and of an effect that others stand on.
     """
     own = state.added[number].blocks
+    if not own or not removable(state, number):
+        return np.nan
     rest = [k for k, free in enumerate(state.free) if free.block not in own]
     without = without_effect(state, number).settled()
     columns = np.hstack(
@@ -110,18 +118,6 @@ def size_error(state: ModelState, floor: float, number: int) -> float:
     residual = _cleaned(state, np.hstack([state.tangents, state.beside_columns]))
     usable = np.mean(columns**2, axis=0) > SHOWN**2 * floor
     return float(_errors(columns, residual, usable, state, floor, uncounted=1)[0])
-
-
-def size_error_or_none(state: ModelState, floor: float, number: int) -> float | None:
-    """Give the same of an effect whose size can be told, else None.
-
-    Of a signal beside the chain its own numbers tell; of an effect that others stand
-    on, nothing; nor where the records show nothing of it.
-    """
-    if not state.added[number].blocks or not removable(state, number):
-        return None
-    error = size_error(state, floor, number)
-    return error if np.isfinite(error) else None
 
 
 def _cleaned(state: ModelState, columns: FloatArray) -> FloatArray:
@@ -258,21 +254,14 @@ def beside_errors(state: ModelState, score: Score) -> list[Errors]:
         behind = columns.shape[1] + np.arange(len(searched))
         places.append([*rows.ravel(), *behind])
         columns = np.column_stack([columns, *searched])
-    covariance = _covariance(columns, residual, state, score.floor)
+    scale = np.sqrt(np.mean(columns**2, axis=0))
+    scale[scale == 0] = np.inf
+    pieces = _by_record(columns / scale, residual, state, score.floor)
+    covariance = _between_stretches(pieces) / np.outer(scale, scale)
     return [
         _told(state, *item, size, covariance[np.ix_(at, at)])
         for item, size, at in zip(state.beside, amplitudes, places, strict=True)
     ]
-
-
-def _covariance(
-    columns: FloatArray, residual: FloatArray, state: ModelState, floor: float
-) -> FloatArray:
-    """Covariance of weighted least squares, robust inside stretches of a record."""
-    scale = np.sqrt(np.mean(columns**2, axis=0))
-    scale[scale == 0] = np.inf
-    pieces = _by_record(columns / scale, residual, state, floor)
-    return np.asarray(_between_stretches(pieces) / np.outer(scale, scale))
 
 
 def _told(

@@ -42,13 +42,18 @@ Point = tuple[float, ...]
 
 @dataclass(frozen=True)
 class Trial:
-    """A variant with the values that score least."""
+    """A variant beside a model, with values of its numbers."""
 
-    variant: Variant
+    attempt: Attempt
     values: dict[str, float]
     score: float
     """Of the model with the effect, what the model may re-tune re-tuned to first
     order."""
+
+    @property
+    def variant(self) -> Variant:
+        """The variant that is tried."""
+        return self.attempt.variant
 
 
 class LeastPoint(NamedTuple):
@@ -98,7 +103,7 @@ class Attempt:
         values = dict(zip(variant.grids, point, strict=True))
         scaled = found.values[: len(variant.unit)]
         values |= {name: float(x) for name, x in zip(variant.unit, scaled, strict=True)}
-        return Trial(variant, values, found.score)
+        return Trial(self, values, found.score)
 
     def step(self, trial: Trial) -> FloatArray:
         """Give the step of Gauss and Newton from a trial, in logarithms.
@@ -318,29 +323,24 @@ def best_of(attempt: Attempt, points: Sequence[Point]) -> Trial:
     return min(found, key=lambda trial: trial.score)
 
 
-def fine(attempt: Attempt, start: Trial) -> Trial:
+def fine(start: Trial) -> Trial:
     """Search around the best point of a grid: halve its step, then Gauss and Newton.
 
     The halved steps are tried one parameter at a time.
     """
-    variant = attempt.variant
-    return remembered_of(
+    attempt = start.attempt
+    about = "fine", start.variant.effect, attempt.number, start.values
+    found = remembered_of(
         attempt.state,
-        lambda: [
-            "fine",
-            variant.effect,
-            attempt.number,
-            start.values,
-            attempt.score.digest,
-        ],
-        lambda: _fine(attempt, start),
-        lambda found: [found.values, found.score],
-        lambda kept: Trial(variant, *kept),
+        lambda: [*about, attempt.score.digest],
+        lambda: _fine(start),
     )
+    return Trial(attempt, *found)
 
 
-def _fine(attempt: Attempt, start: Trial) -> Trial:
-    grids = attempt.variant.grids
+def _fine(start: Trial) -> tuple[dict[str, float], float]:
+    """Give the values that score least, and the score."""
+    grids = start.variant.grids
     best = start
     steps = {
         name: np.log(axis[1] / axis[0]) if len(axis) > 1 else 0.0
@@ -349,34 +349,34 @@ def _fine(attempt: Attempt, start: Trial) -> Trial:
     for halved in range(HALVINGS if len(grids) > 1 else 1):
         for name, step in steps.items():
             for sign in (1, -1):
-                trial = _beside(attempt, best, {name: sign * step / 2 ** (halved + 1)})
+                trial = _beside(best, {name: sign * step / 2 ** (halved + 1)})
                 if trial is not None and trial.score < best.score:
                     best = trial
                     break
     most = np.abs(list(steps.values())) / 2  # of a grid of negative values too
     for _ in range(NEWTON if grids else 0):
         try:
-            step = np.clip(attempt.step(best), -most, most)
+            step = np.clip(start.attempt.step(best), -most, most)
         except InputError:
             break  # at an end of what the block accepts
         before = best.score
         for share in (1.0, 0.3):
-            trial = _beside(attempt, best, dict(zip(grids, share * step, strict=True)))
+            trial = _beside(best, dict(zip(grids, share * step, strict=True)))
             if trial is not None and trial.score < best.score:
                 best = trial
                 break
         if before - best.score < LAST_STEP:
             break
-    return best
+    return best.values, best.score
 
 
-def _beside(attempt: Attempt, trial: Trial, steps: dict[str, float]) -> Trial | None:
+def _beside(trial: Trial, steps: dict[str, float]) -> Trial | None:
     """Score a variant some steps away, in logarithms, inside its ranges."""
-    here = {name: trial.values[name] for name in attempt.variant.grids}
+    here = {name: trial.values[name] for name in trial.variant.grids}
     for name, step in steps.items():
-        low, high = attempt.variant.ends(name)
+        low, high = trial.variant.ends(name)
         here[name] = float(np.clip(here[name] * np.exp(step), low, high))
     try:
-        return attempt.at(tuple(here.values()))
+        return trial.attempt.at(tuple(here.values()))
     except InputError:
         return None  # values that the block itself refuses are no candidates

@@ -18,8 +18,8 @@ from hystbench.gap.bases.known_about import as_it_was
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.holdout.shortfall import no_surer_than_even, shortfall
 from hystbench.gap.holdout.show import Outcome, as_recorded, nuisance_of, score_hold_out
-from hystbench.gap.judging.fit_result import FitResult
 from hystbench.gap.naming.built_in import BuiltIn
+from hystbench.gap.naming.ladder import FitResult
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.nuisance import left_rms
 from hystbench.gap.thresholds import ABOVE_NOISE, AS_GOOD

@@ -14,7 +14,7 @@ from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.holdout.shrink import shrink
-from hystbench.gap.judging.fit_result import FitResult
+from hystbench.gap.naming.ladder import FitResult
 from hystbench.gap.records.black_box import BlackBox
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.nuisance import (

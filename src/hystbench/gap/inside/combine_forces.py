@@ -15,7 +15,6 @@ from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import (
     QUICK,
     Fitted,
-    at_values,
     fitted,
     fitted_to_the_end,
     record_weights,
@@ -270,8 +269,8 @@ def fitted_likely(
     rough.sort(key=lambda pair: pair[1].score)
     begun_well = []
     for item, own in rough[:count]:
-        numbers = np.array([own.state.value(free) for free in item.state.free])
-        begun_well.append(replace(own, state=at_values(item.state, numbers)))
+        numbers = {k: own.state.value(free) for k, free in enumerate(item.state.free)}
+        begun_well.append(replace(own, state=item.state.at(numbers)))
     return _to_the_end(begun_well, score)
 
 

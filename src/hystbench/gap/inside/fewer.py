@@ -141,5 +141,5 @@ class OnAll:
 
 
 def _simulated(whole: ModelState, chain: tuple[Block, ...]) -> FloatArray:
-    simulation = Simulation(chain, whole.records, whole.hold, quick=True)
+    simulation = Simulation(chain, whole.records, whole.hold, "quick")
     return whole.sample.take(simulation.output)

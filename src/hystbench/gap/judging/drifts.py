@@ -7,21 +7,19 @@ each run competes with them.
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
 
 from hystbench.gap.fitting.beside import beside_columns
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.judging.grouped_evidence import ColumnProducts
+from hystbench.gap.judging.grouped_evidence import ColumnProducts, Groups
 from hystbench.gap.judging.known_signals import PATH, random_walks
 from hystbench.gap.thresholds import LOOSE
 from hystbench.record import FloatArray
 
-Groups = Mapping[str, FloatArray]
-"""Columns by group, shape (scored samples, k) each."""
+WALKS = "random walks"
+"""The group of their cosines."""
 
 
 def beside_a_drift(
@@ -87,11 +85,8 @@ def without_paths(state: ModelState, own: Groups) -> dict[str, FloatArray]:
 
 def _explained(state: ModelState, own: Groups, signals: Groups) -> float:
     """Give the power that signals explain beyond what is owned, beside white noise."""
-    columns = [*own.values(), *signals.values()]
-    places = _places(columns)
-    table = ColumnProducts.of(np.hstack(columns), state.residual)
-    few, more = (table.explained(x) for x in (places[: len(own)], places))
-    return few.noise - more.noise
+    table = ColumnProducts.of({**own, **signals}, state.residual)
+    return table.explained(own).noise - table.explained([*own, *signals]).noise
 
 
 def explained_beside_walks(
@@ -119,24 +114,7 @@ def explained_beside_walks(
         Logarithm of the probability density of the residual.
     """
     cosines, sizes = walks
-    columns = [*own.values(), *signals.values(), cosines]
-    places = _places(columns)
-    first, last = places[len(own)].start, places[-1].start
-    table = ColumnProducts.of(
-        np.hstack(columns), state.residual, np.concatenate([np.ones(last), sizes])
-    )
-    found = table.explained(places)
-    variances = np.repeat(found.variances, [len(x) for x in places if len(x)])
-    power = table.power_beyond(
-        range(first, last),
-        found.amplitudes[first:last],
-        range(first),
-        found.noise,
-        variances[:first],
-    )
-    return power, found.evidence
-
-
-def _places(groups: list[FloatArray]) -> list[range]:
-    ends = np.cumsum([0, *(columns.shape[1] for columns in groups)])
-    return [range(a, b) for a, b in itertools.pairwise(ends.tolist())]
+    groups = {**own, **signals, WALKS: cosines}
+    table = ColumnProducts.of(groups, state.residual, {WALKS: sizes})
+    found = table.explained(groups)
+    return table.power_beyond(signals, own, found), found.evidence

@@ -28,7 +28,7 @@ def effect_mapping(
     of_beside: Sequence[Errors],
     ranking: Sequence[Candidate],
     left: Left,
-    size_error: float | None = None,
+    size_error: float = np.nan,
     trust: float = 1.0,
 ) -> dict[str, Any]:
     """Give an added effect with its numbers and how sure the name is.
@@ -40,8 +40,9 @@ def effect_mapping(
     ranking : sequence of Candidate
         The last by which it was taken.
     left : Left
-    size_error : float, optional
-        Standard error of what it adds to the output, in times of it.
+    size_error : float
+        Standard error of what it adds to the output, in times of it; not finite where
+        it cannot be told.
     trust : float
         Factor on the confidence, less than one where more stays unnamed than may.
     """
@@ -51,13 +52,14 @@ def effect_mapping(
     # Of a path in every record the mean slope is told, which may well be nothing.
     shape = any(state.chain[k].hysteretic for k in item.blocks)
     path = any(x.effect == item.effect and not given for x, given in state.beside)
-    error = error_of(size_error, {} if shape or path else parameters)
+    of_size = size_error if np.isfinite(size_error) else None
+    error = error_of(of_size, {} if shape or path else parameters)
     sure = 0.0 if own is None else confidence(own, ranking, left, error)
     return {
         "name": item.effect,
         "place": item.place,
         "parameters": parameters,
-        "size_error": size_error,
+        "size_error": of_size,
         "confidence": trust * sure,
         "cannot_be_told_from": [] if own is None else list(near(own, ranking)),
     }
@@ -108,23 +110,24 @@ def ranking_rows(named: Named) -> list[dict[str, Any]]:
 def _rows(
     about: Mapping[str, Any], ranking: Sequence[Candidate], taken: str | None
 ) -> list[dict[str, Any]]:
-    return [{**about, **_candidate_row(x, x.effect == taken)} for x in ranking]
-
-
-def _candidate_row(item: Candidate, taken: bool) -> dict[str, Any]:
-    row: dict[str, Any] = {
-        "name": item.effect,
-        "place": item.place,
-        "taken": taken,
-        "refitted": item.state is not None,
-        "held_back": item.held_back,
-    }
-    if item.form:
-        row["form"] = item.form
-    if item.variants:
-        row["variants"] = [x._asdict() for x in item.variants if np.isfinite(x.score)]
-    if item.declined:
-        row["declined"] = item.declined
-    elif np.isfinite(item.score):
-        row |= {"score": item.score, "gain": item.gain}
-    return row
+    rows = []
+    for item in ranking:
+        row: dict[str, Any] = {
+            **about,
+            "name": item.effect,
+            "place": item.place,
+            "taken": item.effect == taken,
+            "refitted": item.state is not None,
+            "held_back": item.held_back,
+        }
+        if item.form:
+            row["form"] = item.form
+        if item.variants:
+            tried = [x._asdict() for x in item.variants if np.isfinite(x.score)]
+            row["variants"] = tried
+        if item.declined:
+            row["declined"] = item.declined
+        elif np.isfinite(item.score):
+            row |= {"score": item.score, "gain": item.gain}
+        rows.append(row)
+    return rows

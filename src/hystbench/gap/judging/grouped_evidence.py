@@ -9,13 +9,18 @@ costs nothing to offer it; one that explains something is charged for its freedo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dtrtri
 
 from hystbench.record import FloatArray
+
+Groups = Mapping[str, FloatArray]
+"""Columns by group, shape (samples, k) each; a group may have none."""
 
 STEPS = 25
 """Of the fixed-point iteration."""
@@ -29,18 +34,22 @@ class Grouped:
 
     noise: float
     """Variance of what no group explains, freedom charged."""
-    variances: FloatArray
-    """Shape (groups,). Of the amplitudes of each group's columns."""
+    variances: Mapping[str, float]
+    """Of the amplitudes of each group's columns."""
     evidence: float
     """Logarithm of the probability density of the signal."""
-    amplitudes: FloatArray
-    """Shape (columns,). The likeliest, of the columns in the order of the groups."""
+    amplitudes: Groups
+    """The likeliest of each group, shape (k,)."""
 
 
 @dataclass(frozen=True, eq=False)
 class ColumnProducts:
     """Products of all columns with each other and with a signal."""
 
+    columns: FloatArray
+    """Shape (samples, k)."""
+    places: Mapping[str, NDArray[np.intp]]
+    """Which of them are of each group."""
     gram: FloatArray
     """Shape (k, k). Of columns of unit mean square, times their sizes; those that are
     zero stay zero."""
@@ -48,41 +57,47 @@ class ColumnProducts:
     """Shape (k,). Of the columns with the signal."""
     power: float
     """Sum of squares of the signal."""
-    rows: int
-    """Samples of the signal."""
     sizes: FloatArray
     """Shape (k,). By which the columns were divided."""
 
     @classmethod
     def of(
-        cls, columns: FloatArray, signal: FloatArray, sizes: FloatArray | float = 1.0
+        cls, groups: Groups, signal: FloatArray, sizes: Groups | None = None
     ) -> ColumnProducts:
-        """Multiply columns, shape (n, k), and a signal, shape (n,).
+        """Multiply columns and a signal, shape (samples,).
 
         Parameters
         ----------
-        columns, signal : ndarray
-        sizes : ndarray, shape (k,), or float
-            RMS that the columns are given; in a group the amplitude of a column is
-            expected to be in proportion to it.
+        groups : mapping
+        signal : ndarray
+        sizes : mapping, optional
+            RMS that the columns of a group are given, shape (k,), one by default; the
+            amplitude of a column is expected to be in proportion to it.
         """
+        columns = np.hstack(list(groups.values()))
+        ends = np.cumsum([0, *(own.shape[1] for own in groups.values())])
+        each = zip(groups, pairwise(ends.tolist()), strict=True)
+        places = {name: np.arange(*at) for name, at in each}
         gram = columns.T @ columns
         size = np.sqrt(gram.diagonal() / len(signal))
-        size = np.where(size > 0, size, 1.0) / sizes
+        size = np.where(size > 0, size, 1.0)
+        for name, own in (sizes or {}).items():
+            size[places[name]] /= own
         return cls(
+            columns,
+            places,
             gram / np.outer(size, size),
             columns.T @ signal / size,
             float(signal @ signal),
-            len(signal),
             size,
         )
 
-    def of_another(self, columns: FloatArray, signal: FloatArray) -> ColumnProducts:
+    def of_another(self, signal: FloatArray) -> ColumnProducts:
         """Give the products of the same columns with another signal."""
-        across = columns.T @ signal / self.sizes
+        across = self.columns.T @ signal / self.sizes
         return replace(self, across=across, power=float(signal @ signal))
 
-    def explained(self, groups: Sequence[Sequence[int]]) -> Grouped:
+    def explained(self, names: Collection[str]) -> Grouped:
         """Find the variances of groups and of the noise, by evidence.
 
         MacKay's fixed-point steps [1]_: with ``g`` the amplitudes of a group that the
@@ -91,27 +106,27 @@ class ColumnProducts:
 
         Parameters
         ----------
-        groups : sequence of sequence of int
-            Columns of each group; the columns of none are left out.
+        names : collection of str
+            Of the groups that are offered.
 
         Returns
         -------
         Grouped
-            Of the groups that have a column.
+            Of those that have a column.
 
         References
         ----------
         .. [1] D. J. C. MacKay, "Bayesian interpolation", Neural Computation 4 (1992)
            415-447.
         """
-        groups = [group for group in groups if len(group)]
-        noise = max(self.power / self.rows, np.finfo(float).tiny)
-        if not groups:
-            evidence = self._evidence(noise, 0.0, self.power)
-            return Grouped(noise, np.zeros(0), evidence, np.zeros(0))
-        used = np.concatenate([np.asarray(group, dtype=np.intp) for group in groups])
-        member = np.repeat(np.arange(len(groups)), [len(group) for group in groups])
-        counts = np.bincount(member)
+        names = [name for name in names if len(self.places[name])]
+        rows = len(self.columns)
+        noise = max(self.power / rows, np.finfo(float).tiny)
+        if not names:
+            return Grouped(noise, {}, self._evidence(noise, 0.0, self.power), {})
+        counts = np.array([len(self.places[name]) for name in names])
+        member = np.repeat(np.arange(len(names)), counts)
+        used = self._at(names)
         gram, across = self.gram[np.ix_(used, used)], self.across[used]
         variances = noise / counts
         least = NOTHING * noise
@@ -119,51 +134,60 @@ class ColumnProducts:
             root = np.sqrt(variances)[member]
             white, inverse, determinant = _solved(gram, across, root, noise)
             amplitudes = root * white
-            left = self.power - amplitudes @ (2 * across - gram @ amplitudes)
-            left = max(float(left), least * self.rows)
+            taken = float(amplitudes @ (2 * across - gram @ amplitudes))
+            left = max(self.power - taken, least * rows)
             if step == STEPS:
                 break
             known = 1.0 - np.einsum("ij,ij->j", inverse, inverse)
             each = np.maximum(np.bincount(member, known), NOTHING)
             squares = variances * np.bincount(member, white**2)
             variances = np.maximum(squares / each, least * NOTHING)
-            noise = left / max(self.rows - float(each.sum()), 1.0)
+            noise = left / max(rows - float(each.sum()), 1.0)
         power = left + noise * float(white @ white)
         evidence = self._evidence(noise, determinant, power)
-        return Grouped(noise, variances, evidence, amplitudes)
+        parts = np.split(amplitudes, np.cumsum(counts)[:-1])
+        return Grouped(
+            noise,
+            dict(zip(names, variances.tolist(), strict=True)),
+            evidence,
+            dict(zip(names, parts, strict=True)),
+        )
 
     def power_beyond(
-        self,
-        columns: Sequence[int],
-        amplitudes: FloatArray,
-        own: Sequence[int],
-        noise: float,
-        variances: FloatArray,
+        self, names: Collection[str], own: Collection[str], found: Grouped
     ) -> float:
         """Give the mean square of a sum of columns beyond what others may take of it.
 
         Parameters
         ----------
-        columns : sequence of int
-        amplitudes : ndarray, shape (columns,)
-            Of the sum.
-        own : sequence of int
-            The other columns.
-        noise : float
-            Variance of the noise.
-        variances : ndarray, shape (own,)
-            Of the amplitudes of the others.
+        names : collection of str
+            Groups of the columns.
+        own : collection of str
+            Groups of the others.
+        found : Grouped
+            The amplitudes of the columns, the variances of the others, and the noise's.
         """
-        gram, root = self.gram[np.ix_(own, own)], np.sqrt(variances)
-        across = self.gram[np.ix_(own, columns)] @ amplitudes
-        taken = root * _solved(gram, across, root, noise)[0]
-        power = amplitudes @ self.gram[np.ix_(columns, columns)] @ amplitudes
+        names, own = ([x for x in each if len(self.places[x])] for each in (names, own))
+        if not names:
+            return 0.0
+        at, others = self._at(names), self._at(own)
+        amplitudes = np.concatenate([found.amplitudes[name] for name in names])
+        counts = [len(self.places[name]) for name in own]
+        root = np.sqrt(np.repeat([found.variances[name] for name in own], counts))
+        gram = self.gram[np.ix_(others, others)]
+        across = self.gram[np.ix_(others, at)] @ amplitudes
+        taken = root * _solved(gram, across, root, found.noise)[0]
+        power = amplitudes @ self.gram[np.ix_(at, at)] @ amplitudes
         power -= taken @ (2 * across - gram @ taken)
-        return max(float(power), 0.0) / self.rows
+        return max(float(power), 0.0) / len(self.columns)
+
+    def _at(self, names: Collection[str]) -> NDArray[np.intp]:
+        """Give the places of the columns of groups."""
+        return np.concatenate([self.places[name] for name in names])
 
     def _evidence(self, noise: float, determinant: float, power: float) -> float:
         """Give the log density: ``power`` over the noise is the exponent's double."""
-        spread = self.rows * float(np.log(2 * np.pi * noise))
+        spread = len(self.columns) * float(np.log(2 * np.pi * noise))
         return -0.5 * (spread + determinant + power / noise)
 
 

@@ -8,7 +8,7 @@ effects; time constants come from the records alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -125,9 +125,8 @@ def in_runs(state: ModelState) -> FloatArray:
     -------
     ndarray, shape (scored samples, cosines and constants of all runs)
     """
-    return np.hstack(
-        [columns for columns, _ in _cosines(state, np.arange(SLOW_COSINES + 1))]
-    )
+    every = runs(state.records)
+    return _cosines(state, every, [np.arange(SLOW_COSINES + 1)] * len(every))
 
 
 def random_walks(state: ModelState) -> tuple[FloatArray, FloatArray]:
@@ -144,29 +143,36 @@ def random_walks(state: ModelState) -> tuple[FloatArray, FloatArray]:
         RMS over the samples of all runs that columns of these standard deviations have,
         the largest being one.
     """
-    most = WALKS_COSINES // len(runs(state.records))
+    every = runs(state.records)
+    most = WALKS_COSINES // len(every)
     number = np.arange(1, max(min(WALK_COSINES, most), PATH_COSINES) + 1)
-    found = _cosines(state, number)
-    columns = np.hstack([cosines for cosines, _ in found])
-    sizes = np.concatenate([np.sqrt(duration) / number for _, duration in found])
+    columns = _cosines(state, every, [number] * len(every))
+    each = [[state.records[k] for k in own] for own in every]
+    lasts = [sum(record.dt * len(record) for record in records) for records in each]
+    sizes = np.concatenate([np.sqrt(duration) / number for duration in lasts])
     # Zeros in other runs count in the RMS of a column, which a short run has less of.
     sizes *= np.sqrt(np.mean(columns**2, axis=0))
     return columns, sizes / sizes.max()
 
 
 def _cosines(
-    state: ModelState, numbers: NDArray[np.intp]
-) -> list[tuple[FloatArray, float]]:
-    """Give cosines of so many half waves over each run, and how long the run is."""
-    found = []
-    for own, rows in zip(runs(state.records), _rows_of_runs(state), strict=True):
-        records = [state.records[k] for k in own]
-        ends = np.cumsum([0, *map(len, records)])
-        places = [state.sample.positions[k] + ends[n] for n, k in enumerate(own)]
-        phase = np.pi * (np.concatenate(places) + 0.5) / ends[-1]
-        columns = np.zeros((len(state.sample), len(numbers)))
-        columns[rows] = np.cos(phase[:, None] * numbers)
-        found.append((columns, sum(record.dt * len(record) for record in records)))
+    state: ModelState,
+    groups: Sequence[Sequence[int]],
+    numbers: Sequence[NDArray[np.intp]],
+) -> FloatArray:
+    """Give groups of records cosines of their own, of so many half waves over each.
+
+    Shape (scored samples, cosines of all groups); zero in the other groups.
+    """
+    sample, columns = state.sample, np.cumsum([0, *map(len, numbers)])
+    # Hundreds of windows have six columns each: they are filled in, not joined.
+    found = np.zeros((len(sample), columns[-1]))
+    for own, number, first in zip(groups, numbers, columns, strict=False):
+        lengths = [len(state.records[k]) for k in own]
+        for k, before in zip(own, np.cumsum([0, *lengths]), strict=False):
+            phase = np.pi * (sample.positions[k] + before + 0.5) / sum(lengths)
+            cosines = np.cos(phase[:, None] * number)
+            found[sample.slices[k], first : first + len(number)] = cosines
     return found
 
 
@@ -194,17 +200,10 @@ def paths(
     -------
     ndarray, shape (scored samples, cosines and constants of all records)
     """
-    sample = state.sample
-    each = [max(PATH_COSINES, allowed(record)) + 1 for record in state.records]
-    ends = np.cumsum([0, *each])
-    # Hundreds of windows have six columns each: they are filled in, not joined.
-    found = np.zeros((len(sample), ends[-1]))
-    for record, rows, positions, a, b in zip(
-        state.records, sample.slices, sample.positions, ends[:-1], ends[1:], strict=True
-    ):
-        phase = np.pi * (positions + 0.5) / len(record)
-        found[rows, a:b] = np.cos(phase[:, None] * np.arange(b - a))
-    return found
+    numbers = [
+        np.arange(max(PATH_COSINES, allowed(record)) + 1) for record in state.records
+    ]
+    return _cosines(state, [[k] for k in range(len(numbers))], numbers)
 
 
 def _slow_power(dt: float, u: FloatArray, y: FloatArray, times: FloatArray) -> Columns:

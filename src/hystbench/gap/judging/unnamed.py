@@ -8,7 +8,7 @@ follows known signals speaks against it, however small beside the gap.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -70,6 +70,8 @@ class Unnamed:
 
     structured: float
     """What follows known signals and the named effects cannot own."""
+    allowed: float = UNNAMED_SHARE
+    """Of it, what may stay."""
     changing: float | None = None
     """What goes if the effects' strength and numbers may differ between the halves of
     each run, a record or the windows that were cut from it; None where no effect acts
@@ -92,48 +94,53 @@ class Unnamed:
         """Share of the gap that the names leave beyond what they may own."""
         return self.structured + self.unrelated
 
-    def too_much(self, share: float = UNNAMED_SHARE) -> bool:
-        """Tell whether more stays unnamed than may."""
-        return self.structured > share
+    @property
+    def too_much(self) -> bool:
+        """Whether more stays unnamed than may."""
+        return self.structured > self.allowed
 
-    def told(self, share: float = UNNAMED_SHARE) -> bool:
-        """Tell whether so much stays that its sort is said."""
-        return self.too_much(share) or self.stays > LOOSE
+    @property
+    def told(self) -> bool:
+        """Whether so much stays that its sort is said."""
+        return self.too_much or self.stays > LOOSE
 
-    def follows_nothing(self, share: float = UNNAMED_SHARE) -> bool:
-        """Tell whether much stays, and no more of it than may follows known signals."""
-        return self.stays > LOOSE and not self.too_much(share)
+    @property
+    def follows_nothing(self) -> bool:
+        """Whether much stays, and no more of it than may follows known signals."""
+        return self.stays > LOOSE and not self.too_much
 
-    def trust(self, share: float = UNNAMED_SHARE, of_base: bool = False) -> float:
+    def trust(self, of_base: bool = False) -> float:
         """Give the factor on a name's confidence: one where no more stays than may.
 
         Else it is the allowed over the actual share. Where the base may have left that
         as well, it is the square root: the mean of that and one, of their logarithms.
         """
-        factor = 1.0 if self.structured <= share else share / self.structured
+        factor = self.allowed / self.structured if self.too_much else 1.0
         return math.sqrt(factor) if of_base else factor
 
-    def sort(self, share: float = UNNAMED_SHARE) -> str:
-        """Give the sort of what stays: a key of :data:`SORTS`."""
+    @property
+    def sort(self) -> str:
+        """Sort of what stays: a key of :data:`SORTS`."""
         best = max(self.gains, key=lambda name: self.gains[name], default=None)
         lone = self.structured < WORTH_A_WORD * self.stays
         if best is None or self.gains[best] <= 0 or lone:
             return "unrelated"
         return SORT_OF[best]
 
-    def reason(self, share: float = UNNAMED_SHARE) -> str:
-        """Say why no name stands."""
-        much = (
-            f"{_percent(self.structured)} of the gap's power follows known signals, "
-            "and no parameter values of the named effects explain it"
+    @property
+    def reason(self) -> str:
+        """Why no name stands."""
+        return (
+            f"{100 * self.structured:.2g} % of the gap's power follows known signals, "
+            "and no parameter values of the named effects explain it: "
+            f"{SORTS[self.sort]}"
         )
-        return f"{much}: {SORTS[self.sort(share)]}"
 
-    def mapping(self, share: float = UNNAMED_SHARE) -> dict[str, Any]:
+    def mapping(self) -> dict[str, Any]:
         """Give what gap.json holds: no sort where no more stays than may."""
-        sort = self.sort(share) if self.told(share) else None
+        sort = self.sort if self.told else None
         return {
-            "allowed": share,
+            "allowed": self.allowed,
             "structured": self.structured,
             "changing": self.changing,
             "by_chance": self.by_chance,
@@ -142,10 +149,6 @@ class Unnamed:
             "sentence": SORTS[sort] if sort else None,
             "factors": list(self.factors),
         }
-
-
-NOTHING = Unnamed(0.0)
-"""Where everything is owned."""
 
 
 def what_is_unnamed(
@@ -188,13 +191,9 @@ def what_is_unnamed(
         own["path"] = paths(state, allowed=winding) if drifts else path
         slow_power[SLOW_POWER] = generic.pop(SLOW_POWER)
     groups = own | generic | changing | slow_power
-    ends = np.cumsum([0, *(columns.shape[1] for columns in groups.values())])
-    at = {k: range(*ends[n : n + 2]) for n, k in enumerate(groups)}
-    columns = np.hstack(list(groups.values()))
-    table = ColumnProducts.of(columns, state.residual)
+    table = ColumnProducts.of(groups, state.residual)
     alone, with_generic, with_changing = (
-        table.explained([at[name] for name in (*own, *more)])
-        for more in ((), generic, changing)
+        table.explained([*own, *more]) for more in ((), generic, changing)
     )
     structured = max(alone.noise - with_generic.noise, 0.0) / power
     if drifts:
@@ -203,15 +202,16 @@ def what_is_unnamed(
         )
     found = Unnamed(
         structured,
+        share,
         max(alone.noise - with_changing.noise, 0.0) / power if changing else None,
         max(with_generic.noise - floor, 0.0) / power,
         factors=_factors(state, increment) if changing else (),
     )
-    if not found.told(share):
+    if not found.told:
         return found
     if not drifts:
-        every = [at[name] for name in own], [at[name] for name in (*own, *generic)]
-        chance = min(_by_chance(state, table, columns, *every) / power, structured)
+        chance = _by_chance(state, table, own, [*own, *generic])
+        chance = min(chance / power, structured)
         if chance > 0 and means_may_differ_by_chance(state):
             chance = structured
         found = replace(
@@ -220,11 +220,10 @@ def what_is_unnamed(
             unrelated=found.unrelated + chance,
             by_chance=chance,
         )
-        if not found.told(share):
+        if not found.told:
             return found
     gains = {
-        name: table.explained([*(at[k] for k in own), at[name]]).evidence
-        - alone.evidence
+        name: table.explained([*own, name]).evidence - alone.evidence
         for name in generic
     }
     return replace(found, gains=gains)
@@ -233,9 +232,8 @@ def what_is_unnamed(
 def _by_chance(
     state: ModelState,
     table: ColumnProducts,
-    columns: FloatArray,
-    own: Sequence[range],
-    every: Sequence[range],
+    own: Collection[str],
+    every: Collection[str],
 ) -> float:
     """Give the power of what seems to follow known signals and does so by chance.
 
@@ -263,7 +261,7 @@ def _by_chance(
         return 0.0
 
     def explained(signal: FloatArray) -> float:
-        other = table.of_another(columns, signal)
+        other = table.of_another(signal)
         return other.explained(own).noise - other.explained(every).noise
 
     left = state.sample.about_means(state.residual)
@@ -273,7 +271,7 @@ def _by_chance(
             continue
         output = state.sample.about_means(state.measured - state.residual)
         output = _moved(state, output, k)
-        stays = table.of_another(columns, output).explained(every).noise
+        stays = table.of_another(output).explained(every).noise
         return max(structured, 0.0) if stays > MOST * np.mean(output**2) else 0.0
     return 0.0
 
@@ -351,7 +349,3 @@ def _factors(state: ModelState, increment: FloatArray) -> tuple[float, ...]:
         more = float(own @ state.residual[part]) / square if square > 0 else 0.0
         found.append(1.0 + more)
     return tuple(found)
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.2g} %"

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from hystbench.gap.judging.left import Left
-from hystbench.gap.judging.unnamed import NOTHING, Unnamed
+from hystbench.gap.judging.unnamed import Unnamed
 from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.thresholds import (
     ABOVE_NOISE,
@@ -18,7 +18,6 @@ from hystbench.gap.thresholds import (
     LOOSE,
     MOST,
     SCALE,
-    UNNAMED_SHARE,
     WORTH_A_WORD,
 )
 from hystbench.periods import find_period
@@ -31,6 +30,8 @@ SURE = 100.0
 """Odds beyond e to this are all the same."""
 
 
+OWNED = Unnamed(0.0)
+"""Where nothing is left that names cannot own."""
 GIVE = "give period_samples or noise_rms"
 """What to write in dataset.yaml where nothing tells the noise."""
 
@@ -55,8 +56,7 @@ def judge(
     retuned: bool = False,
     floor_is_upper_bound: bool = False,
     size_follows: bool = False,
-    unnamed: Unnamed = NOTHING,
-    unnamed_share: float = UNNAMED_SHARE,
+    unnamed: Unnamed = OWNED,
     mends: str = GIVE,
 ) -> tuple[Verdict, str]:
     """Choose the word and say why.
@@ -78,14 +78,12 @@ def judge(
         Whether what is left is larger where signals are: it is no noise then.
     unnamed : Unnamed
         What stays that the named effects cannot own.
-    unnamed_share : float
-        Share of the power of the gap that may stay so.
     mends : str
         What to write so that the noise is measured.
     """
     if not named:
         seen = explained_by_box or 0.0
-        none = unnamed.follows_nothing(unnamed_share) and seen < AS_GOOD
+        none = unnamed.follows_nothing and seen < AS_GOOD
         new = _why_new(left, unnamed if none else None, explained_by_box)
         if left.slight and left.foreign and not new:
             return "unnamed", left.foreign
@@ -105,7 +103,7 @@ def judge(
                 "record"
             )
         if left.slight and floor_is_upper_bound:
-            follows = unnamed.too_much(unnamed_share) or size_follows
+            follows = unnamed.too_much or size_follows
             if left.may_be_noise and not follows:
                 rms = finely(float(np.sqrt((1.0 + left.all_after) / left.output)))
                 return "no-gap", (
@@ -130,17 +128,17 @@ def judge(
             "there and no effect of the vocabulary pays; "
             f"{_box_words(explained_by_box)}"
         )
-    much = unnamed.too_much(unnamed_share)
+    much = unnamed.too_much
     if much and not left.may_be_of_base:
-        why = unnamed.reason(unnamed_share)
+        why = unnamed.reason
         if left.whole - unnamed.structured > WORTH_A_WORD:
             why += (
                 "; this is less sure, as a third of the gap's rms or more may be the "
                 "base's own error, which can look like that"
             )
         return "unnamed", why
-    if much and unnamed.trust(unnamed_share, of_base=True) < MOST:
-        return "unnamed", unnamed.reason(unnamed_share)  # likelier wrong than right
+    if much and unnamed.trust(of_base=True) < MOST:
+        return "unnamed", unnamed.reason  # likelier wrong than right
     too_much = f"too much stays for a name: {left.sentence}"
     if left.share > LOOSE and not left.slight:
         return "unnamed", too_much
@@ -148,7 +146,7 @@ def judge(
         return "unnamed", f"{too_much}, and most of it follows no known signal"
     if much:
         return "named", (
-            f"{left.sentence}; this is less sure, as {unnamed.reason(unnamed_share)}, "
+            f"{left.sentence}; this is less sure, as {unnamed.reason}, "
             "but so little may as well be the error of a slightly wrong base"
         )
     return "named", left.sentence
@@ -196,7 +194,10 @@ def confidence(
         if item.effect != first.effect and item.state is not None
     )
     explained = 1.0 - left.share
-    return min((1.0 - DOUBT) * explained / (1.0 + odds), is_anything(errors))
+    # 2 Phi(1 / e) - 1, Phi the standard normal distribution: the level of the widest
+    # interval about the number that does not hold zero.
+    is_anything = math.erf(1.0 / (errors * math.sqrt(2.0))) if errors > 0 else 1.0
+    return min((1.0 - DOUBT) * explained / (1.0 + odds), is_anything)
 
 
 def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
@@ -216,20 +217,6 @@ def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
         return ""
     told = " and ".join(f"{x['name']} {x['confidence']:.2f}" for x in effects)
     return f"no name is likelier right than wrong: {told}"
-
-
-def is_anything(errors: float) -> float:
-    """Give the probability that a number is anything but nothing.
-
-    ``2 Phi(1 / e) - 1`` with the standard normal distribution ``Phi``: the level of
-    the widest interval about the number that does not hold zero.
-
-    Parameters
-    ----------
-    errors : float
-        The number's standard error ``e``, in times of the number.
-    """
-    return math.erf(1.0 / (errors * math.sqrt(2.0))) if errors > 0 else 1.0
 
 
 def error_of(

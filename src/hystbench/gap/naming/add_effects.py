@@ -16,8 +16,7 @@ from hystbench.gap.fitting.model_score import (
     score_of,
     score_of_numbers,
 )
-from hystbench.gap.fitting.refit import finished, finished_to_the_end, ready
-from hystbench.gap.fitting.scan import scanned
+from hystbench.gap.fitting.refit import finished, finished_to_the_end, scanned
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import MANY_NUMBERS, ModelState
 from hystbench.gap.naming.forecast_calls import foretell, foretell_rest
@@ -27,7 +26,7 @@ from hystbench.gap.naming.removal import (
     is_shape_that_matters,
     without_what_goes,
 )
-from hystbench.gap.naming.rounds import MOST_EFFECTS, Candidate, Round, reasons
+from hystbench.gap.naming.rounds import MOST_EFFECTS, Candidate, Round
 from hystbench.gap.naming.second_looks import reconsidered
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import (
@@ -53,8 +52,20 @@ class Named:
 
     @property
     def reasons(self) -> dict[str, tuple[Candidate, ...]]:
-        """The last ranking by which each effect was taken, or kept."""
-        return reasons(self.rounds)
+        """The last ranking by which each effect was taken, or kept.
+
+        What scores better than a wrong shape that goes first is no rival of it: the
+        shape is needed beside it.
+        """
+        found: dict[str, tuple[Candidate, ...]] = {}
+        for one in self.rounds:
+            first = one.ranking[0]
+            if one.taken and first.effect == SHAPE:
+                found[SHAPE] = tuple(x for x in one.ranking if x.score >= first.score)
+            elif one.taken:
+                found[first.effect] = one.ranking
+            found |= {x.taken: x.ranking for x in one.looks if x.taken is not None}
+        return found
 
     def taken_back(self) -> Named:
         """Give the same with no effect named: the base as it was before the first."""
@@ -291,14 +302,16 @@ def _before_a_round(
 ) -> tuple[ModelState, Score] | None:
     """Refit a model under the score that a further effect is to lower.
 
-    None where the effects that it has leave nothing to gain.
+    The score allows for other forms of the effects that the model has, which it was
+    fitted without: what a refit gains no further effect may count as its own. None
+    where the effects leave nothing to gain.
     """
     score = make_score(state, floor_rms)
     if not state.added:
         return state, score
     if above_floor(state, score) < FURTHER:
         return None
-    state = ready(state, score)
+    state, _ = finished(state, score)
     return None if above_floor(state, score) < FURTHER else (state, score)
 
 

@@ -10,7 +10,7 @@ from hystbench.gap.fitting.refit import finished, finished_to_the_end
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.add_effects import Named, SoFar, names, pays
 from hystbench.gap.naming.rank import rank
-from hystbench.gap.naming.removal import without_unknown
+from hystbench.gap.naming.removal import without_what_goes
 from hystbench.gap.naming.rounds import Round
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import FURTHER
@@ -39,7 +39,7 @@ def beside_forces(
     say : callable
     """
     floor = floor_rms**2
-    state, gone = without_unknown(named.state, floor_rms, say)
+    state, gone = without_what_goes(named.state, floor_rms, None, say)
     if gone:  # what went was judged beside other forms of those that stay
         state = finished_to_the_end(state, make_score(state, floor_rms, forms=False))
     named = replace(named, state=state, gone=(*named.gone, *gone))

@@ -122,16 +122,15 @@ def build_in(
 def _with(state: ModelState, score: Score, name: str) -> ModelState:
     """Add an effect where and as it scores best, whether it pays or not."""
     found, declined = tried(effects()[name], state, score)
-    blocks = [(attempt, trial) for attempt, trial in found if not trial.variant.beside]
+    blocks = [trial for trial in found if not trial.variant.beside]
     if not blocks:
         why = declined or (
             "it is new in every record, so that no model can hold it; the search may "
             "name it"
         )
         raise InputError(f"--with {name}: {why}")
-    trials = [fine(attempt, trial) for attempt, trial in blocks]
     refused = None
-    for trial in sorted(trials, key=lambda trial: trial.score):
+    for trial in sorted(map(fine, blocks), key=lambda trial: trial.score):
         try:
             return _added(state, trial, score)
         except InputError as error:

@@ -10,7 +10,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import among
 from hystbench.gap.effects.effect import Declined
 from hystbench.gap.effects.variant import Variant
-from hystbench.gap.fitting.scan import LOOKS
+from hystbench.gap.fitting.refit import LOOKS
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.tried import records_at_a_glance
 from hystbench.gap.fitting.variant_search import POINTS_EACH
@@ -100,11 +100,7 @@ def foretell(state: ModelState, say: Say) -> None:
         The base on the fit records, which has been run.
     say : callable
     """
-    calls = current()
-    if not calls.made:
-        return
-    one = calls_of_a_round(state)
-    calls.expected = calls.asked + MOST_EFFECTS * one
+    calls, one = current(), foretell_rest(state, 0)
     took = calls.expected * calls.mean_seconds
     if took < PATIENCE:
         return
@@ -116,8 +112,8 @@ def foretell(state: ModelState, say: Say) -> None:
     )
 
 
-def foretell_rest(state: ModelState, rounds: int) -> None:
-    """Estimate anew what is still to come, by what a round has really needed.
+def foretell_rest(state: ModelState, rounds: int) -> int:
+    """Estimate what is still to come, by what earlier rounds have really needed.
 
     Parameters
     ----------
@@ -125,11 +121,18 @@ def foretell_rest(state: ModelState, rounds: int) -> None:
         The model before the next round.
     rounds : int
         How many are done.
+
+    Returns
+    -------
+    int
+        Calls of one round; 0 where no simulator is called.
     """
     calls = current()
-    if calls.made:
-        left = max(MOST_EFFECTS - rounds, 0)
-        calls.expected = calls.asked + left * calls_of_a_round(state)
+    if not calls.made:
+        return 0
+    one = calls_of_a_round(state)
+    calls.expected = calls.asked + max(MOST_EFFECTS - rounds, 0) * one
+    return one
 
 
 def _runs(variant: Variant) -> int:

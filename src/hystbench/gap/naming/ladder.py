@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.on_records import compared_records
+from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.locate import Contribution
 from hystbench.gap.naming.add_effects import Named
+from hystbench.gap.records.black_box import BlackBox
+from hystbench.gap.records.floor import Floor
+from hystbench.model import Model
 
 BASE = "base"
 RETUNED = "base re-tuned"
@@ -21,6 +26,22 @@ class Rung(NamedTuple):
 
     name: str
     state: ModelState
+
+
+@dataclass(frozen=True)
+class FitResult:
+    """What the fit records fix; hold-out records are compared with it."""
+
+    base: Model
+    state: ModelState
+    """The model with all effects that were added, on the fit records."""
+    floor: Floor
+    black_box: BlackBox
+    """Fitted to what the base leaves on the fit records."""
+    rungs: tuple[Rung, ...]
+    """The models on the way from the base to the last effect."""
+    own: OwnValues = NONE
+    """What some records have of their own: a hold-out record may have the same."""
 
 
 def rungs(start: ModelState, named: Named) -> tuple[Rung, ...]:

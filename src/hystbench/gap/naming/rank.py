@@ -20,12 +20,14 @@ from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.refit import added, finished, refit
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, ModelState
-from hystbench.gap.fitting.tried import Seen, Tried, on_all_records, seen
+from hystbench.gap.fitting.tried import Seen, on_all_records, seen
 from hystbench.gap.fitting.variant_search import Trial, fine
-from hystbench.gap.naming.on_folds import first_on_folds, on_folds
 from hystbench.gap.naming.rivals import (
     beside_their_own_shapes,
-    beyond_others,
+    beyond_simpler_laws,
+    by_all_their_laws,
+    first_on_folds,
+    on_folds,
     simplest_of_a_tie,
 )
 from hystbench.gap.naming.rounds import Candidate, TriedVariant, best_forms, in_order
@@ -76,37 +78,25 @@ def rank(
     known = tuple(among(state.offered).values()) if known is None else tuple(known)
     have = {item.effect for item in state.added}
     now = score_of(state, score)
-    declined = [
-        Candidate(effect.name, effect.place, declined="added already")
-        for effect in known
-        if effect.name in have
-    ]
-    others = [effect for effect in known if effect.name not in have]
-    if _loop_is_free(state):
-        declined += [
-            Candidate(effect.name, effect.place, declined=FITTED_WITH_IT)
-            for effect in others
-            if effect.name == SHAPE
-        ]
-        others = [effect for effect in others if effect.name != SHAPE]
+    places = {effect.name: effect.place for effect in known}
+    why_not = {name: "added already" for name in places if name in have}
+    if SHAPE in places and _loop_is_free(state):
+        why_not.setdefault(SHAPE, FITTED_WITH_IT)
     looks: list[Seen] = []
-    for effect in others:
-        trials, why = seen(effect, state, score)
-        looks += trials
-        if why:
-            declined.append(Candidate(effect.name, effect.place, declined=why))
+    for effect in known:
+        if effect.name not in why_not:
+            trials, why = seen(effect, state, score)
+            looks += trials
+            why_not |= {effect.name: why} if why else {}
     worth = needs * (1 - BEHIND)
     found, refused = on_all_records(
         looks, now, lambda most: max(min(_near(most), most * (1 - BEHIND)), worth)
     )
-    declined += [
-        Candidate(effect.name, effect.place, declined=refused[effect.name])
-        for effect in others
-        if effect.name in refused
-    ]
+    why_not |= {name: refused[name] for name in places if name in refused}
+    declined = [Candidate(x, places[x], declined=why) for x, why in why_not.items()]
     if not found:
         return tuple(declined)
-    best = min(trial.score for _, trial in found)
+    best = min(trial.score for trial in found)
     least = max(_near(now - best), worth)
     refined = _refined(found, now, least)
     of_effect: dict[str, Trial] = {}
@@ -159,7 +149,8 @@ def rank(
     )
     candidates = beside_their_own_shapes(candidates, exact, state, score.floor)
     if not folds:
-        return tuple(beyond_others(candidates, state, score))
+        candidates = by_all_their_laws(candidates)
+        return tuple(beyond_simpler_laws(candidates, state, score))
     candidates = in_order(
         _not_cut_short(item, state) for item in first_on_folds(candidates, state, score)
     )
@@ -172,7 +163,7 @@ def rank(
         candidates = in_order(
             first_on_folds(in_order([again, *candidates]), state, score)
         )
-    candidates = beyond_others(candidates, state, score)
+    candidates = beyond_simpler_laws(by_all_their_laws(candidates), state, score)
     return tuple(simplest_of_a_tie(candidates, exact, needs))
 
 
@@ -192,33 +183,29 @@ def _loop_is_free(state: ModelState) -> bool:
     return any(x.block == loop and x.parameter == "weights" for x in state.free)
 
 
-def _refined(found: Sequence[Tried], now: float, least: float) -> list[Trial]:
+def _refined(found: Sequence[Trial], now: float, least: float) -> list[Trial]:
     """Search around the best points of grids that gain enough; the least score first.
 
     A grid's step may miss most of what the right law does. So of their effects the laws
     of fewer numbers are searched as well, whatever they gain, as a step misses more of
     a law of few numbers; and of the effect that then does best, all its laws.
     """
-    near = [now - trial.score > least for _, trial in found]
     most: dict[str, float] = {}
-    for (attempt, _), enough in zip(found, near, strict=True):
-        own = attempt.variant
-        if enough:
+    for trial in found:
+        own = trial.variant
+        if now - trial.score > least:
             most[own.effect] = max(most.get(own.effect, 0.0), own.freedom)
     near = [
-        enough or attempt.variant.freedom < most.get(attempt.variant.effect, 0.0)
-        for (attempt, _), enough in zip(found, near, strict=True)
+        now - x.score > least or x.variant.freedom < most.get(x.variant.effect, 0.0)
+        for x in found
     ]
-    every = [
-        fine(attempt, trial) if enough else trial
-        for (attempt, trial), enough in zip(found, near, strict=True)
-    ]
+    every = [fine(x) if enough else x for x, enough in zip(found, near, strict=True)]
     first = min(range(len(every)), key=lambda k: every[k].score)
     best = every[first].variant
-    for k, (attempt, trial) in enumerate(found if near[first] else ()):
-        own = attempt.variant
+    for k, trial in enumerate(found if near[first] else ()):
+        own = trial.variant
         if not near[k] and own.effect == best.effect and own.form != best.form:
-            every[k] = fine(attempt, trial)
+            every[k] = fine(trial)
     return sorted(every, key=lambda trial: trial.score)
 
 
@@ -292,24 +279,21 @@ def _judged(
     if item.gain <= 0 and not variant.begun:
         return item
 
-    def declined(why: str) -> Candidate:
-        return Candidate(variant.effect, variant.place, declined=why)
-
     try:
         after, value = added(state, trial, score, wanted)
     except InputError as error:
-        return replace(declined(f"fits best where {error}"), refused=True)
+        return replace(item.but(f"fits best where {error}"), refused=True)
     if end := at_end(after):
-        return declined(f"{AT_AN_END}: {end}")
+        return item.but(f"{AT_AN_END}: {end}")
     of_noise = variant.beside is not None and effects()[variant.effect].like_noise
     if of_noise and state.power(0.0) - after.power(0.0) < score.floor:
-        return declined(SLOW_NOISE)
+        return item.but(SLOW_NOISE)
     if does_without_itself(after, after.added[-1], value, score):
-        return declined(f"{ALIKE_WITHOUT} {behaviour_of(variant.effect)}")
+        return item.but(f"{ALIKE_WITHOUT} {behaviour_of(variant.effect)}")
     hidden = score.directions.shape[1] > 0  # what a wrong shape may do hardly counts
     power = state.power(score.floor)
     if hidden and after.share(state, score.floor, power) < -LOOSE:
-        return declined("makes the gap wider")
+        return item.but("makes the gap wider")
     return replace(item, score=value, gain=now - value, state=after)
 
 
@@ -355,7 +339,7 @@ def _not_cut_short(item: Candidate, state: ModelState) -> Candidate:
     position = item.variants[0].position
     if not places or position is None or position > places[-1]:
         return item
-    return Candidate(item.effect, item.place, declined=USED_UP)
+    return item.but(USED_UP)
 
 
 def exactly(item: Candidate, score: Score, now: float) -> Candidate:
@@ -365,7 +349,7 @@ def exactly(item: Candidate, score: Score, now: float) -> Candidate:
     try:
         after, value = finished(item.state, score)
     except CallsUsedUp as error:
-        return Candidate(item.effect, item.place, declined=str(error))
+        return item.but(str(error))
     if end := at_end(after):
-        return Candidate(item.effect, item.place, declined=f"{AT_AN_END}: {end}")
+        return item.but(f"{AT_AN_END}: {end}")
     return replace(item, state=after, score=value, gain=now - value)

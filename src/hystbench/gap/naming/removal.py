@@ -12,7 +12,7 @@ from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import finished
-from hystbench.gap.fitting.state import Added, ModelState
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.uncertainty import on_more_samples, size_error
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import CERTAIN, FURTHER, LOOSE, PAYS, SHAPE, UNKNOWN
@@ -30,7 +30,7 @@ Without = tuple[TakenOut, ModelState]
 
 
 def without_what_goes(
-    state: ModelState, floor_rms: float, gap: float, say: Say
+    state: ModelState, floor_rms: float, gap: float | None, say: Say
 ) -> tuple[ModelState, tuple[TakenOut, ...]]:
     """Take out what is needless, then what is not known, while two effects are there.
 
@@ -38,8 +38,8 @@ def without_what_goes(
     ----------
     state : ModelState
     floor_rms : float
-    gap : float
-        Mean square of the base's gap above the floor.
+    gap : float or None
+        Mean square of the base's gap above the floor; without it nothing is needless.
     say : callable
 
     Returns
@@ -48,29 +48,17 @@ def without_what_goes(
     gone : tuple of TakenOut
         In the order in which they went.
     """
-    state, needless_ones = _without(
-        partial(needless, floor_rms=floor_rms, gap=gap), state, say
-    )
-    state, unknown_ones = without_unknown(state, floor_rms, say)
-    return state, (*needless_ones, *unknown_ones)
-
-
-def without_unknown(
-    state: ModelState, floor_rms: float, say: Say
-) -> tuple[ModelState, tuple[TakenOut, ...]]:
-    """Take out what is not known alone; arguments as of :func:`without_what_goes`."""
-    return _without(partial(unknown, floor_rms=floor_rms), state, say)
-
-
-def _without(
-    look: Callable[[ModelState], Without | None], state: ModelState, say: Say
-) -> tuple[ModelState, tuple[TakenOut, ...]]:
-    gone: tuple[TakenOut, ...] = ()
-    while len(state.added) > 1 and (found := look(state)) is not None:
-        one, state = found
-        say(f"{one.name} goes: {one.reason}")
-        gone = (*gone, one)
-    return state, gone
+    looks: list[Callable[[ModelState], Without | None]] = []
+    if gap is not None:
+        looks.append(partial(needless, floor_rms=floor_rms, gap=gap))
+    looks.append(partial(unknown, floor_rms=floor_rms))
+    gone: list[TakenOut] = []
+    for look in looks:
+        while len(state.added) > 1 and (found := look(state)) is not None:
+            one, state = found
+            say(f"{one.name} goes: {one.reason}")
+            gone.append(one)
+    return state, tuple(gone)
 
 
 def needless(state: ModelState, floor_rms: float, gap: float) -> Without | None:
@@ -114,8 +102,10 @@ def unknown(state: ModelState, floor_rms: float) -> Without | None:
     """
     finer = on_more_samples(state)
     for number in reversed(range(1, len(state.added))):
-        item = state.added[number]
-        if not _is_judged(item, state) or not removable(state, number):
+        blocks = [state.chain[k] for k in state.added[number].blocks]
+        if not blocks or any(block.hysteretic for block in blocks):
+            continue
+        if not removable(state, number):
             continue
         error = size_error(finer, floor_rms**2, number)
         if error <= UNKNOWN:
@@ -128,10 +118,5 @@ def unknown(state: ModelState, floor_rms: float) -> Without | None:
         reason = f"the standard error of its size is {error:.0%} of it"
         if np.isnan(error):
             reason = "the records show nothing of it"
-        return TakenOut(item.effect, reason), short
+        return TakenOut(state.added[number].effect, reason), short
     return None
-
-
-def _is_judged(item: Added, state: ModelState) -> bool:
-    blocks = [state.chain[k] for k in item.blocks]
-    return bool(blocks) and not any(block.hysteretic for block in blocks)

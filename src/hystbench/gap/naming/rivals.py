@@ -1,4 +1,4 @@
-"""Candidates of one ranking held against each other, once each was judged by itself."""
+"""Candidates of one ranking held against each other, once each was fitted by itself."""
 
 from __future__ import annotations
 
@@ -7,19 +7,50 @@ from dataclasses import replace
 
 import numpy as np
 
+from hystbench.blocks.calls import CallsUsedUp
 from hystbench.gap.effects import effects
+from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.model_score import directions_of, score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.rounds import Candidate, in_order
-from hystbench.gap.thresholds import AS_GOOD, CERTAIN, LOOSE, PAYS, SCALE
+from hystbench.gap.thresholds import AS_GOOD, CERTAIN, LOOSE, PARAMETER, PAYS, SCALE
 
 
-def beyond_others(
-    candidates: Sequence[Candidate], state: ModelState, score: Score
+def first_on_folds(
+    candidates: Sequence[Candidate], before: ModelState, score: Score
 ) -> list[Candidate]:
-    """Charge effects for their freedom to choose a law."""
-    return beyond_simpler_laws(by_all_their_laws(candidates), state, score)
+    """Judge candidates on folds, best first, while one may be the first.
+
+    A candidate can only lose there. So one that scores worse than the best judged so
+    far, beyond doubt, need not be judged.
+    """
+    best, found = np.inf, []
+    for item in candidates:
+        if item.held_back is None and item.score < best + CERTAIN:
+            item = on_folds(item, before, score)
+        if item.state is not None and not item.declined:
+            best = min(best, item.score)
+        found.append(item)
+    return found
+
+
+def on_folds(item: Candidate, before: ModelState, score: Score) -> Candidate:
+    """Judge a finalist that pays on records that did not fit it.
+
+    What it gained on all records, charged for its freedom, it can only lose: a fold
+    that fits better than all of them together shows no merit. What it gains there is
+    charged as well: of two that both leave noise alone, the one of fewer numbers leads.
+    """
+    if item.state is None or item.gain < PAYS:
+        return item
+    try:
+        held = gain_held_back(before, item.state, score)
+    except CallsUsedUp as error:
+        return item.but(str(error))
+    charge = PARAMETER * (item.state.freedom - before.freedom)
+    lost = max(item.gain - (held - charge), 0.0)
+    return replace(item.dearer(lost), held_back=held)
 
 
 def by_all_their_laws(candidates: Sequence[Candidate]) -> list[Candidate]:
@@ -36,8 +67,7 @@ def by_all_their_laws(candidates: Sequence[Candidate]) -> list[Candidate]:
             return item
         scores = np.array([x.score for x in item.variants])
         likely = np.exp((scores.min() - scores) / SCALE)
-        dearer = -SCALE * float(np.log(np.mean(likely)))
-        return replace(item, score=item.score + dearer, gain=item.gain - dearer)
+        return item.dearer(-SCALE * float(np.log(np.mean(likely))))
 
     return in_order(summed(item) for item in candidates)
 
@@ -66,8 +96,7 @@ def beyond_simpler_laws(
                 continue
             simpler = item.state.freedom >= other.state.freedom
             if simpler and item.state.share(other.state, floor, gap) < more:
-                dearer, gain = item.score + CERTAIN, item.gain - CERTAIN
-                return replace(item, score=dearer, gain=gain)
+                return item.dearer(CERTAIN)
         return item
 
     return in_order(charged(item) for item in candidates)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.thresholds import SCALE, SHAPE
+from hystbench.gap.thresholds import SCALE
 
 MOST_EFFECTS = 4
 """Effects that are looked for, at most."""
@@ -48,6 +48,14 @@ class Candidate:
     variants: tuple[TriedVariant, ...] = ()
     """Every place and form of it that could be scored, best first."""
 
+    def dearer(self, by: float) -> Candidate:
+        """Give the same with a score that is so much worse."""
+        return replace(self, score=self.score + by, gain=self.gain - by)
+
+    def but(self, why: str) -> Candidate:
+        """Give the same as one that declined."""
+        return Candidate(self.effect, self.place, declined=why)
+
 
 @dataclass(frozen=True)
 class SecondLook:
@@ -77,23 +85,6 @@ class Round:
     """Whether the first of the ranking was added."""
     looks: tuple[SecondLook, ...] = ()
     """At the effects that were there when it was, in their order."""
-
-
-def reasons(rounds: Iterable[Round]) -> dict[str, tuple[Candidate, ...]]:
-    """Give the last ranking by which each effect was taken, or kept.
-
-    What scores better than a wrong shape that goes first is no rival of it: the shape
-    is needed beside it.
-    """
-    found: dict[str, tuple[Candidate, ...]] = {}
-    for one in rounds:
-        first = one.ranking[0]
-        if one.taken and first.effect == SHAPE:
-            found[SHAPE] = tuple(x for x in one.ranking if x.score >= first.score)
-        elif one.taken:
-            found[first.effect] = one.ranking
-        found |= {x.taken: x.ranking for x in one.looks if x.taken is not None}
-    return found
 
 
 def near(first: Candidate, ranking: Sequence[Candidate]) -> tuple[str, ...]:

@@ -186,13 +186,13 @@ def _own_values(
     state: ModelState, start: ModelState, floor: float, kinds: Sequence[str]
 ) -> OwnValues:
     """Find what records have of their own beside a model, or look it up."""
-    return remembered_of(
+    unit = start.records[0].output.unit
+    found = remembered_of(
         state,
         lambda: ["own values", records_digest(start.records), floor, kinds],
-        lambda: own_values(start.records, state.exact, floor, kinds),
-        lambda own: own.mapping(start.records[0].output.unit),
-        OwnValues.of_mapping,
+        lambda: own_values(start.records, state.exact, floor, kinds).mapping(unit),
     )
+    return OwnValues.of_mapping(found)
 
 
 def kinds_of(state: ModelState) -> tuple[str, ...]:

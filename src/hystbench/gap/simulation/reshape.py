@@ -101,8 +101,8 @@ def _behind(
     # What nothing follows is wanted at the scored samples alone.
     wanted = None if behind else sample
     place = simulation.loop
-    block, v = simulation.chain[place], simulation.before[place]
-    given = () if block.seen else simulation.before[place + 1]
+    block, v = simulation.chain[place], simulation.at(place)
+    given = () if block.seen else simulation.at(place + 1)
     ways = _made(make, block, Same(*v), Same(*given), Same(wanted))
     if not behind:
         return np.column_stack([np.concatenate(way) for way in ways])
@@ -268,7 +268,7 @@ def _sent(
     """
     if _are_linear(behind):  # they answer to the change alone, of any size
         return simulation.run(behind, signals), 1.0
-    now = simulation.before[simulation.behind_hysteresis]
+    now = simulation.at(simulation.behind_hysteresis)
     size = CHANGE_SHARE * simulation.largest(simulation.behind_hysteresis)
     largest = float(max(max(s.max(), -s.min()) for s in signals))
     change = size / max(largest, 1e-300)

@@ -11,18 +11,15 @@ from typing import Any
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
-from hystbench.gap.simulation.simulation import Simulation
+from hystbench.gap.simulation.simulation import Simulation, Steps
 from hystbench.record import Record
 
 
 def shared(
-    chain: tuple[Block, ...], records: tuple[Record, ...], hold: Hold, quick: bool
+    chain: tuple[Block, ...], records: tuple[Record, ...], hold: Hold, steps: Steps
 ) -> Simulation:
-    """Give the quick simulation, by which models are compared, or a fine one.
-
-    The fine one misses least by its own steps.
-    """
-    return _shared(chain, Same(records), hold, quick)
+    """Give a simulation: the one that was given before, of the same."""
+    return _shared(chain, Same(records), hold, steps)
 
 
 class Same:
@@ -42,7 +39,7 @@ class Same:
 
 @lru_cache(maxsize=8)
 def _shared(
-    chain: tuple[Block, ...], given: Same, hold: Hold, quick: bool
+    chain: tuple[Block, ...], given: Same, hold: Hold, steps: Steps
 ) -> Simulation:
     (records,) = given.objects
-    return Simulation(chain, records, hold, quick=quick, fine=not quick)
+    return Simulation(chain, records, hold, steps)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, ClassVar, cast
+from typing import Any, ClassVar, Literal, cast
 
 import numpy as np
 
@@ -26,6 +26,15 @@ from hystbench.record import FloatArray, Record
 
 Signals = tuple[FloatArray, ...]
 """One signal a record."""
+Steps = Literal["plain", "quick", "fine"]
+"""Steps of time: those of the samples, or others.
+
+- Quick ones are straight lines where a block takes a band-limited signal: a tenth of
+  the time, and near enough to compare candidates by.
+- Fine ones are shorter through the hysteresis where the input is band-limited, so that
+  turning points between samples are met: what the chain says of physics, without the
+  error of its own steps.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,24 +45,14 @@ class Simulation:
     records: tuple[Record, ...]
     hold: Hold = "band-limited"
     """How the input moves between samples."""
-    quick: bool = False
-    """Take straight lines where a block takes a band-limited signal: a tenth of the
-    time, and near enough to compare candidates by."""
-    fine: bool = False
-    """Take shorter steps through the hysteresis where the input is band-limited, so
-    that turning points between samples are met: what the chain says of physics, without
-    the error of its own steps."""
+    steps: Steps = "plain"
+    """Which steps of time are taken."""
 
-    @cached_property
-    def before(self) -> tuple[Signals, ...]:
-        """Signals before each block, and behind the last: shape (blocks + 1, records).
+    def at(self, place: int) -> Signals:
+        """Signals before a block, or behind the last; what is attached is run with it.
 
         Before a wrapping block stands the output of what it wraps, without it.
         """
-        return tuple(self.at(k) for k in range(len(self.chain) + 1))
-
-    def at(self, place: int) -> Signals:
-        """Signals before one block; what is attached to a block is run with it."""
         if place not in self._at:
             start = place - 1
             while isinstance(self.chain[start], AttachedBlock):
@@ -77,7 +76,7 @@ class Simulation:
     @cached_property
     def output(self) -> Signals:
         """The chain's output."""
-        if self.quick:
+        if self.steps == "quick":
             return self.at(len(self.chain))
         return self.run(self.chain, self.at(0))
 
@@ -91,7 +90,7 @@ class Simulation:
         repeating = any(getattr(block, "start", "") == "repeating" for block in blocks)
         if repeating and not all(record.repeats for record in self.records):
             begun = self._steps([_begun_once(block) for block in blocks])
-        finely = self.fine and self.hold == LIMITED
+        finely = self.steps == "fine" and self.hold == LIMITED
         dts = [record.dt for record in self.records]
         for step, first in zip(steps, begun, strict=True):
             if step is first and isinstance(step, LinearBlock):
@@ -107,14 +106,14 @@ class Simulation:
         """Send one signal through one step."""
         if finely and (isinstance(step, Wrapped) or step.hysteretic):
             return _finely(step, z, record.dt, SHORT_STEPS)
-        if self.fine and isinstance(step, Driven | Superposed):
+        if self.steps == "fine" and isinstance(step, Driven | Superposed):
             return step.in_pieces(PIECES).simulate(z, record.u, record.dt)
-        if self.quick and _takes_short_steps(step):
+        if self.steps == "quick" and _takes_short_steps(step):
             return _finely(step, z, record.dt, QUICK_STEPS)
         return self._known(step, z).simulate(z, record.u, record.dt)
 
     def _steps(self, blocks: Sequence[Block]) -> list[Any]:
-        if not self.quick:
+        if self.steps != "quick":
             return attached(blocks)
         steps = attached([cast(Block, _quick(block)) for block in blocks])
         return [
