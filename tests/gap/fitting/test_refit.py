@@ -24,10 +24,11 @@ from hystbench.gap.fitting.refit import (
     added,
     finished,
     finished_to_the_end,
+    mended,
     refit,
     sizes,
 )
-from hystbench.gap.fitting.state import Added, Free
+from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.fitting.variant_search import Attempt, fine
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.thresholds import PARAMETER, SCALE
@@ -133,6 +134,63 @@ def test_a_refit_ends_where_a_plain_minimiser_does():
     assert value < best.fun + 0.1
     assert after.chain[0].time_constant_s == pytest.approx(best.x, rel=1e-2)
     assert after.chain[0].time_constant_s == pytest.approx(4e-3, rel=2e-2)
+
+
+def test_mended_tangents_foretell_the_step_and_stay_as_they_are_across_it():
+    chain = mode(100.0, 0.2)
+    free = free_of(chain, ["frequency_hz", "participation"])
+    state = state_of(chain, measured(mode(110.0, 0.25), NOISE), free=free)
+    size, step = np.array([100.0, 0.2]), np.array([8.0, 0.04])
+    moved = state.moved(dict(enumerate(step.tolist())))
+    tangents = mended(state.tangents, state, moved, size)
+    change = state.residual - moved.residual
+    assert not np.allclose(state.tangents @ step, change, rtol=1e-2)
+    np.testing.assert_allclose(tangents @ step, change, rtol=1e-9)
+    in_sizes = step / size
+    across = np.array([-in_sizes[1], in_sizes[0]]) * size
+    np.testing.assert_allclose(tangents @ across, state.tangents @ across, rtol=1e-9)
+
+
+def test_a_refit_takes_tangents_of_the_bases_numbers_where_it_has_come_far(
+    monkeypatch,
+):
+    """It ends where one does that takes them in every round, to a tenth of a number."""
+    chain = mode(100.0, 0.2)
+    free = free_of(chain, ["frequency_hz", "participation", "damping_ratio"])
+    state = state_of(chain, measured(mode(110.0, 0.25), NOISE), free=free)
+    score = plain_score(state)
+    best = score_of(state, score)
+    every = state
+    for _ in range(8):
+        every, best = refit(every, score, rounds=1)
+    taken, moved = [], []
+    tangents, with_chain = ModelState.tangents_of, ModelState.with_chain
+
+    def counted(self, numbers):
+        taken.extend(numbers)
+        return tangents(self, numbers)
+
+    def stepped(self, chain):
+        moved.append(chain)
+        return with_chain(self, chain)
+
+    monkeypatch.setattr(ModelState, "tangents_of", counted)
+    monkeypatch.setattr(ModelState, "with_chain", stepped)
+    _, value = refit(replace(state), score)
+    assert value == pytest.approx(best, abs=PARAMETER / 10)
+    assert len(taken) <= 2 * len(free) < 4 * len(free) <= len(moved) * len(free)
+
+
+def test_tangents_that_are_lent_are_not_taken_anew(monkeypatch):
+    chain = mode(108.0, 0.2)
+    free = free_of(chain, ["frequency_hz", "participation"])
+    state = state_of(chain, measured(mode(110.0, 0.25), NOISE), free=free)
+    score = plain_score(state)
+    _, best = refit(state, score)
+    lent = state.tangents.copy()
+    monkeypatch.setattr(ModelState, "tangents", None)
+    _, value = refit(replace(state), score, lent=lent)
+    assert score_of(state, score) - value > 0.9 * (score_of(state, score) - best)
 
 
 def test_a_tolerance_holds_a_number_of_the_base_back():
@@ -330,7 +388,7 @@ def test_a_number_that_hardly_moves_the_output_stays_among_those_of_its_list(uni
         weights=[0.8 * unit, 0.5 * unit],
     )
     state = state_of((loop,), free=tuple(Free(0, "weights", k) for k in (0, 1)))
-    own, hardly = sizes(state) / unit
+    own, hardly = sizes(state, state.tangents) / unit
     assert own == pytest.approx(0.8)
     assert 0.5 <= hardly <= 0.8 * FAR
 
@@ -338,7 +396,7 @@ def test_a_number_that_hardly_moves_the_output_stays_among_those_of_its_list(uni
 def test_a_number_that_is_zero_has_the_size_that_moves_the_output_a_tenth():
     chain = (hysteresis(), block("asymmetry", coefficient=0.0))
     state = state_of(chain, free=free_of(chain, ["coefficient"]))
-    (size,) = sizes(state)
+    (size,) = sizes(state, state.tangents)
     plain = np.concatenate(
         [
             x[at]

@@ -41,7 +41,7 @@ def test_effects_that_do_nothing_gain_nothing_from_the_refit(lag_s):
     """
     after = advance(progress_with(lag_s, (block("resonance", **MODE),)), NOISE, print)
     (one,) = after.rounds
-    gains = {x.effect: x.gain for x in one.ranking if x.state is not None}
+    gains = {x.effect: x.gain for x in one.ranking if not x.declined}
     assert gains.pop("resonance") > PAYS
     others = {name: gains[name] for name in gains if name not in LIKE_A_MODE}
     assert others

@@ -21,7 +21,10 @@ from hystbench.gap.thresholds import SCALE
 from hystbench.record import FloatArray
 
 ROUNDS = 5
-"""Of least squares in a refit."""
+"""Of least squares in a refit whose tangents are taken anew."""
+
+MENDED = 2
+"""Rounds for each of them, with those whose tangents are mended."""
 
 DAMPING = (0.0, 1e2, 1e4, 1e6)
 """Charge for a change of the whole of a number, tried until a step pays."""
@@ -39,35 +42,61 @@ LOOKS = 16
 
 
 def refit(
-    state: ModelState, score: Score, rounds: int = ROUNDS, wanted: float = np.inf
+    state: ModelState,
+    score: Score,
+    rounds: int = ROUNDS,
+    wanted: float = np.inf,
+    lent: FloatArray | None = None,
 ) -> tuple[ModelState, float]:
     """Refit all free numbers together (Levenberg and Marquardt on the score).
+
+    Tangents cost a simulation a number. Those of the base's numbers change little from
+    round to round, so they are mended by what a step has done (Broyden) and taken anew
+    where the rounds since have gained what matters. Those of the effects' own numbers
+    are taken in every round.
 
     Parameters
     ----------
     state : ModelState
     score : Score
     rounds : int
+        Of tangents that are taken anew, at most.
     wanted : float
         Score that is of use. A refit ends after its second round where it would not
         come so far if each further one gained as much. (The first may be short.)
+    lent : ndarray, shape (scored samples, k), optional
+        Tangents of a model near this one, to begin with. They are not taken anew: the
+        result is near enough to compare candidates by.
 
     Returns
     -------
     state : ModelState
         Never worse than the one given.
     score : float
+
+    References
+    ----------
+    .. [1] C. G. Broyden, "A class of methods for solving nonlinear simultaneous
+       equations", Mathematics of Computation 19 (1965) 577-593.
     """
-    best = score_of(state, score)
-    for left in reversed(range(rounds if state.free else 0)):
-        size = sizes(state)
+    own = [k for k, free in enumerate(state.free) if free.block in state.places_added]
+    best = since = score_of(state, score)
+    tangents, taken, level = lent, 0, 0
+    most = rounds if lent is not None else MENDED * rounds
+    for left in reversed(range(most if state.free else 0)):
+        anew = tangents is None
+        if tangents is None:
+            tangents, since, taken = state.tangents, best, taken + 1
+        else:
+            tangents[:, own] = state.tangents_of(own)
+        size = sizes(state, tangents)
         before = best
-        for damping in DAMPING:
+        for level in range(max(level - 1, 0), len(DAMPING)):
             found = score.amplitudes(
                 state.residual,
-                state.tangents,
+                tangents,
                 state.freedom,
-                state.held.in_steps(damping / size**2),
+                state.held.in_steps(DAMPING[level] / size**2),
                 beside=beside_of(state, score),
             )
             change = dict(enumerate(found.values.tolist()))
@@ -80,23 +109,49 @@ def refit(
             # does not tell would go anywhere.
             idle = value > best - ENOUGH and np.any(np.abs(found.values) > size)
             if value <= best and not idle:
+                tangents = mended(tangents, state, moved, size)
                 state, best = moved, value
                 break
         gained = before - best
-        first = left == rounds - 1
-        if gained < ENOUGH or not (first or best - left * gained <= wanted):
+        first = left == most - 1
+        if not (first or best - left * gained <= wanted):
             break
+        if gained < ENOUGH:
+            as_good = since - best < SCALE
+            if anew or lent is not None or as_good or taken == rounds:
+                break
+            tangents = None
     return state, best
 
 
-def sizes(state: ModelState) -> FloatArray:
+def mended(
+    tangents: FloatArray, state: ModelState, moved: ModelState, size: FloatArray
+) -> FloatArray:
+    """Give tangents that foretell what a step has done, and else change least.
+
+    Parameters
+    ----------
+    tangents : ndarray, shape (scored samples, k)
+    state, moved : ModelState
+        Before and after the step.
+    size : ndarray, shape (k,)
+        Of each free number, in which lengths of steps are measured.
+    """
+    values = [moved.value(free) - state.value(free) for free in state.free]
+    step = np.array(values) / size
+    missed = (state.residual - moved.residual) - tangents @ (step * size)
+    length = max(float(step @ step), 1e-300)
+    return tangents + np.outer(missed, step / (size * length))
+
+
+def sizes(state: ModelState, tangents: FloatArray) -> FloatArray:
     """Give the size of each free number: its value, or what moves the output a tenth.
 
     The second is for those that are zero, or nearly; but none is far more than the
     numbers of its own list: what hardly moves the output would else run away.
     """
     output = state.measured - state.residual
-    moved = np.sqrt(np.mean(state.tangents**2, axis=0))
+    moved = np.sqrt(np.mean(tangents**2, axis=0))
     tenth = 0.1 * float(np.sqrt(np.mean(output**2)))
     tenth = tenth / np.maximum(moved, max(tenth / NOWHERE, 1e-300))
     values = np.array([abs(state.value(free)) for free in state.free])
@@ -139,12 +194,19 @@ def added(
 def _added(
     state: ModelState, trial: Trial, score: Score, wanted: float
 ) -> tuple[ModelState, float]:
-    after = with_effect(state, trial.variant, trial.values)
-    if trial.variant.zero is not None:
+    variant = trial.variant
+    after = with_effect(state, variant, trial.values)
+    if variant.zero is not None:
         after = after.settled()
-    if trial.variant.begun:
+    if variant.begun:
         after = fitted_to_the_end(after, score).state
-    return refit(after, score, wanted=wanted)
+        return refit(after, score, wanted=wanted)
+    # The model before lends its tangents; the effect's own numbers are the last.
+    gone = variant.start if variant.replaces else None
+    stay = [k for k, free in enumerate(state.free) if free.block != gone]
+    lent = np.zeros((len(state.sample), len(after.free)))
+    lent[:, : len(stay)] = state.tangents[:, stay]
+    return refit(after, score, wanted=wanted, lent=lent)
 
 
 def tuned(state: ModelState, score: Score) -> ModelState:

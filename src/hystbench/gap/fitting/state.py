@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -145,7 +145,11 @@ class ModelState:
     @cached_property
     def tangents(self) -> FloatArray:
         """How the output changes with each free number, shape (scored samples, k)."""
-        columns = [self._tangent(k, step) for k, step in enumerate(self.steps)]
+        return self.tangents_of(range(len(self.free)))
+
+    def tangents_of(self, numbers: Iterable[int]) -> FloatArray:
+        """Compute those of some free numbers alone."""
+        columns = [self._tangent(k, self.steps[k]) for k in numbers]
         return _stack(columns, len(self.sample))
 
     def _tangent(self, k: int, step: float) -> FloatArray:
