@@ -81,17 +81,17 @@ def refit(
     """
     own = [k for k, free in enumerate(state.free) if free.block in state.places_added]
     best = since = score_of(state, score)
-    tangents, taken, level = lent, 0, 0
+    tangents, taken, least = lent, 0, 0
     most = rounds if lent is not None else MENDED * rounds
     for left in reversed(range(most if state.free else 0)):
         anew = tangents is None
         if tangents is None:
-            tangents, since, taken = state.tangents, best, taken + 1
+            tangents, since, taken, least = state.tangents, best, taken + 1, 0
         else:
             tangents[:, own] = state.tangents_of(own)
         size = sizes(state, tangents)
         before = best
-        for level in range(max(level - 1, 0), len(DAMPING)):
+        for level in range(least, len(DAMPING)):
             found = score.amplitudes(
                 state.residual,
                 tangents,
@@ -110,7 +110,7 @@ def refit(
             idle = value > best - ENOUGH and np.any(np.abs(found.values) > size)
             if value <= best and not idle:
                 tangents = mended(tangents, state, moved, size)
-                state, best = moved, value
+                state, best, least = moved, value, max(level - 1, 0)
                 break
         gained = before - best
         first = left == most - 1
