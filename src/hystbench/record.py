@@ -171,7 +171,7 @@ class Record:
         Parameters
         ----------
         kept : slice
-            Samples in a row, or every so-manieth of them.
+            Samples in a row, or every n-th of them.
         """
         simulated, lost = self.simulated, self.interpolated
         u = self.u[kept].copy()

@@ -31,6 +31,7 @@ MACHINES = {
     "pendulum": ("pendulum", style.GREEN, "^"),
     "impedance": ("impedance", style.VERMILION, "D"),
     "tank": ("tank", style.PURPLE, "v"),
+    "coupled-tanks": ("coupled tanks", style.SKY, "P"),
 }
 #: How much of an effect's place its families take.
 _SPREAD = 0.8

@@ -53,8 +53,8 @@ class Decided:
     """What goes from the fit records to those that are held out."""
 
     base: Model
-    """As it was given, or identified: it tells what another state at the first sample
-    would do, as what stands for it may hold a place that no record forgets."""
+    """As it was given, or identified. It shows what another state at the first sample
+    would do: a model that stands for it may never forget where it began."""
     fitted: FitResult
     content: Mapping[str, Any]
     """What gap.json holds, but for what the hold-out records show."""

@@ -21,7 +21,7 @@ from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.own_values import NONE, OwnValues
-from hystbench.gap.fitting.re_tuned import (
+from hystbench.gap.fitting.re_tuning_gain import (
     charge_of_base,
     re_tuned_score,
     re_tuned_words,
@@ -68,9 +68,9 @@ def search(
 ) -> Decision:
     """Locate the gap, name what is missing and add it.
 
-    A given base is first taken as it is. Where re-tuning it may replace an effect or
-    pay beside one, effects are sought again with its numbers and timing free, each by
-    what it may be off. What explains the records better stands.
+    A given base is first taken as it is. Where re-tuning it might replace an effect, or
+    pay beside one, the search is repeated with its numbers and timing free within their
+    tolerances. What explains the records better stands.
 
     Parameters
     ----------

@@ -49,8 +49,9 @@ An effect that takes less does not matter, and where no more is left in all noth
 further is looked for.
 """
 AS_GOOD = UNNAMED_SHARE
-"""By no more two models differ that do the same, whatever a user allows.
+"""By no more two models differ that do the same.
 
+It is the default of what may stay unnamed, and stays where a user allows more or less.
 It compares a host with the base that it stands for, a law with one of fewer numbers,
 and the base with a model that leaves more on hold-out records.
 """

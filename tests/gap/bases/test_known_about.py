@@ -15,7 +15,7 @@ from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.known_about import as_it_was, known_about
 from hystbench.gap.fitting.on_records import start_state
-from hystbench.gap.fitting.re_tuned import re_tuned_words
+from hystbench.gap.fitting.re_tuning_gain import re_tuned_words
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.run import closed_gap
 from hystbench.model import Model

@@ -1,4 +1,4 @@
-"""Bases: the simulator that disagrees with the measurements, given or identified."""
+"""The base of a run: the file or function that is given, or a model identified."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ class _Fold(NamedTuple):
 
 
 def gain_held_back(before: ModelState, after: ModelState, score: Score) -> float:
-    """Lower the score of held-back records by how much, with an effect fitted without.
+    """Tell by how much an effect lowers the score of records that did not fit it.
 
     The fit records are dealt out in folds; where there are fewer than three, blocks of
     them are, with a guard gap. So they are where the effect shows in one record alone,

@@ -1,4 +1,4 @@
-"""Fitting all free numbers of a model together, by Levenberg and Marquardt's steps.
+"""Fitting all free numbers of a model from far off, by Levenberg and Marquardt's steps.
 
 It goes far: a force inside the dynamics starts where it does little, and generalized
 plays where they hardly bend. What is lowered is a sum of squares, and steps are as long

@@ -80,7 +80,7 @@ def score_of(state: ModelState, score: Score) -> float:
 
 
 def beside_of(state: ModelState, score: Score) -> Shared | None:
-    """Give the products of what lies beside a model; None without."""
+    """Give the products of what lies beside a model; None if nothing does."""
     if not state.beside:
         return None
     return _products(Same(state.beside, state.records, state.sample), score)

@@ -95,9 +95,9 @@ def check_finite(
 def free_numbers(base: Model) -> tuple[Free, ...]:
     """Give the numbers that a model leaves free, with the size of a likely change.
 
-    A tolerance is a share of the value; of a zero it says nothing, and a zero among
-    several numbers, as of an integrator, stays. It is the most that
-    a number may change by; a step of a refit is damped by its size.
+    A tolerance is a share of the value, and the most that a number may change by. A
+    zero has none; in a list, as of an integrator, it stays fixed. A step of a refit is
+    damped by the size of its number.
     """
     places = {label: k for k, (label, _) in enumerate(base.labelled())}
     found: list[Free] = []

@@ -1,4 +1,4 @@
-"""Fitting a model as a whole."""
+"""Refitting all numbers of a model from near, and adding an effect to it."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ EACH = 3
 """Of the scored samples, one of so many is looked at, where enough are left."""
 
 MORE = 4.0
-"""Times as much as at a glance that a variant may gain on all records, uncharged."""
+"""On all records a variant may gain this many times what a glance showed, uncharged."""
 
 
 class Seen(NamedTuple):

@@ -165,7 +165,7 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
 def with_changed(state: ModelState, effect: str, changed: Changed) -> ModelState:
     """Give stores with other numbers, some of them free as well.
 
-    What was known of such a number says nothing of it any more.
+    The tolerance of such a number is dropped.
     """
     chain = list(state.chain)
     old = {

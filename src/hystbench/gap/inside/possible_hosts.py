@@ -140,9 +140,9 @@ def _as_given(
     """Give a host that does what a given base does, then the same fitted to records.
 
     The numbers of a given base are known, unless it says that some are free. That known
-    ones are wrong all the same has to pay as a further effect does. What is only known
-    about of the base, is only known about of the host: ``about`` holds its numbers by
-    that. A mode is no number of a base, and its damping is seldom known.
+    ones are wrong all the same has to pay as a further effect does. Numbers that the
+    base states only roughly are so in the host too: ``about`` holds them by their
+    tolerances. A mode is no number of a base, and its damping is seldom known.
     """
     if free:
         known = all(item.given is not None for item in free)

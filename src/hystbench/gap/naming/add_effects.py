@@ -140,7 +140,7 @@ def _of_few_numbers(
     others = tuple(x for x in among(start.offered) if x != name)
     other = _path(replace(start, offered=others), floor_rms, say, found.share)
     other = replace(other, state=replace(other.state, offered=start.offered))
-    # A path ends with numbers beside which other forms were allowed for.
+    # A path ends with numbers that were fitted while other forms were allowed.
     state, value = finished(other.state, score)
     value += FURTHER * max(len(state.added) - 1, 0)
     if value < finished(found.state, score)[1] - SCALE:

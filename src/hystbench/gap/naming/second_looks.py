@@ -19,7 +19,7 @@ from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import PAYS, SCALE, SHAPE
 
 CLOSE = 0.6
-"""Rivals are those with this share of the gain of the best of a round."""
+"""A rival gains at least this share of the gain of the best of its round."""
 
 
 def reconsidered(

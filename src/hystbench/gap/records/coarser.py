@@ -28,7 +28,7 @@ ENOUGH = 2 * SAMPLES
 
 
 def coarser(records: tuple[Record, ...], hold: Hold) -> tuple[Record, ...]:
-    """Give records of every so-manieth sample; the same ones where none can be spared.
+    """Give records of every n-th sample; the same ones where none can be spared.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def _fastest(x: FloatArray) -> float:
 
 
 def _every(record: Record, factor: int) -> Record:
-    """Keep every so-manieth sample."""
+    """Keep every n-th sample."""
     period = record.period_samples
     return replace(
         record.cut(slice(None, None, factor)),

@@ -1,4 +1,4 @@
-"""Cross-validation over the fit records: what is fitted and what only judges.
+"""Folds of the fit records: which samples are fitted and which only judge.
 
 A simulation always runs freely over a whole record; only the scoring is masked. Samples
 that were not measured neither fit nor judge.

@@ -1,4 +1,4 @@
-"""What re-tuning a base that is known about could do, and how far it went."""
+"""What re-tuning a base that is known only roughly could gain, and how far it went."""
 
 from __future__ import annotations
 
