@@ -23,8 +23,8 @@ from hystbench.record import FloatArray
 ROUNDS = 5
 """Of least squares in a refit whose tangents are taken anew."""
 
-MENDED = 2
-"""Rounds for each of them, with those whose tangents are mended."""
+MENDED = 4
+"""Rounds for each of them at most, with those whose tangents are mended."""
 
 DAMPING = (0.0, 1e2, 1e4, 1e6)
 """Charge for a change of the whole of a number, tried until a step pays."""
@@ -82,8 +82,7 @@ def refit(
     own = [k for k, free in enumerate(state.free) if free.block in state.places_added]
     best = since = score_of(state, score)
     tangents, taken, least = lent, 0, 0
-    most = rounds if lent is not None else MENDED * rounds
-    for left in reversed(range(most if state.free else 0)):
+    for left in reversed(range(MENDED * rounds if state.free else 0)):
         anew = tangents is None
         if tangents is None:
             tangents, since, taken, least = state.tangents, best, taken + 1, 0
@@ -113,10 +112,10 @@ def refit(
                 state, best, least = moved, value, max(level - 1, 0)
                 break
         gained = before - best
-        first = left == most - 1
+        first = left == MENDED * rounds - 1
         if not (first or best - left * gained <= wanted):
             break
-        if gained < ENOUGH:
+        if gained < (ENOUGH if anew else SCALE):
             as_good = since - best < SCALE
             if anew or lent is not None or as_good or taken == rounds:
                 break
