@@ -17,7 +17,7 @@ from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model, load_model
 from hystbench.quantities import Quantities
 from tests.gap.made import CURRENT, DISPLACEMENT, multisine, record, steady
-from tests.gap.searched import search
+from tests.gap.searched import among, search
 from tests.gap.small import block
 
 
@@ -26,8 +26,12 @@ def mode(frequency_hz, damping):
     return lambda s: 1 / (1 + 2 * damping * s / w + (s / w) ** 2)
 
 
+CURVES = among(
+    *("saturation", "asymmetry", "dead-zone", "drive-saturation"),
+    *("sensor-nonlinearity", "hysteresis"),
+)
 FRONT, BACK = mode(30.0, 0.5), mode(55.0, 0.35)
-COUNT, DT = 2000, 1e-3
+COUNT, DT = 1000, 1e-3
 
 
 def behind(y, response):
@@ -108,7 +112,7 @@ def test_the_base_is_no_worse_than_one_block(split, clipped_records):
 
 def test_without_a_curve_inside_the_base_is_one_block():
     """The curve is before all that moves; where there is none, see the given base."""
-    records = measured(clipped, front=lambda s: 1 + 0 * s, count=COUNT // 2)
+    records = measured(clipped, front=lambda s: 1 + 0 * s)
     model, note = load_base("linear", records)
     assert "series" not in note
     assert [block.name for block in model.chain] == ["transfer-function", "gain"]
@@ -116,7 +120,7 @@ def test_without_a_curve_inside_the_base_is_one_block():
 
 def test_the_curve_is_named_in_its_place(split, clipped_records):
     model = split[0].with_hold("band-limited")
-    found = search("made", clipped_records.fit, model)
+    found = search("made", clipped_records.fit, model, vocabulary=CURVES)
     assert found.content["verdict"] == "named"
     first = found.content["effects"][0]
     assert (first["name"], first["place"]) == ("saturation", INSIDE)
@@ -140,7 +144,10 @@ def test_no_force_is_looked_for_where_the_curve_leaves_nothing(
     model = split[0].with_hold("band-limited")
     kinds = Quantities("force", "position")
     found = search(
-        "made", clipped_records.fit, model, unnamed_share=0.1, quantities=kinds
+        *("made", clipped_records.fit, model),
+        unnamed_share=0.1,
+        quantities=kinds,
+        vocabulary=CURVES,
     )
     assert found.content["effects"][0]["name"] == "saturation"
 

@@ -11,7 +11,7 @@ from hystbench.gap.bases.load import load_base
 from hystbench.gap.bases.unsigned import with_signs
 from hystbench.gap.records.evidence import Evidence
 from hystbench.record import Channel, Record
-from tests.gap.searched import search
+from tests.gap.searched import among, search
 
 DT, COUNT, NOISE = 0.02, 500, 0.02
 VOLTAGE, SPEED = Channel("voltage", "V"), Channel("speed", "rad/s")
@@ -68,7 +68,11 @@ def test_the_sensor_is_named_and_the_rest_is_noise():
     found, _ = evidence(np.abs)
     base, note = load_base("linear", found)
     assert "a sign that the sensor may not show" in note
-    answer = search("drive", found.fit, base, found.input_hold)
+    curves = among(
+        *("sensor-nonlinearity", "asymmetry", "saturation", "dead-zone", "hysteresis"),
+        *("drive-saturation", "calibration-error"),
+    )
+    answer = search("drive", found.fit, base, found.input_hold, vocabulary=curves)
     (effect,) = answer.content["effects"]
     assert effect["name"] == "sensor-nonlinearity"
     assert effect["blocks"] == ["unsigned-sensor"]
