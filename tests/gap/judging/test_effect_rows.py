@@ -207,10 +207,7 @@ def found_in(before, *behind):
     records = measured((before, *chain, *behind), 0.05)
     base = Model("rig", CURRENT, DISPLACEMENT, chain)
     # So little may stay that the search goes on to the last of them.
-    likely = among(
-        *("drive-lag", "eddy-diffusion", "sensor-lag", "resonance", "input-delay"),
-        *("creep", "hysteresis-shape"),
-    )
+    likely = among("drive-lag", "eddy-diffusion", "sensor-lag", "resonance")
     content = search(
         *("made", records, base),
         declared=0.05,
