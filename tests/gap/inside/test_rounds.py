@@ -174,7 +174,7 @@ def test_where_no_more_is_left_than_may_stay_no_chain_is_tried(
         quantities=kinds,
     )
     assert bool(calls) == chain
-    assert found.left.after > 1e-4**2
+    assert found.state.power(0.0) > 1e-4**2
     assert [item["name"] for item in found.content["effects"]] == ["friction"]
 
 

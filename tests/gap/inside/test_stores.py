@@ -36,7 +36,7 @@ from tests.gap.inside_host import search
 from tests.gap.searched import among
 from tests.gap.searched import search as decided
 
-DT, COUNT, FINE = 4.0, 800, 80
+DT, COUNT, FINE = 4.0, 600, 40
 NOISE = 0.02
 CHANNELS = Channel("pump", "V"), Channel("level", "V")
 
@@ -65,7 +65,9 @@ def tanks(root, height, seed=3, powers=None, rates=None, pump=False):
 
 def found(record):
     score = Score(
-        next(stores((record,), "zero-order", NOISE, 2)).sample, np.zeros((800, 0)), 4e-4
+        next(stores((record,), "zero-order", NOISE, 2)).sample,
+        np.zeros((COUNT, 0)),
+        4e-4,
     )
     host = best_host(list(stores((record,), "zero-order", NOISE, 2)), score)
     return chosen(search(host, score), score.floor), score
@@ -223,7 +225,8 @@ def test_of_several_records_each_may_begin_where_it_rests():
     t = np.arange(COUNT) * DT
     records = []
     for first in (2.0, 5.0):
-        u = first + np.where(t > 40, 0.8 * np.repeat(rng.normal(0, 1, 40), 20), 0.0)
+        steps = np.repeat(rng.normal(0, 1, COUNT // 20), 20)
+        u = first + np.where(t > 40, 0.8 * steps, 0.0)
         level = tank(u, (first / 0.8) ** 2)
         noisy = level + NOISE * rng.standard_normal(COUNT)
         records.append(Record("run", DT, u, noisy, *CHANNELS, "measured"))
@@ -285,15 +288,15 @@ def test_a_base_that_is_the_tangent_of_the_outflow_lacks_its_root(about):
 
     Nor where its numbers may be off by a tenth.
     """
-    rate, level = 0.9, 26.0
+    rate, level, count = 0.9, 26.0, 800
     rng = np.random.default_rng(4)
-    u = np.clip(4.5 + np.repeat(rng.normal(0, 1.5, COUNT // 20), 20), 0.5, 9)
+    u = np.clip(4.5 + np.repeat(rng.normal(0, 1.5, count // 20), 20), 0.5, 9)
     step, now, out = DT / FINE / 20, level, []
     for volts in u:
         out.append(now)
         for _ in range(FINE):
             now += step * (volts - rate * np.sqrt(max(now, 0.0)))
-    y = np.array(out) + NOISE * rng.standard_normal(COUNT)
+    y = np.array(out) + NOISE * rng.standard_normal(count)
     record = Record("run", DT / 20, u, y, *CHANNELS, "measured")
     slope = rate / (2 * np.sqrt(level))
     linear = Store(
@@ -363,7 +366,7 @@ def _ends(value):
 def test_a_drift_is_told_beside_the_outflow_of_a_tank():
     """A level sensor that drifts by a few percent had made the outflow unnamed."""
     rng = np.random.default_rng(5)
-    made, count = [], COUNT // 2
+    made, count = [], 400
     for k in range(2):
         u = np.repeat(rng.uniform(1.0, 4.0, count // 20), 20)
         level, now = np.empty(count), 5.0
