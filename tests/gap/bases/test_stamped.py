@@ -119,7 +119,7 @@ def test_the_spring_is_named_beside_both():
     """Held against its nearest rivals: other forces of the place."""
     about = first_halves(evidence())
     base, _ = load_base("linear", about)
-    known = among("stiffness-hardening", "stop", "asymmetry", "input-delay")
+    known = among("stiffness-hardening", "stop", "input-delay")
     found = closed_gap(about, base, Asked(vocabulary=known)).decision.content
     assert [item["name"] for item in found["effects"]] == ["stiffness-hardening"]
     assert found["verdict"] == "named"

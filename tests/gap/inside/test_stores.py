@@ -38,6 +38,7 @@ from tests.gap.searched import search as decided
 
 DT, COUNT, FINE = 4.0, 600, 40
 NOISE = 0.02
+LAWS = ["outflow", "overflow", "sensor-nonlinearity"]
 CHANNELS = Channel("pump", "V"), Channel("level", "V")
 
 
@@ -93,7 +94,7 @@ def test_the_law_may_be_in_either_of_a_slow_and_a_fast_store(powers):
     every = islice(hosts(begun, Quantities(output="level"), True, score), 3)
     best = min(
         (
-            chosen(search(host.fitted, score, other=host.other), score.floor)
+            chosen(search(host.fitted, score, LAWS, other=host.other), score.floor)
             for host in every
         ),
         key=lambda item: item.score,
