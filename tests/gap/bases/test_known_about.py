@@ -185,10 +185,11 @@ def test_a_hysteresis_that_is_a_little_off_is_no_effect(lag, names, parts):
 
 
 def test_beside_a_hum_a_base_that_is_off_is_re_tuned_too():
-    *fit, held = loops(1, 0.0, hum=0.05)
+    *fit, held = loops(0, 0.0, hum=0.05)
     plays = PrandtlIshlinskii(thresholds=tuple(THRESHOLDS), weights=tuple(WEIGHTS))
     content = closed_gap(Evidence("made", tuple(fit), (held,)), base(plays)).decision
     assert [x["name"] for x in content.content["effects"]] == ["mains-pickup"]
+    assert content.content["base_parameters"]
 
 
 def of_a_column():

@@ -116,10 +116,10 @@ def test_a_level_has_its_zero():
 
 
 def test_the_spring_is_named_beside_both():
-    """Held against its nearest rivals: other forces of the place."""
+    """Held against a curve before the mass and another timing."""
     about = first_halves(evidence())
     base, _ = load_base("linear", about)
-    known = among("stiffness-hardening", "stop", "input-delay")
+    known = among("stiffness-hardening", "asymmetry", "input-delay")
     found = closed_gap(about, base, Asked(vocabulary=known)).decision.content
     assert [item["name"] for item in found["effects"]] == ["stiffness-hardening"]
     assert found["verdict"] == "named"

@@ -100,15 +100,16 @@ LIKELY = Asked(
 """What is put in here, and what each of them may be taken for."""
 
 
-def closed(model, evidence, path):
+def closed(model, evidence, path, asked=LIKELY):
     path.write_text(model)
     base, _ = load_base(str(path), evidence)
-    return closed_gap(evidence, base, LIKELY).decision.content
+    return closed_gap(evidence, base, asked).decision.content
 
 
 def test_what_steps_miss_of_an_exact_model_is_no_effect(motions, tmp_path):
     size = float(np.sqrt(np.mean(motions[0][1] ** 2)))
-    content = closed(EXACT, evidence_of(motions, 1e-3 * size), tmp_path / "m.yaml")
+    evidence = evidence_of(motions, 1e-3 * size)
+    content = closed(EXACT, evidence, tmp_path / "m.yaml", Asked())
     assert content["effects"] == []
     assert content["verdict"] == "no-gap"
 
