@@ -136,10 +136,7 @@ def test_a_tank_whose_input_was_stamped_late_still_shows_its_outlet():
         made.append(Record(f"run-{k}", 2.0, u, y, *channels, "measured", "fit"))
     base, _ = load_base("linear", Evidence("tank", tuple(made), (), "zero-order"))
     kinds = Quantities("voltage", "level")
-    likely = among(
-        *("outflow", "overflow", "input-delay", "drive-lag", "sensor-lag"),
-        *("sensor-nonlinearity", "dead-zone", "drive-saturation"),
-    )
+    likely = among("outflow", "overflow", "input-delay", "sensor-nonlinearity")
     found = search(
         "tank", made, base, "zero-order", quantities=kinds, vocabulary=likely
     ).content
