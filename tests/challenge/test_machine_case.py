@@ -71,11 +71,24 @@ def test_a_mass_with_nothing_hidden_is_the_linear_equation_but_for_noise(seed):
         assert least < rms(left) < np.hypot(1.1 * case.truth["noise_rms"], own)
 
 
+def first_to_have(name):
+    """Give the first family that may have an effect, by whatever kind of case."""
+    return next(
+        family
+        for family in MACHINES
+        if name in (*effects_of("single", family), *effects_of("unlisted", family))
+    )
+
+
+#: Those of the vocabulary in every family; other effects, and forms of a group, which
+#: are one law wherever they act, in the first family that may have them.
 PAIRS = [
     (family, name, of_group)
     for family in MACHINES
     for name in (*effects_of("single", family), *effects_of("unlisted", family))
     for of_group in (False, True)
+    if family == first_to_have(name)
+    or (name in effects_of("single", family) and not of_group)
     # where it has no form of its own for the group, the case is the same
     if not of_group
     or GROUPS[1].allowed(IN_MACHINE[name], True)[0]
@@ -84,7 +97,7 @@ PAIRS = [
 
 
 @pytest.mark.parametrize(("family", "name", "of_group"), PAIRS)
-def test_every_effect_shows_in_every_family(family, name, of_group):
+def test_every_effect_shows_in_its_families(family, name, of_group):
     truth = case_of(family, name, seed=3, group=1, of_group=of_group).truth
     (effect,) = truth["effects"]
     assert (effect["name"], effect["place"]) == (name, IN_MACHINE[name].place)
@@ -96,7 +109,7 @@ def test_all_four_quantities_are_measured_and_loops_are_open_and_closed():
     machines = [
         draw_machine(family, np.random.default_rng(seed))
         for family in MACHINES
-        for seed in range(12)
+        for seed in range(6)
     ]
     outputs = {machine.output for machine in machines}
     assert outputs == {"position", "velocity", "acceleration", "force", "level"}

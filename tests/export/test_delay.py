@@ -16,7 +16,7 @@ from .test_steps import CHAINS, DT, INPUT, ROUND, TIME, chain_of, model_of
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler here")
 
-DELAYS = (1, 2, 4)
+DELAYS = (1, 4)
 MODELS = {name: model_of(name, chain) for name, chain in CHAINS.items()}
 
 

@@ -62,23 +62,18 @@ def simulate(kinds=tuple(KINDS), periods=3, seed=0):
     limit = number_of(kinds, "limit", np.inf)
     bounded = np.isfinite(limit)
     square = SPEED**2
-
-    def force(w):
-        """Give what drives the mass at an instant: saturated before, where that is."""
-        plain = size * fine[w % len(fine)]
-        return np.where(
-            bounded, np.where(bounded, limit, 1.0) * np.tanh(plain / limit), plain
-        )
+    loose, held = (
+        share * square * np.isfinite(most) for share, most in ((0.5, gap), (0.3, slip))
+    )
+    # What drives the masses at every instant: saturated before, where that is.
+    forces = np.outer(fine, size)
+    forces[:, bounded] = limit[bounded] * np.tanh(forces[:, bounded] / limit[bounded])
 
     def rate(state, driven):
         x, v, h = state
-        spring = square * (x + cubic * x**3)
-        spring = spring + square * (x / np.sqrt(1 + soft * x**2) - x)
-        spring = spring - 0.5 * square * np.where(
-            np.isfinite(gap), np.clip(x, -gap, gap), 0.0
-        )
+        spring = square * (cubic * x**3 + x / np.sqrt(1 + soft * x**2))
         # Bouc and Wen's spring in the place of a third of the stiffness.
-        spring = spring + 0.3 * square * np.where(np.isfinite(slip), h - x, 0.0)
+        spring += held * (h - x) - loose * np.clip(x, -gap, gap)
         damped = 2 * DAMPING * SPEED * v + coulomb * np.tanh(v / 0.2)
         inside = (np.abs(h) / slip) ** 2 * 0.5 * (1 + np.sign(v * h))
         return np.array([v, driven - spring - damped, v * (1 - inside)])
@@ -92,10 +87,12 @@ def simulate(kinds=tuple(KINDS), periods=3, seed=0):
             size * fine[place % len(fine)],
             state[0],
             state[1],
-            rate(state, force(place))[1],
+            rate(state, forces[place % len(forces)])[1],
         ]
         for j in range(STEPS):
-            first, middle, last = (force(place + 2 * j + i) for i in range(3))
+            first, middle, last = (
+                forces[(place + 2 * j + i) % len(forces)] for i in range(3)
+            )
             a = rate(state, first)
             b = rate(state + step / 2 * a, middle)
             c = rate(state + step / 2 * b, middle)

@@ -2,7 +2,14 @@
 
 from hystbench.gap import search as module
 from hystbench.gap.asked import Asked
+from hystbench.gap.effects import effects
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.vocabulary import Vocabulary
+
+
+def among(*names):
+    """Offer these effects alone, where a test is about what is told between them."""
+    return Vocabulary.of(sorted(set(effects()) - set(names)))
 
 
 def search(

@@ -18,6 +18,7 @@ from hystbench.gap.records.evidence import load_evidence
 from hystbench.model import load_model
 from hystbench.written import ENTRIES
 from tests.gap.closing import close_gap
+from tests.gap.searched import among
 
 READ_LAST = (
     *("gap", "records", "ladder", "black_box", "shortfall", "reason", "warnings"),
@@ -44,7 +45,8 @@ def folder(tmp_path_factory):
 
 def closed(folder, evidence, out):
     base = load_model(folder / "case" / "model.yaml")
-    close_gap(evidence, base, folder / out, report=False)
+    slow = among("creep", "drive-lag", "sensor-lag", "thermal-drift", "drift")
+    close_gap(evidence, base, folder / out, report=False, vocabulary=slow)
     content = json.loads((folder / out / "gap.json").read_text())
     files = {
         str(item.relative_to(folder / out))

@@ -13,6 +13,7 @@ from hystbench.blocks.preisach import Preisach
 from hystbench.blocks.sensor_lag import SensorLag
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.asked import Asked
 from hystbench.gap.bases.known_about import as_it_was, known_about
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.re_tuning_gain import re_tuned_words
@@ -20,10 +21,15 @@ from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.run import closed_gap
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record
+from tests.gap.searched import among
 
-DT, FINE, COUNT, NOISE = 1e-3, 10, 3000, 2e-3
+DT, FINE, COUNT, NOISE = 1e-3, 10, 1500, 2e-3
 LAG = 7e-3
 LATE_BY = 0.8  # samples
+LAGS = Asked(
+    vocabulary=among("sensor-lag", "drive-lag", "input-delay", "resonance", "creep")
+)
+"""What a lag beside a base that is off may be taken for."""
 
 
 def second_order(frequency_hz, damping):
@@ -58,7 +64,7 @@ def device(frequency_hz, late):
 def closed(model, frequency_hz=38.5, late=LATE_BY):
     *fit, held = device(frequency_hz, late)
     evidence = Evidence("made", tuple(fit), (held,), noise_rms=NOISE)
-    return closed_gap(evidence, model).decision
+    return closed_gap(evidence, model, LAGS).decision
 
 
 def named(model, **about):
@@ -163,11 +169,10 @@ def loops(seed, lag, hum=0.0):
 
 
 @pytest.mark.parametrize(("lag", "names"), [(0.0, []), (4e-3, ["sensor-lag"])])
-@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("parts", [1, 5])
-def test_a_hysteresis_that_is_a_little_off_is_no_effect(seed, lag, names, parts):
+def test_a_hysteresis_that_is_a_little_off_is_no_effect(lag, names, parts):
     """Into how many plays of the same thresholds it is split does not matter."""
-    *fit, held = loops(seed, lag)
+    *fit, held = loops(1, lag)
     plays = PrandtlIshlinskii(
         thresholds=tuple(np.repeat(THRESHOLDS, parts)),
         weights=tuple(np.repeat(WEIGHTS, parts) / parts),
@@ -179,12 +184,12 @@ def test_a_hysteresis_that_is_a_little_off_is_no_effect(seed, lag, names, parts)
     assert content["gap"]["after"] < 1.2 * NOISE * np.std(held.y)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_beside_a_hum_a_base_that_is_off_is_re_tuned_too(seed):
-    *fit, held = loops(seed, 0.0, hum=0.05)
+def test_beside_a_hum_a_base_that_is_off_is_re_tuned_too():
+    *fit, held = loops(0, 0.0, hum=0.05)
     plays = PrandtlIshlinskii(thresholds=tuple(THRESHOLDS), weights=tuple(WEIGHTS))
     content = closed_gap(Evidence("made", tuple(fit), (held,)), base(plays)).decision
     assert [x["name"] for x in content.content["effects"]] == ["mains-pickup"]
+    assert content.content["base_parameters"]
 
 
 def of_a_column():

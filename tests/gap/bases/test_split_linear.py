@@ -17,7 +17,7 @@ from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model, load_model
 from hystbench.quantities import Quantities
 from tests.gap.made import CURRENT, DISPLACEMENT, multisine, record, steady
-from tests.gap.searched import search
+from tests.gap.searched import among, search
 from tests.gap.small import block
 
 
@@ -26,6 +26,10 @@ def mode(frequency_hz, damping):
     return lambda s: 1 / (1 + 2 * damping * s / w + (s / w) ** 2)
 
 
+CURVES = among(
+    *("saturation", "asymmetry", "dead-zone", "drive-saturation"),
+    *("sensor-nonlinearity", "hysteresis"),
+)
 FRONT, BACK = mode(30.0, 0.5), mode(55.0, 0.35)
 COUNT, DT = 2000, 1e-3
 
@@ -116,7 +120,7 @@ def test_without_a_curve_inside_the_base_is_one_block():
 
 def test_the_curve_is_named_in_its_place(split, clipped_records):
     model = split[0].with_hold("band-limited")
-    found = search("made", clipped_records.fit, model)
+    found = search("made", clipped_records.fit, model, vocabulary=CURVES)
     assert found.content["verdict"] == "named"
     first = found.content["effects"][0]
     assert (first["name"], first["place"]) == ("saturation", INSIDE)
@@ -140,7 +144,10 @@ def test_no_force_is_looked_for_where_the_curve_leaves_nothing(
     model = split[0].with_hold("band-limited")
     kinds = Quantities("force", "position")
     found = search(
-        "made", clipped_records.fit, model, unnamed_share=0.1, quantities=kinds
+        *("made", clipped_records.fit, model),
+        unnamed_share=0.1,
+        quantities=kinds,
+        vocabulary=CURVES,
     )
     assert found.content["effects"][0]["name"] == "saturation"
 

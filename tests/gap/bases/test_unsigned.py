@@ -11,7 +11,7 @@ from hystbench.gap.bases.load import load_base
 from hystbench.gap.bases.unsigned import with_signs
 from hystbench.gap.records.evidence import Evidence
 from hystbench.record import Channel, Record
-from tests.gap.searched import search
+from tests.gap.searched import among, search
 
 DT, COUNT, NOISE = 0.02, 500, 0.02
 VOLTAGE, SPEED = Channel("voltage", "V"), Channel("speed", "rad/s")
@@ -68,7 +68,11 @@ def test_the_sensor_is_named_and_the_rest_is_noise():
     found, _ = evidence(np.abs)
     base, note = load_base("linear", found)
     assert "a sign that the sensor may not show" in note
-    answer = search("drive", found.fit, base, found.input_hold)
+    curves = among(
+        *("sensor-nonlinearity", "asymmetry", "saturation", "dead-zone", "hysteresis"),
+        *("drive-saturation", "calibration-error"),
+    )
+    answer = search("drive", found.fit, base, found.input_hold, vocabulary=curves)
     (effect,) = answer.content["effects"]
     assert effect["name"] == "sensor-nonlinearity"
     assert effect["blocks"] == ["unsigned-sensor"]
@@ -96,11 +100,12 @@ def test_a_level_is_no_speed_without_a_sign():
     random = np.random.default_rng(3)
     records = []
     for k in range(2):
-        u, level = steps((-0.5, 0.5, 1.0, 1.5), random), np.zeros(COUNT)
-        for i in range(COUNT - 1):
+        u = steps((-0.5, 0.5, 1.0, 1.5), random)[: COUNT // 2]
+        level = np.zeros(len(u))
+        for i in range(len(u) - 1):
             flow = max(u[i], 0.0) - 0.5 * np.sqrt(level[i])
             level[i + 1] = max(level[i] + 0.1 * flow, 0.0)
-        y = level + NOISE * random.standard_normal(COUNT)
+        y = level + NOISE * random.standard_normal(len(u))
         records.append(Record(f"r{k}", DT, u, y, VOLTAGE, SPEED, "measured", "fit"))
     found = Evidence("tank", tuple(records), (), "zero-order")
     assert not identified_linear(found).signed

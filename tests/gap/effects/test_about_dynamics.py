@@ -7,11 +7,15 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.model import Model
 from hystbench.record import Channel, Record
 from tests.gap.made import play
-from tests.gap.searched import search
+from tests.gap.searched import among, search
 
 DT, COUNT, NOISE = 0.1, 800, 0.003
 POWER, WAY = Channel("power", "W"), Channel("way", "mm")
 LAG = TransferFunction(numerator=(1.0,), denominator=(1.5, 1.0), hold="zero-order")
+LIKELY = among(
+    *("asymmetry", "backlash", "hysteresis", "creep", "saturation", "dead-zone"),
+    *("sensor-nonlinearity", "drive-lag", "sensor-lag", "friction"),
+)
 
 
 def loop(x):
@@ -47,7 +51,7 @@ def named(made, middle=0.0):
         y = made(u) + NOISE * random.standard_normal(COUNT)
         records.append(Record(f"run-{k}", DT, u, y, POWER, WAY, "measured", "fit"))
     base = Model("lag", POWER, WAY, (LAG,))
-    return search("wire", tuple(records), base, "zero-order").content
+    return search("wire", tuple(records), base, "zero-order", vocabulary=LIKELY).content
 
 
 def test_a_square_about_a_bias_is_an_asymmetry():

@@ -6,9 +6,9 @@ import pytest
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.model import Model
 from hystbench.record import Channel, Record
-from tests.gap.searched import search
+from tests.gap.searched import among, search
 
-DT, COUNT, NOISE = 1e-3, 3000, 0.004
+DT, COUNT, NOISE = 1e-3, 1500, 0.004
 FINE = 40
 """Steps of the equations between two samples."""
 WEIGHT, YIELD, LAG_S = -0.45, 0.4, 8e-3
@@ -66,7 +66,10 @@ def records(loop):
 
 def named(loop):
     """Search a gap; give the one effect that is named, and its form."""
-    content = search("stage", tuple(records(loop)), BASE, "linear").content
+    likely = among("hysteresis", "backlash", "asymmetry", "saturation", "sensor-lag")
+    content = search(
+        "stage", tuple(records(loop)), BASE, "linear", vocabulary=likely
+    ).content
     (effect,) = content["effects"]
     first = content["ranking"][0]
     assert first["name"] == effect["name"] == "hysteresis"

@@ -7,12 +7,16 @@ from hystbench.blocks.exponential_curve import ExponentialCurve
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.model import Model
 from hystbench.record import Channel, Record
-from tests.gap.searched import search
+from tests.gap.searched import among, search
 
 DT, COUNT, NOISE = 0.1, 800, 0.003
 OPENING, FLOW = Channel("opening", "1"), Channel("flow", "1")
 PIPE = TransferFunction(
     numerator=(1.0,), denominator=(0.75, 2.0, 1.0), hold="zero-order"
+)
+CURVES = among(
+    *("asymmetry", "saturation", "sensor-nonlinearity", "dead-zone"),
+    *("drive-saturation", "hysteresis"),
 )
 
 
@@ -30,7 +34,7 @@ def records(curvature):
 @pytest.mark.parametrize("curvature", [2.0, -2.0])
 def test_it_is_named_with_its_curvature(curvature):
     base = Model("pipe", OPENING, FLOW, (PIPE,))
-    answer = search("valve", records(curvature), base, "zero-order")
+    answer = search("valve", records(curvature), base, "zero-order", vocabulary=CURVES)
     (effect,) = answer.content["effects"]
     assert (effect["name"], effect["place"]) == ("asymmetry", "material")
     assert effect["blocks"] == ["exponential-curve"]

@@ -7,7 +7,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.records.evidence import Evidence
 from hystbench.record import Channel, Record
-from tests.gap.searched import search
+from tests.gap.searched import among, search
 
 DT, COUNT, NOISE = 0.5, 1000, 0.02
 FLOW, ACID = Channel("flow", "l/min"), Channel("acid", "1")
@@ -27,7 +27,11 @@ def test_a_strong_one_behind_an_identified_base_is_named_and_leaves_noise():
         records.append(Record(f"run-{k}", DT, u, y, FLOW, ACID, "measured", "fit"))
     evidence = Evidence("mixer", tuple(records), (), "zero-order")
     base, _ = load_base("linear", evidence)
-    answer = search("mixer", evidence.fit, base, evidence.input_hold)
+    curves = among(
+        *("saturation", "asymmetry", "sensor-nonlinearity", "dead-zone"),
+        *("drive-saturation", "calibration-error"),
+    )
+    answer = search("mixer", evidence.fit, base, evidence.input_hold, vocabulary=curves)
     (effect,) = answer.content["effects"]
     assert effect["name"] == "saturation"
     left = [record.y - answer.model.simulate(record.u, record.dt) for record in records]

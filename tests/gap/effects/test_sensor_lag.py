@@ -8,13 +8,14 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.model import Model
 from hystbench.record import Channel, Record
-from tests.gap.searched import search
+from tests.gap.searched import among, search
 
 DT, COUNT, NOISE = 1e-3, 1500, 0.003
 FORCE, PLACE = Channel("force", "N"), Channel("position", "mm")
 POLE = TransferFunction(numerator=(1.0,), denominator=(0.02, 1.0), hold="linear")
 CORNER = 1.0 / (2 * np.pi * 40.0)
 T = DT * np.arange(COUNT)
+LAGS = among("sensor-lag", "drive-lag", "input-delay", "resonance", "creep")
 
 
 def records(down):
@@ -40,7 +41,8 @@ POLES = {
 def test_a_filter_of_second_order_is_a_sensor_that_lags(damping, base):
     block, down = POLES[base]
     given = records(np.polymul(down, [CORNER**2, 2 * damping * CORNER, 1.0]))
-    answer = search("sensor", given, Model("base", FORCE, PLACE, (block,)), "linear")
+    base = Model("base", FORCE, PLACE, (block,))
+    answer = search("sensor", given, base, "linear", vocabulary=LAGS)
     (effect,) = answer.content["effects"]
     # Behind a linear base the drive's filter and the sensor's are one and the same.
     assert {effect["name"], *effect["cannot_be_told_from"]} == {
@@ -54,7 +56,8 @@ def test_a_filter_of_second_order_is_a_sensor_that_lags(damping, base):
 
 def test_a_lag_of_first_order_has_no_damping():
     given = records(np.polymul([0.02, 1.0], [0.004, 1.0]))
-    answer = search("sensor", given, Model("base", FORCE, PLACE, (POLE,)), "linear")
+    base = Model("base", FORCE, PLACE, (POLE,))
+    answer = search("sensor", given, base, "linear", vocabulary=LAGS)
     (effect,) = answer.content["effects"]
     assert "sensor-lag" in (effect["name"], *effect["cannot_be_told_from"])
     assert list(effect["parameters"]) == ["time_constant_s"]

@@ -1,6 +1,6 @@
 """A force that acts in more modes than one."""
 
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.record import Channel, Record
 
 DT, NOISE = 0.01, 1e-6
-TIME = np.arange(1500) * DT
+TIME = np.arange(1000) * DT
 FORCE, MOTION = Channel("force", "N"), Channel("motion", "m")
 
 
@@ -71,6 +71,7 @@ def state_of(truth, chain, free, added):
     )
 
 
+@cache
 def found_with(second):
     """Give what a search has found that put a joint into the first mode alone."""
     host, joint = Mechanism(**FIRST, hold="linear"), slips(FIRST)

@@ -18,6 +18,7 @@ from hystbench.gap.thresholds import CERTAIN
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
+from tests.gap.searched import among
 from tests.gap.searched import search as decided
 
 DT, COUNT, NOISE = 0.005, 2048, 0.02
@@ -90,7 +91,13 @@ def test_a_soft_limit_before_a_mass_is_the_drives():
         records.append(Record(f"r{k}", 1e-3, u, y, *CHANNELS, "measured", "fit"))
     base = Model("rig", *CHANNELS, (mass,))
     moves = Quantities("force", "position")
-    found = decided("rig", tuple(records), base, quantities=moves).content
+    curves = among(
+        *("drive-saturation", "saturation", "asymmetry", "dead-zone"),
+        *("stiffness-hardening", "sensor-nonlinearity"),
+    )
+    found = decided(
+        "rig", tuple(records), base, quantities=moves, vocabulary=curves
+    ).content
     (effect,) = found["effects"]
     assert (effect["name"], effect["place"]) == ("drive-saturation", "drive")
     assert effect["parameters"]["level"]["value"] == pytest.approx(4.0, rel=0.01)

@@ -25,7 +25,7 @@ from hystbench.model import Model, load_model
 from hystbench.model_content import Provenance
 from hystbench.schema import check_against_schema
 from tests.gap.made import CURRENT, DISPLACEMENT
-from tests.gap.searched import search
+from tests.gap.searched import among, search
 from tests.gap.small import MODE, block, hysteresis, measured, state_of
 
 NOISE = 0.02
@@ -207,7 +207,13 @@ def found_in(before, *behind):
     records = measured((before, *chain, *behind), 0.05)
     base = Model("rig", CURRENT, DISPLACEMENT, chain)
     # So little may stay that the search goes on to the last of them.
-    content = search("made", records, base, declared=0.05, unnamed_share=1e-4).content
+    likely = among("drive-lag", "eddy-diffusion", "sensor-lag", "resonance")
+    content = search(
+        *("made", records, base),
+        declared=0.05,
+        unnamed_share=1e-4,
+        vocabulary=likely,
+    ).content
     return through_a_file(content)
 
 

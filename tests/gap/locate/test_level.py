@@ -68,6 +68,12 @@ def moving(compared):
     return take_levels(take_samples(compared, noise_floor(compared)))
 
 
+@pytest.fixture(scope="module")
+def hardening(oscillators):
+    (mode,) = moving(records(oscillators["hardening"]))
+    return mode
+
+
 @pytest.mark.parametrize(
     ("kind", "unit"),
     [
@@ -84,10 +90,10 @@ def test_what_moves_tells_the_class(oscillators, kind, unit):
 
 @pytest.mark.parametrize(("left", "kind"), [(0.9, "hardening"), (0.1, "Coulomb")])
 def test_a_stiffness_that_moves_more_than_the_damping_is_no_friction(
-    oscillators, left, kind
+    hardening, left, kind
 ):
     """Of a stop that a sweep meets, the damping by power falls as well."""
-    (mode,) = moving(records(oscillators["hardening"]))
+    mode = hardening
     rate = mode.modes[0].power_damping * mode.modes[0].frequency
     fallen = [
         replace(
@@ -131,10 +137,9 @@ def test_numbers_of_a_linear_mode_are_right_within_their_errors(oscillators):
     assert mode.errors[:, 0].max() < 0.01
 
 
-def test_a_curved_spring_takes_no_power(oscillators):
+def test_a_curved_spring_takes_no_power(hardening):
     """Its peak is wider than the damping makes it; power in is that of the damping."""
-    (mode,) = moving(records(oscillators["hardening"]))
-    third = mode.modes[2]
+    third = hardening.modes[2]
     assert third.damping > 2 * DAMPING
     rate = third.power_damping * third.frequency
     assert abs(rate / (DAMPING * HERTZ) - 1) < 3 * third.errors[2]

@@ -23,7 +23,7 @@ from hystbench.gap.simulation.reshape import reshapings
 from hystbench.gap.simulation.simulation import Simulation
 from tests.gap.halved import first_halves
 from tests.gap.made import CURRENT, record, sine
-from tests.gap.searched import search
+from tests.gap.searched import among, search
 from tests.gap.small import block, hysteresis, measured, records
 
 SEED = 1
@@ -126,7 +126,11 @@ def test_a_loop_of_the_wrong_shape_is_no_effect(seen):
 
 def test_a_curve_of_the_material_lies_behind_its_loop(seen):
     fit, base = seen(("saturation",), "function")
-    content = search("hidden", fit, base).content
+    curves = among(
+        *("saturation", "asymmetry", "drive-saturation", "sensor-nonlinearity"),
+        *("hysteresis-shape", "stiffness-hardening"),
+    )
+    content = search("hidden", fit, base, vocabulary=curves).content
     assert content["verdict"] == "named"
     (effect,) = content["effects"]
     assert (effect["name"], effect["place"]) == ("saturation", "material")
