@@ -81,7 +81,7 @@ def refit(
     """
     own = [k for k, free in enumerate(state.free) if free.block in state.places_added]
     best = since = score_of(state, score)
-    tangents, taken, least = lent, 0, 0
+    tangents, taken, least = None if lent is None else lent.copy(), 0, 0
     for left in reversed(range(MENDED * rounds if state.free else 0)):
         anew = tangents is None
         if tangents is None:
@@ -89,7 +89,7 @@ def refit(
         else:
             tangents[:, own] = state.tangents_of(own)
         size = sizes(state, tangents)
-        before = best
+        begun, before = state, best
         for level in range(least, len(DAMPING)):
             found = score.amplitudes(
                 state.residual,
@@ -108,7 +108,6 @@ def refit(
             # does not tell would go anywhere.
             idle = value > best - ENOUGH and np.any(np.abs(found.values) > size)
             if value <= best and not idle:
-                tangents = mended(tangents, state, moved, size)
                 state, best, least = moved, value, max(level - 1, 0)
                 break
         gained = before - best
@@ -120,6 +119,8 @@ def refit(
             if anew or lent is not None or as_good or taken == rounds:
                 break
             tangents = None
+        else:
+            tangents = mended(tangents, begun, state, size)
     return state, best
 
 
