@@ -108,7 +108,18 @@ def save(figure: Figure, path: Path) -> None:
     plain_ticks(figure)
     with atomic_path(path) as temporary:
         figure.savefig(temporary, metadata=_METADATA[path.suffix])
-    figure.set_layout_engine("none")
+    keep_layout(figure)
+
+
+def keep_layout(figure: Figure) -> None:
+    """Let a figure stay as it is laid out.
+
+    It has no layout engine then. With the one that ``"none"`` gives, matplotlib would
+    draw all twice, the first time for nothing.
+    """
+    off = {"figure.constrained_layout.use": False, "figure.autolayout": False}
+    with mpl.rc_context(off):
+        figure.set_layout_engine(None)
 
 
 class _PlainTicks(ScalarFormatter):

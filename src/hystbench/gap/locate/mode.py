@@ -18,6 +18,7 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import fft
 
 from hystbench.gap.records.scored_samples import Compared, whole_periods
@@ -321,8 +322,6 @@ def _peaks(lines: LevelLines) -> list[float]:
 
     The ends of the band count: a mode may be highest there.
     """
-    from scipy.signal import find_peaks  # late: it takes long to load
-
     at, power = lines.frequency[lines.excited], np.abs(lines.y[lines.excited]) ** 2
     if not len(at):
         return []
@@ -330,6 +329,17 @@ def _peaks(lines: LevelLines) -> list[float]:
     ends = np.searchsorted(at, around, "right")
     sums = np.concatenate([[0.0], np.cumsum(power)])
     smooth = (sums[ends[1]] - sums[ends[0]]) / (ends[1] - ends[0])
-    tops = find_peaks([0.0, *smooth, 0.0])[0] - 1
+    tops = _tops(smooth)
     strongest = tops[np.argsort(-smooth[tops])][:MOST_PEAKS]
     return [float(at[top]) for top in strongest]
+
+
+def _tops(power: FloatArray) -> NDArray[np.intp]:
+    """Give where a power is highest among its neighbours, in the middle of a level.
+
+    As scipy.signal.find_peaks, which takes a fifth of a search's time to load.
+    """
+    rises = np.diff([0.0, *power, 0.0])
+    steps = np.flatnonzero(rises)
+    up, down = rises[steps[:-1]] > 0, rises[steps[1:]] < 0
+    return (steps[:-1] + steps[1:] - 1)[up & down] // 2

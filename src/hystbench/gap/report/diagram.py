@@ -11,7 +11,15 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch
 from matplotlib.path import Path
 
-from hystbench.figures.style import BLACK, BLUE, GREY, ORANGE, PAGE, axis_label
+from hystbench.figures.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    ORANGE,
+    PAGE,
+    axis_label,
+    keep_layout,
+)
 from hystbench.gap.report.diagram_layout import (
     NAME_LINE,
     NAME_POINTS,
@@ -61,7 +69,7 @@ def figure_of(model: Model, gap: Mapping[str, Any]) -> Figure:
     diagram = layout(found, axis_label(model.input), axis_label(model.output), PAGE)
     size = (diagram.width, diagram.height + KEY_INCHES)
     figure = Figure(figsize=size)
-    figure.set_layout_engine("none")  # all is in its place
+    keep_layout(figure)  # all is in its place
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
     axes.set_xlim(0.0, diagram.width)

@@ -19,11 +19,13 @@ from hystbench.figures.style import (
     PAGE,
     VERMILION,
     in_style,
+    keep_layout,
     legend_above,
     plain_ticks,
     thin,
     unit_text,
 )
+from hystbench.gap.locate.frequency import averaged_powers, hann
 from hystbench.gap.report.read import HoldOut
 from hystbench.report.picture import svg_source
 
@@ -75,7 +77,7 @@ def embedded(figure: Figure, words: str, *, clear: bool = False) -> EmbeddedPict
     layout = figure.get_layout_engine()
     if layout is not None:  # else all would be drawn twice, once to lay it out
         layout.execute(figure)
-        figure.set_layout_engine("none")
+        keep_layout(figure)
     about = {"Date": None, "Creator": None}
     figure.savefig(buffer, format="svg", metadata=about, transparent=clear)
     return EmbeddedPicture(svg_source(buffer.getvalue()), words)
@@ -186,17 +188,17 @@ def left_over_time(panel: Axes, table: HoldOut, part: slice) -> None:
 
 
 def _spectrum(panel: Axes, table: HoldOut) -> None:
-    from scipy.signal import welch  # late: it takes long to load
-
     count = len(table.time_s)
     dt = float(table.time_s[-1] - table.time_s[0]) / (count - 1)
-    about = {"fs": 1 / dt, "nperseg": min(count, max(16, count // 4)), "detrend": False}
+    size = min(count, max(16, count // 4))
+    frequency = np.arange(1, size // 2 + 1) / (size * dt)
     for output, color, line in (
         (table.before, BEFORE, "--"),
         (table.after, AFTER, "-"),
     ):
-        frequency, power = welch(table.measured - output, **about)
-        panel.plot(frequency[1:], np.sqrt(power[1:]), line, color=color)
+        left = (table.measured - output)[None]
+        power = averaged_powers(left, hann(size), size - size // 2)[0, 0, 1:].real
+        panel.plot(frequency, np.sqrt(power * size * dt), line, color=color)
     # White noise of one rms has this density up to half the sampling frequency.
     panel.axhline(table.floor * np.sqrt(2 * dt), color=FLOOR, linestyle=":")
     logarithmic(panel, "xy")
