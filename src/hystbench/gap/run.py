@@ -16,7 +16,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.lead import without_leads
-from hystbench.gap.bases.linear import is_identified
+from hystbench.gap.bases.linear import IdentifiedModel, is_identified
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.on_records import compared_records, run_base, start_state
 from hystbench.gap.fitting.own_steps import too_long_steps
@@ -303,7 +303,7 @@ def _decided_in(folder: Path, evidence: Evidence, base: Model) -> Decided:
     first = base
     if kept["identified"]:
         named = f"{folder / NAMED}: identified"
-        first = Model.from_mapping(kept["identified"], named)
+        first = IdentifiedModel.from_mapping(kept["identified"], named)
     vocabulary = Vocabulary.of(kept["without"], kept["with"])
     vocabulary = vocabulary.in_device(evidence.device_kind)
     built_in = BuiltIn.of_mapping(kept["built_in"]) if kept["built_in"] else None

@@ -15,6 +15,7 @@ from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.known_about import as_it_was, known_about
+from hystbench.gap.bases.linear import IdentifiedModel
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.re_tuning_gain import re_tuned_words
 from hystbench.gap.records.evidence import Evidence
@@ -202,7 +203,7 @@ def of_a_column():
     [
         base(exact=True),
         base(free=("gain.value",)),
-        replace(base(), name="linear"),
+        IdentifiedModel("linear", CURRENT, DISPLACEMENT, base().chain),
         base(of_a_column()),
     ],
     ids=["exact", "says what is free", "identified", "a column"],

@@ -8,13 +8,13 @@ import pytest
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.lead import without_leads
+from hystbench.gap.bases.linear import IdentifiedModel
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.ladder import FitResult
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.run import as_found
-from hystbench.model import Model
 from hystbench.quantities import NONE_KNOWN, Quantities
 from hystbench.record import Channel, Record
 from tests.gap.small import block
@@ -35,7 +35,7 @@ def record(start, use="fit", count=2000):
 
 
 def linear(free=FREE):
-    return Model("linear", *CHANNELS, (LAG,), free)
+    return IdentifiedModel("linear", *CHANNELS, (LAG,), free)
 
 
 def leads(base, *records, quantities=NONE_KNOWN):
@@ -95,7 +95,7 @@ HEAVY = Mechanism(mass=1.0, damping=6.0, stiffness=100.0)
 def sprung(cubic):
     """A mass whose spring may harden."""
     forces = (block("stiffness", quadratic=0.0, cubic=cubic),) if cubic else ()
-    return Model("linear", *CHANNELS, (HEAVY, *forces), ("mechanism.mass",))
+    return IdentifiedModel("linear", *CHANNELS, (HEAVY, *forces), ("mechanism.mass",))
 
 
 def middle_of_a_motion():
@@ -133,7 +133,7 @@ def test_forces_in_a_free_mass_leave_leads_of_both_uses_out_alike():
     held = replace(record(537, "hold-out"), y=fit.y)
     free = Mechanism(mass=0.3, damping=1.0, stiffness=0.0, output="velocity")
     found = FitResult(
-        Model("linear", *CHANNELS, (free,), ("mechanism.mass",)),
+        IdentifiedModel("linear", *CHANNELS, (free,), ("mechanism.mass",)),
         ModelState((free,), (fit,), ScoredSamples.of((fit,))),
         Floor(0.001, "declared"),
         None,

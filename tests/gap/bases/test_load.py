@@ -13,7 +13,12 @@ from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.bases import load as bases
-from hystbench.gap.bases.linear import Linear, identified_linear
+from hystbench.gap.bases.linear import (
+    IdentifiedModel,
+    Linear,
+    identified_linear,
+    is_identified,
+)
 from hystbench.gap.bases.load import identified_gpi, load_base
 from hystbench.gap.bases.spectral import Spectra, fit_ratio, stable
 from hystbench.gap.records.evidence import Evidence
@@ -71,6 +76,18 @@ def test_a_base_is_identified_without_the_hold_out_records_in_hand(word, monkeyp
     with pytest.raises(InputError, match="enough"):
         load_base(word, evidence(record(np.arange(64.0), np.arange(64.0))))
     assert [records.hold_out for records in given] == [()]
+
+
+def test_a_file_that_is_named_linear_was_not_identified(tmp_path):
+    """Its numbers are the user's: re-tuning them is no part of what was fitted."""
+    known = record(steady(multisine(1)), steady(multisine(1)))
+    block = TransferFunction(numerator=(1.0,), denominator=(1.0, 50.0))
+    free = ("transfer-function.numerator",)
+    file = tmp_path / "m.yaml"
+    Model("linear", known.input, known.output, (block,), free).save(file)
+    base, _ = load_base(str(file), evidence(known))
+    assert base.free == free
+    assert not is_identified(base)
 
 
 class TestLinear:
@@ -536,7 +553,7 @@ def test_of_many_poles_the_denominator_is_not_free(monkeypatch):
         block = TransferFunction(numerator=(1.0,), denominator=tuple(down.tolist()))
         chain = (block, Gain(value=1.0, offset=0.0))
         return Linear(
-            Model("linear", known.input, known.output, chain), "", 0.0, 0.0, 0.0
+            IdentifiedModel("linear", known.input, known.output, chain), "", 0, 0, 0
         )
 
     monkeypatch.setattr(bases, "identified_linear", identified)

@@ -17,6 +17,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.resonance import Resonance
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.bases.linear import IdentifiedModel
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.fitting.least_squares import Fitted
@@ -669,7 +670,7 @@ def test_a_spring_whose_acceleration_is_measured_is_no_friction():
         y = mode.simulate(u, u, DT) + NOISE * random.standard_normal(1600)
         given.append(record(f"{k}", u, y, ("N", "m/s^2")))
     start = transfer(tuple(given))
-    base = Model("linear", given[0].input, given[0].output, start.chain)
+    base = IdentifiedModel("linear", given[0].input, given[0].output, start.chain)
     moves = Quantities("force", "acceleration")
     found = named_inside(base, start, NOISE, moves, True)
     assert found is None or not found.named.state.added

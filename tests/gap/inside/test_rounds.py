@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from hystbench.gap import search as search_module
+from hystbench.gap.bases.linear import IdentifiedModel
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added
@@ -206,7 +207,7 @@ def test_forces_are_looked_for_again_without_the_starts_that_they_show(monkeypat
         Record(f"{k}", 0.01, u[k:], y[k:], *channels, "measured", "fit")
         for k in (0, 530)
     )
-    base = Model("linear", *channels, (host,), ("mechanism.mass",))
+    base = IdentifiedModel("linear", *channels, (host,), ("mechanism.mass",))
     seen, look = spring_found_once(host, spring, "lead")
     monkeypatch.setattr(search_module, "named_inside", look)
     kinds = Quantities("force", "position")
@@ -245,7 +246,7 @@ def test_what_drives_a_free_mass_may_be_bent(linear, monkeypatch):
     u = 30 * np.sin(3.1 * 0.01 * np.arange(2000))
     channels = Channel("valve", "V"), Channel("x", "mm")
     record = Record("r", 0.01, u, mass.simulate(u, u, 0.01), *channels, "measured")
-    base = Model("linear", *channels, (mass,), ("mechanism.mass",))
+    base = IdentifiedModel("linear", *channels, (mass,), ("mechanism.mass",))
     seen = []
 
     def start_state(records, base, hold, declared, offered):

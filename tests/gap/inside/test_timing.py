@@ -7,6 +7,7 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.bases.linear import IdentifiedModel
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
@@ -20,7 +21,6 @@ from hystbench.gap.inside.timing import (
 )
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.scored_samples import ScoredSamples
-from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 from tests.gap.searched import among, search
@@ -28,7 +28,7 @@ from tests.gap.searched import among, search
 DT, COUNT, NOISE = 0.01, 1500, 2e-3
 CHANNELS = Channel("force", "N"), Channel("position", "m")
 MASS = Mechanism(mass=0.5, damping=1.5, stiffness=60.0)
-BASE = Model("linear", *CHANNELS, (MASS,), ("mechanism.mass",))
+BASE = IdentifiedModel("linear", *CHANNELS, (MASS,), ("mechanism.mass",))
 
 
 def moved(later):

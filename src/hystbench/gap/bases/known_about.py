@@ -11,7 +11,7 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.simulator import Simulator
-from hystbench.gap.bases.linear import LINEAR
+from hystbench.gap.bases.linear import IdentifiedModel
 from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.thresholds import ABOUT
 from hystbench.model import Model
@@ -43,7 +43,7 @@ def known_about(base: Model, records: Sequence[Record]) -> Model | None:
         one.
     """
     dear = any(isinstance(x, Simulator) or not x.reruns for x in base.chain)
-    if base.free or base.exact or dear or base.name == LINEAR:
+    if base.free or base.exact or dear or isinstance(base, IdentifiedModel):
         return None
     chain = in_time(base.chain, LATE * min(record.dt for record in records))
     model = replace(base, chain=chain, provenance={})

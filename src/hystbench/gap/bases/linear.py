@@ -38,9 +38,14 @@ LINEAR = "linear"
 """Name of the base that is identified as a linear model."""
 
 
+@dataclass(frozen=True)
+class IdentifiedModel(Model):
+    """A linear model that was identified from the fit records, with the gap in them."""
+
+
 def is_identified(base: Model) -> bool:
-    """Tell whether a base is the linear model that was identified from the records."""
-    return base.name == LINEAR and bool(base.free)
+    """Tell whether a base was identified from the records and may be re-tuned."""
+    return isinstance(base, IdentifiedModel) and bool(base.free)
 
 
 class Linear(NamedTuple):
@@ -165,7 +170,7 @@ def linear_of(evidence: Evidence) -> Linear:
         note += f"; its input is taken {half}a sample {when}"
         delay = InputDelay.by(orders.late * evidence.fit[0].dt, evidence.input_hold)
         chain = (delay, *chain)
-    model = Model(LINEAR, evidence.input, evidence.output, chain)
+    model = IdentifiedModel(LINEAR, evidence.input, evidence.output, chain)
     return Linear(model, note, fit, fold, still)
 
 

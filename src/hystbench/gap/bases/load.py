@@ -22,7 +22,7 @@ from hystbench.blocks.simulator import Simulator
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.bases.kinds import COMMAND, IDENTIFIED, kind_of_base
-from hystbench.gap.bases.linear import identified_linear
+from hystbench.gap.bases.linear import IdentifiedModel, identified_linear
 from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.bases.split_linear import split_given
 from hystbench.gap.cache import records_digest, remembered
@@ -60,7 +60,8 @@ def load_base(text: str | Model, evidence: Evidence) -> tuple[Model, str]:
     if isinstance(text, Model):
         model, note = checked_base(text, text.name, evidence), f"base {text.name}"
     elif text in IDENTIFIED:
-        return _kept(["base", text], deciding, lambda: _identified(text, deciding))
+        of = IdentifiedModel if text == "linear" else Model
+        return _kept(["base", text], deciding, lambda: _identified(text, deciding), of)
     else:
         model, note = given_base(text, evidence)
     if not isinstance(model.chain[0], TransferFunction):
@@ -71,7 +72,10 @@ def load_base(text: str | Model, evidence: Evidence) -> tuple[Model, str]:
 
 
 def _kept(
-    about: list[str], evidence: Evidence, compute: Callable[[], tuple[Model, str]]
+    about: list[str],
+    evidence: Evidence,
+    compute: Callable[[], tuple[Model, str]],
+    of: type[Model] = Model,
 ) -> tuple[Model, str]:
     """Compute a base from the fit records, or look up what an earlier run computed."""
     return remembered(
@@ -83,7 +87,7 @@ def _kept(
         ],
         compute,
         lambda found: [found[0].to_mapping(), found[1]],
-        lambda kept: (Model.from_mapping(kept[0], "a base that was kept"), kept[1]),
+        lambda kept: (of.from_mapping(kept[0], "a base that was kept"), kept[1]),
     )
 
 
