@@ -1,13 +1,26 @@
 """Folders are written whole or not at all."""
 
 import os
+import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from hystbench.compare.rows import read_rows
 from hystbench.errors import InputError
-from hystbench.files import atomic_path, digest, whole_folder, write_text
+from hystbench.files import (
+    atomic_path,
+    digest,
+    read_json,
+    whole_folder,
+    write_csv,
+    write_json,
+    write_text,
+)
+from hystbench.record import load_record
 from hystbench.written import ENTRIES, check_writable, entry_of, is_ours
+from tests.gap.made import record
 
 OURS = ("result.txt", "page.txt", "parts/*.csv")
 
@@ -187,3 +200,39 @@ def test_the_list_is_no_content_of_a_folder(tmp_path):
     write(tmp_path / "plain", NEW)
     write_ours(tmp_path / "ours", NEW)
     assert digest(tmp_path / "ours") == digest(tmp_path / "plain")
+
+
+class TestReading:
+    """What was edited may no longer hold what a job reads from it."""
+
+    TOLD = "changed since hystbench wrote it; move it away, and the run makes it again"
+
+    def test_json_that_was_edited_is_refused(self, tmp_path):
+        file = tmp_path / "run.json"
+        write_json(file, {"diverged": False})
+        assert read_json(file) == {"diverged": False}
+        file.write_text("{}")
+        with pytest.raises(InputError, match=f"^{re.escape(str(file))}: {self.TOLD}$"):
+            read_json(file)
+
+    def test_json_of_somebody_else_may_hold_anything(self, tmp_path):
+        file = tmp_path / "mine.json"
+        file.write_text("{}")
+        assert read_json(file) == {}
+
+    def test_a_table_that_was_edited_is_refused(self, tmp_path):
+        file = tmp_path / "cells.csv"
+        write_csv(file, ("signal", "rms"), [("sine", 1.0)])
+        assert read_rows(file, ("signal",)) == [{"signal": "sine", "rms": "1.0"}]
+        file.write_text("signal,rms\nsine,0.0\n")
+        with pytest.raises(InputError, match=self.TOLD):
+            read_rows(file, ("signal",))
+
+    def test_a_record_that_was_edited_is_refused(self, tmp_path):
+        file = tmp_path / "sine.npz"
+        made = record(np.arange(5.0), np.arange(5.0))
+        made.save(file)
+        assert load_record(file).name == made.name
+        file.write_bytes(file.read_bytes()[:-9])
+        with pytest.raises(InputError, match=self.TOLD):
+            load_record(file)

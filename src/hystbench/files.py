@@ -20,6 +20,7 @@ from hystbench.written import (
     ENTRIES,
     TEMPORARY,
     check_free,
+    check_unchanged,
     check_writable,
     forget,
     is_input,
@@ -204,8 +205,9 @@ def read_json(path: str | Path) -> Any:
     Raises
     ------
     InputError
-        If it is none.
+        If it is none, or is hystbench's own and was changed.
     """
+    check_unchanged(path)
     try:
         return json.loads(Path(path).read_text(encoding="utf-8"))
     except ValueError as error:

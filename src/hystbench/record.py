@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from hystbench.errors import InputError
 from hystbench.files import atomic_path
 from hystbench.units import plain
+from hystbench.written import check_unchanged
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -205,8 +206,9 @@ def load_record(path: str | Path) -> Record:
     Raises
     ------
     InputError
-        If the file is not such an archive.
+        If the file is not such an archive, or was changed since hystbench wrote it.
     """
+    check_unchanged(path)
     try:
         with np.load(path, allow_pickle=False) as archive:
             about = json.loads(str(archive["about"]))

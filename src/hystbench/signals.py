@@ -18,6 +18,7 @@ from hystbench.record import FloatArray
 from hystbench.units import plain
 from hystbench.waveforms import waveforms
 from hystbench.waveforms.base import Waveform
+from hystbench.written import check_unchanged
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,14 @@ class Signal:
 
 
 def load_signal(path: str | Path) -> Signal:
-    """Read a signal that :meth:`Signal.save` wrote."""
+    """Read a signal that :meth:`Signal.save` wrote.
+
+    Raises
+    ------
+    InputError
+        If it was changed since.
+    """
+    check_unchanged(path)
     with np.load(path, allow_pickle=False) as archive:
         return Signal(
             name=str(archive["name"]),

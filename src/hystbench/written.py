@@ -62,6 +62,25 @@ def is_ours(path: str | Path) -> bool:
     return bool(described) and sha256(path) in described
 
 
+def check_unchanged(path: str | Path) -> None:
+    """Refuse to read a file that hystbench wrote and somebody changed since.
+
+    What is to be read from it may no longer be there. A file without an entry is not
+    ours, and may hold anything.
+
+    Raises
+    ------
+    InputError
+        If it was changed.
+    """
+    path = Path(path)
+    if _described(path) and path.exists() and not is_ours(path):
+        raise InputError(
+            f"{path}: changed since hystbench wrote it; move it away, and the run "
+            "makes it again"
+        )
+
+
 def will_write(path: Path, content: Path) -> None:
     """Enter a file that is about to take its place.
 

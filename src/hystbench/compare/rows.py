@@ -10,6 +10,7 @@ from typing import TypeVar, get_args, get_type_hints
 
 from hystbench.errors import InputError, refuse_unknown
 from hystbench.files import write_csv
+from hystbench.written import check_unchanged
 
 Item = TypeVar("Item")
 _TRUTH = {"True": True, "False": False}
@@ -21,8 +22,9 @@ def read_rows(path: str | Path, columns: tuple[str, ...]) -> list[dict[str, str]
     Raises
     ------
     InputError
-        If a column is missing.
+        If a column is missing, or the file is hystbench's own and was changed.
     """
+    check_unchanged(path)
     with Path(path).open(encoding="utf-8", newline="") as stream:
         reader = csv.DictReader(stream)
         rows = list(reader)

@@ -8,6 +8,7 @@ import numpy as np
 
 from hystbench.compare.evidence import Run, read_run
 from hystbench.record import FloatArray, Record, load_record
+from hystbench.written import check_unchanged
 
 
 @dataclass(frozen=True)
@@ -27,9 +28,15 @@ def read_records(
     """Read records, each with the runs on it.
 
     The arrays of a run lie beside it (same name, ``.npz``).
+
+    Raises
+    ------
+    InputError
+        If one of them was changed since hystbench wrote it.
     """
     outputs = []
     for path in runs:
+        check_unchanged(path.with_suffix(".npz"))
         with np.load(path.with_suffix(".npz"), allow_pickle=False) as arrays:
             outputs.append(Output(read_run(path), arrays["output"], arrays["error"]))
     return [
