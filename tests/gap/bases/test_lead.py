@@ -15,6 +15,7 @@ from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.run import as_found
+from hystbench.model import Model
 from hystbench.quantities import NONE_KNOWN, Quantities
 from hystbench.record import Channel, Record
 from tests.gap.small import block
@@ -114,6 +115,18 @@ def test_a_base_that_is_far_off_hides_a_start_which_forces_show():
     assert without_leads(given, *about) is given
     (found,) = without_leads(given, *about, found=right)
     assert found.lead == 247
+
+
+def test_the_speed_of_a_free_mass_is_forgotten_though_its_place_is_not():
+    free = Mechanism(mass=0.3, damping=1.0, stiffness=0.0, output="velocity")
+    slow = TransferFunction(numerator=(1.0, 9.0), denominator=(1.0, 9.0, 0.01))
+    base = IdentifiedModel("linear", *CHANNELS, (slow,), FREE)
+    found = Model("found", *CHANNELS, (free,))
+    about = (base, "band-limited", NONE_KNOWN)
+    given = (record(537),)  # whose lag the free mass has
+    assert without_leads(given, *about) is given
+    (shorter,) = without_leads(given, *about, found=found)
+    assert shorter.lead == 200
 
 
 def test_what_has_no_lead_already_is_looked_at_no_more():
