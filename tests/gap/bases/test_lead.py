@@ -60,8 +60,10 @@ def test_what_no_state_at_the_start_would_do_is_scored():
     assert leads(linear(), replace(first, y=first.y + hum)) == [0]
 
 
-def test_a_base_that_does_not_settle_within_a_tenth_is_scored_from_the_start():
-    assert leads(linear(), record(537, count=1000)) == [0]
+def test_a_lead_is_as_long_as_a_state_lasts_and_never_half_of_a_record():
+    """Five times .3 s."""
+    assert leads(linear(), record(537, count=1000)) == [150]
+    assert leads(linear(), record(537, count=299)) == [0]
 
 
 def test_a_base_that_was_given_starts_as_it_says():

@@ -22,6 +22,7 @@ from hystbench.gap.thresholds import MOST
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
+from hystbench.sentences import percent
 
 SETTLES = 5.0
 """Time constants in which a state is forgotten: less than a hundredth is left of it."""
@@ -42,10 +43,10 @@ def without_leads(
 ) -> tuple[Record, ...]:
     """Leave out of the score the leads of records that begin in the middle of a motion.
 
-    The lead is the first tenth, which an identified base was not fitted to either. It
-    is left out of a record where the base leaves more of it than of the rest, in mean
-    square, and another state at the first sample would explain most of that. The base
-    has to forget a state within the lead.
+    The lead is what the base takes to forget a state, at least the first tenth, which
+    an identified base was not fitted to either. It is left out of a record where the
+    base leaves more of it than of the rest, in mean square, and another state at the
+    first sample would explain most of that. At least half of a record stays.
 
     Parameters
     ----------
@@ -77,11 +78,11 @@ def without_leads(
     cut = sum(item is not x for item, x in zip(shorter, records, strict=True))
     if cut:
         who = "the base" if found is None else "the model with its forces"
+        most = max(item.lead / len(item) for item in shorter)
         say(
-            f"the first tenth of {cut} of {len(records)} {records[0].use} records is "
-            "not scored: "
-            f"what {who} leaves there is what another state at the first sample would "
-            "do"
+            f"the beginning of {cut} of {len(records)} {records[0].use} records is not "
+            f"scored, at most {percent(most)} of one: what {who} leaves there is what "
+            "another state at the first sample would do"
         )
     return shorter if cut else records
 
@@ -95,17 +96,17 @@ def begin_alike(records: Sequence[Record]) -> bool:
 def _without(record: Record, base: Model, asked: Model) -> Record:
     if record.decay_s is not None:
         return record  # what its start does is a number of its own
-    lead = int(LEAD * len(record))
+    free = _free_motion(asked, record)
+    if len(free) == 0:  # what was found may hold no linear part
+        free = _free_motion(base, record)
+    lead = len(free)
     rest = record.y - asked.simulate(record.u, record.dt)
     first, behind = rest[:lead], rest[lead:][record.counted[lead:]]
     measured = record.counted[:lead]
-    free = _free_motion(base, record.time[:lead])
-    if not np.any(free):  # a slow pole of it may stand for what was found
-        free = _free_motion(asked, record.time[:lead])
     first, free = first[measured], free[measured]
     if len(behind) == 0 or len(first) <= free.shape[1]:
         return record
-    if not np.any(free) or np.mean(first**2) <= np.mean(behind**2):
+    if np.mean(first**2) <= np.mean(behind**2):
         return record
     states = np.linalg.lstsq(free, first, rcond=1e-9)[0]
     if np.mean((first - free @ states) ** 2) > MOST * np.mean(first**2):
@@ -113,24 +114,26 @@ def _without(record: Record, base: Model, asked: Model) -> Record:
     return replace(record, lead=lead)
 
 
-def _free_motion(base: Model, time: FloatArray) -> FloatArray:
-    """Give what other states of a linear base at the first sample would do.
+def _free_motion(model: Model, record: Record) -> FloatArray:
+    """Give what other states of a linear part at the first sample would do.
 
-    Those are damped sines and cosines, and exponentials, shape (n, poles); zeros where
-    the base does not settle within the time given. Where a free mass begins does not
-    matter to its speed.
+    Those are damped sines and cosines, and exponentials, for as long as they last, but
+    at least the first tenth: shape (n, poles). There are none where half of the record
+    is not long enough. Where a free mass begins does not matter to its speed.
     """
     poles = np.zeros(0, dtype=complex)
-    for block in base.chain:
+    for block in model.chain:
         if isinstance(block, TransferFunction):
             poles = np.append(poles, np.roots(block.denominator))
         elif isinstance(block, Mechanism):
             own = [block.mass, block.damping, block.stiffness]
             unseen = block.stiffness == 0.0 and block.output != "position"
             poles = np.append(poles, np.roots(own[:2] if unseen else own))
-    span = time[-1] if len(time) else 0.0
-    if len(poles) == 0 or -np.max(poles.real) * span < SETTLES:
-        return np.zeros((len(time), len(poles)))
+    slowest = max(poles.real, default=0.0)
+    lasts = -SETTLES / (slowest * record.dt) if slowest < 0.0 else np.inf
+    if lasts > len(record) / 2:
+        return np.zeros((0, len(poles)))
+    count = max(int(LEAD * len(record)), int(np.ceil(lasts)))
     upper = poles[poles.imag >= 0]
-    motion = np.exp(np.outer(time, upper))
+    motion = np.exp(np.outer(record.time[:count], upper))
     return np.column_stack([motion.real, motion.imag[:, upper.imag > 0]])
