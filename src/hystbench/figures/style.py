@@ -117,7 +117,7 @@ def keep_layout(figure: Figure) -> None:
     It has no layout engine then. With the one that ``"none"`` gives, matplotlib would
     draw all twice, the first time for nothing.
     """
-    off = {"figure.constrained_layout.use": False, "figure.autolayout": False}
+    off: Any = {"figure.constrained_layout.use": False, "figure.autolayout": False}
     with mpl.rc_context(off):
         figure.set_layout_engine(None)
 

@@ -181,11 +181,12 @@ def as_found(
 ) -> Evidence:
     """Leave out the leads of hold-out records, as of fit records.
 
-    They are asked for beside the base, and again beside forces that stand for it.
+    They are asked for beside the base, and again beside what was found: the base's own
+    error may hide a start.
     """
     about = base, evidence.input_hold, evidence.quantities, say
     records = without_leads(evidence.hold_out, *about, fit=evidence.fit)
-    if any(isinstance(block, Mechanism) for block in found.base.chain):
+    if found.state.added or any(isinstance(x, Mechanism) for x in found.base.chain):
         model = augmented(found.base, found.state)
         records = without_leads(records, *about, model)
     return replace(evidence, hold_out=records)

@@ -261,6 +261,14 @@ def _beside(
             say(f"inside: {enough}, so no chain of effects is tried")
             return _Searched(base, start, floor, None, inside, own, inside)
     chain = in_a_chain() if start is first else add_effects(start, floor.rms, asked)
+    if inside is None and chain.state.added:
+        found = augmented(base, chain.state)
+        shorter = _without_leads(
+            found, base, start.records, hold, evidence.quantities, say
+        )
+        if shorter is not start.records:
+            start, floor = start_state(shorter, base, hold, declared, offered)
+            chain = add_effects(start, floor.rms, asked)
     tried = inside
     if inside is not None and not beats_chain(inside, chain, floor.rms, say):
         inside = None
@@ -306,7 +314,10 @@ def _with_forces(
         return named_inside(base, start, floor.rms, quantities, identified, asked, most)
 
     inside, own = look(start), NONE
-    shorter = _without_leads(inside, base, records, hold, quantities, say)
+    shorter = records
+    if inside is not None:
+        found = augmented(inside.base, inside.named.state)
+        shorter = _without_leads(found, base, records, hold, quantities, say)
     if shorter is not records:
         whole = start, floor
         start, floor = start_state(shorter, base, hold, declared, start.offered)
@@ -319,20 +330,17 @@ def _with_forces(
 
 
 def _without_leads(
-    inside: Inside | None,
+    found: Model,
     base: Model,
     records: tuple[Record, ...],
     hold: Hold,
     quantities: Quantities,
     say: Say,
 ) -> tuple[Record, ...]:
-    """Leave out the leads of records of which forces show that they begin in motion.
+    """Leave out the leads of records of which effects show that they begin in motion.
 
-    A base without the forces is too far off to show it.
+    A base without the effects may be too far off to show it.
     """
-    if inside is None:
-        return records
-    found = augmented(inside.base, inside.named.state)
     if any(isinstance(block, Store) for block in found.chain):
         return records  # the level that it begins with is a number of its own
     return without_leads(records, base, hold, quantities, say, found)

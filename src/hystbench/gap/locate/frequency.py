@@ -266,4 +266,4 @@ def averaged_powers(signals: FloatArray, window: FloatArray, step: int) -> Compl
     matrix = np.einsum("akm,bkm->abm", lines, lines.conj()) / parts.shape[1]
     # In lines of both signs there is the same power; the highest may be its own.
     matrix[..., 1 : (size + 1) // 2] *= 2
-    return matrix / (size * np.sum(window**2))
+    return np.asarray(matrix / (size * np.sum(window**2)))
