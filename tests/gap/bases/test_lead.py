@@ -61,9 +61,10 @@ def test_what_no_state_at_the_start_would_do_is_scored():
 
 
 def test_a_lead_is_as_long_as_a_state_lasts_and_never_half_of_a_record():
-    """Five times .3 s."""
-    assert leads(linear(), record(537, count=1000)) == [150]
-    assert leads(linear(), record(537, count=299)) == [0]
+    """A hundredth is left of a lag after 4.6 of its time constants."""
+    (lead,) = leads(linear(), record(537, count=1000))
+    assert lead * DT == pytest.approx(0.3 * np.log(100), abs=3 * DT)
+    assert leads(linear(), record(537, count=260)) == [0]
 
 
 def test_a_base_that_was_given_starts_as_it_says():
@@ -156,3 +157,16 @@ def test_forces_in_a_free_mass_leave_leads_of_both_uses_out_alike():
     )
     evidence = as_found(Evidence("device", (fit,), (held,)), linear(), found)
     assert evidence.hold_out[0].lead == 200
+
+
+def test_the_weight_of_a_pendulum_is_part_of_what_a_state_does():
+    """It alone makes it swing: without it the mass would creep back."""
+    weight = block("gravity", amplitude=30.0)
+    loose = Mechanism(mass=1.0, damping=2.0, stiffness=1.0)
+    found = Model("found", *CHANNELS, (loose, weight))
+    u = 9 * np.sin(2.0 * DT * np.arange(2500)) + 3 * np.sin(7.3 * DT * np.arange(2500))
+    y = found.simulate(u, DT)[537:]
+    noise = 0.001 * np.random.default_rng(4).standard_normal(len(y))
+    given = (Record("r", DT, u[537:], y + noise, *CHANNELS, "measured", "fit"),)
+    (shorter,) = without_leads(given, linear(), "band-limited", NONE_KNOWN, found=found)
+    assert 300 < shorter.lead < 600

@@ -24,8 +24,8 @@ from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
 from hystbench.sentences import percent
 
-SETTLES = 5.0
-"""Time constants in which a state is forgotten: less than a hundredth is left of it."""
+LEFT = 0.01
+"""Of what a state does at most: when no more is left, it is forgotten."""
 
 ONE_PLACE = 0.1
 """Share of the rms of an output about its mean that is no other place to begin at: a
@@ -43,7 +43,7 @@ def without_leads(
 ) -> tuple[Record, ...]:
     """Leave out of the score the leads of records that begin in the middle of a motion.
 
-    The lead is what the base takes to forget a state, at least the first tenth, which
+    The lead is what the model takes to forget a state, at least the first tenth, which
     an identified base was not fitted to either. It is left out of a record where the
     base leaves more of it than of the rest, in mean square, and another state at the
     first sample would explain most of that. At least half of a record stays.
@@ -115,25 +115,29 @@ def _without(record: Record, base: Model, asked: Model) -> Record:
 
 
 def _free_motion(model: Model, record: Record) -> FloatArray:
-    """Give what other states of a linear part at the first sample would do.
+    """Give what other states of a model at the first sample would do.
 
-    Those are damped sines and cosines, and exponentials, for as long as they last, but
-    at least the first tenth: shape (n, poles). There are none where half of the record
-    is not long enough. Where a free mass begins does not matter to its speed.
+    Such states are left by other inputs before it: a pulse in each of as many samples
+    as its linear parts have states. So what the forces of a mechanism make of a motion
+    is in it. Shape (n, states): for as long as it lasts, but at least the first tenth;
+    none where half of the record is not long enough.
     """
-    poles = np.zeros(0, dtype=complex)
+    order = 0
     for block in model.chain:
         if isinstance(block, TransferFunction):
-            poles = np.append(poles, np.roots(block.denominator))
+            order += len(block.denominator) - 1
         elif isinstance(block, Mechanism):
-            own = [block.mass, block.damping, block.stiffness]
-            unseen = block.stiffness == 0.0 and block.output != "position"
-            poles = np.append(poles, np.roots(own[:2] if unseen else own))
-    slowest = max(poles.real, default=0.0)
-    lasts = -SETTLES / (slowest * record.dt) if slowest < 0.0 else np.inf
-    if lasts > len(record) / 2:
-        return np.zeros((0, len(poles)))
-    count = max(int(LEAD * len(record)), int(np.ceil(lasts)))
-    upper = poles[poles.imag >= 0]
-    motion = np.exp(np.outer(record.time[:count], upper))
-    return np.column_stack([motion.real, motion.imag[:, upper.imag > 0]])
+            order += 2
+    u = np.concatenate([np.full(order, record.u[0]), record.u])
+    now = model.simulate(u, record.dt)
+    size = np.std(record.u) or np.max(np.abs(record.u)) or 1.0
+    motion = np.zeros((len(record), order))
+    for k in range(order):
+        pulse = u.copy()
+        pulse[k] += size
+        motion[:, k] = (model.simulate(pulse, record.dt) - now)[order:]
+    largest = np.max(np.abs(motion), axis=1, initial=0.0)
+    lasting = np.flatnonzero(largest > LEFT * np.max(largest, initial=0.0))
+    if len(lasting) == 0 or lasting[-1] >= len(record) / 2:
+        return motion[:0]
+    return motion[: max(int(LEAD * len(record)), int(lasting[-1]) + 1)]
