@@ -8,8 +8,6 @@ from functools import cache, partial
 
 import numpy as np
 
-from hystbench.blocks.held import Hold
-from hystbench.blocks.store import Store
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.known_about import known_about
 from hystbench.gap.bases.lead import without_leads
@@ -40,13 +38,11 @@ from hystbench.gap.judge_and_tell import Decision, judge_and_tell
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.naming.beside_forces import beside_forces
 from hystbench.gap.naming.with_own_values import named_apart
-from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence, own_offsets
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import FURTHER, LOOSE, PAYS
 from hystbench.model import Model
 from hystbench.quantities import Quantities
-from hystbench.record import Record
 
 NOT_IN_WINDOWS = ("drift", "sensor-nonlinearity", "saturation")
 """Effects that windows of a free mass cannot tell. An integrator makes a path of its
@@ -263,9 +259,8 @@ def _beside(
     chain = in_a_chain() if start is first else add_effects(start, floor.rms, asked)
     if inside is None and chain.state.added:
         found = augmented(base, chain.state)
-        shorter = _without_leads(
-            found, base, start.records, hold, evidence.quantities, say
-        )
+        about = base, hold, evidence.quantities, say
+        shorter = without_leads(start.records, *about, found)
         if shorter is not start.records:
             start, floor = start_state(shorter, base, hold, declared, offered)
             chain = add_effects(start, floor.rms, asked)
@@ -317,7 +312,7 @@ def _with_forces(
     shorter = records
     if inside is not None:
         found = augmented(inside.base, inside.named.state)
-        shorter = _without_leads(found, base, records, hold, quantities, say)
+        shorter = without_leads(records, base, hold, quantities, say, found)
     if shorter is not records:
         whole = start, floor
         start, floor = start_state(shorter, base, hold, declared, start.offered)
@@ -327,23 +322,6 @@ def _with_forces(
     if not _leaves_little(inside, floor) and own_offsets(records, quantities):
         start, inside, own = apart_inside(start, inside, floor.rms, look, say)
     return start, floor, inside, own
-
-
-def _without_leads(
-    found: Model,
-    base: Model,
-    records: tuple[Record, ...],
-    hold: Hold,
-    quantities: Quantities,
-    say: Say,
-) -> tuple[Record, ...]:
-    """Leave out the leads of records of which effects show that they begin in motion.
-
-    A base without the effects may be too far off to show it.
-    """
-    if any(isinstance(block, Store) for block in found.chain):
-        return records  # the level that it begins with is a number of its own
-    return without_leads(records, base, hold, quantities, say, found)
 
 
 def _leaves_little(inside: Inside | None, floor: Floor) -> bool:

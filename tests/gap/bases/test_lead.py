@@ -170,3 +170,21 @@ def test_the_weight_of_a_pendulum_is_part_of_what_a_state_does():
     given = (Record("r", DT, u[537:], y + noise, *CHANNELS, "measured", "fit"),)
     (shorter,) = without_leads(given, linear(), "band-limited", NONE_KNOWN, found=found)
     assert 300 < shorter.lead < 600
+
+
+def test_a_store_that_is_found_forgets_the_level_it_begins_with():
+    """Of several records with levels of their own; of one, the level is a number."""
+    store = block("store", gain=1.0, rate=3.0)
+    found = Model("found", *CHANNELS, (store,))
+    rng = np.random.default_rng(3)
+    u = 2.0 + np.repeat(rng.uniform(-1, 1, 30), 100)
+    y = found.simulate(u, DT)
+    several = tuple(
+        Record(f"{k}", DT, u[k:], y[k:], *CHANNELS, "measured", "fit") for k in (0, 930)
+    )
+    slow = TransferFunction(numerator=(1.0,), denominator=(500.0, 1.0))
+    base = IdentifiedModel("linear", *CHANNELS, (slow,), FREE)
+    about = base, "zero-order", STORE
+    assert [x.lead for x in without_leads(several, *about, found=found)] == [0, 207]
+    alone = several[1:]
+    assert without_leads(alone, *about, found=found) is alone

@@ -14,6 +14,7 @@ import numpy as np
 
 from hystbench.blocks.held import Hold
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.store import Store
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.bases.orders import LEAD
@@ -128,6 +129,8 @@ def _free_motion(model: Model, record: Record) -> FloatArray:
             order += len(block.denominator) - 1
         elif isinstance(block, Mechanism):
             order += 2
+        elif isinstance(block, Store):
+            order += 1
     u = np.concatenate([np.full(order, record.u[0]), record.u])
     now = model.simulate(u, record.dt)
     size = np.std(record.u) or np.max(np.abs(record.u)) or 1.0
