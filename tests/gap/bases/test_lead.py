@@ -60,11 +60,19 @@ def test_what_no_state_at_the_start_would_do_is_scored():
     assert leads(linear(), replace(first, y=first.y + hum)) == [0]
 
 
-def test_a_lead_is_as_long_as_a_state_lasts_and_never_half_of_a_record():
+def test_the_base_alone_has_to_forget_a_state_within_a_tenth():
+    assert leads(linear(), record(537, count=1000)) == [0]
+
+
+def test_beside_what_was_found_a_lead_is_as_long_as_a_state_lasts():
     """A hundredth is left of a lag after 4.6 of its time constants."""
-    (lead,) = leads(linear(), record(537, count=1000))
-    assert lead * DT == pytest.approx(0.3 * np.log(100), abs=3 * DT)
-    assert leads(linear(), record(537, count=260)) == [0]
+
+    def lead(count):
+        given, about = (record(537, count=count),), ("band-limited", NONE_KNOWN)
+        return without_leads(given, linear(), *about, found=linear())[0].lead
+
+    assert lead(1000) * DT == pytest.approx(0.3 * np.log(100), abs=3 * DT)
+    assert lead(260) == 0  # half of the record at most
 
 
 def test_a_base_that_was_given_starts_as_it_says():

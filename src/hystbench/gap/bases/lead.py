@@ -28,6 +28,9 @@ from hystbench.sentences import percent
 LEFT = 0.01
 """Of what a state does at most: when no more is left, it is forgotten."""
 
+HALF = 0.5
+"""Share of a record that a lead may be."""
+
 ONE_PLACE = 0.1
 """Share of the rms of an output about its mean that is no other place to begin at: a
 level that is off by so much takes a hundredth of the power, and dies out."""
@@ -46,8 +49,10 @@ def without_leads(
 
     The lead is what the model takes to forget a state, at least the first tenth, which
     an identified base was not fitted to either. It is left out of a record where the
-    base leaves more of it than of the rest, in mean square, and another state at the
-    first sample would explain most of that. At least half of a record stays.
+    model leaves more of it than of the rest, in mean square, and another state at the
+    first sample would explain most of that. Beside what was found at least half of a
+    record stays. The base alone has to forget within the tenth: what it leaves may be
+    what is missing.
 
     Parameters
     ----------
@@ -68,21 +73,23 @@ def without_leads(
     fit : sequence of Record, optional
         Records that the model is fitted to; by default those given.
     """
+    stores = any(isinstance(block, Store) for block in (found or base).chain)
     if not is_identified(base) or (
-        quantities.causality == "storage"
+        (stores or quantities.causality == "storage")
         and begin_alike(records if fit is None else fit)
     ):
         return records
     held = base.with_hold(hold)
     asked = held if found is None else found.with_hold(hold)
-    shorter = tuple(x if x.lead else _without(x, held, asked) for x in records)
+    most = LEAD if found is None else HALF
+    shorter = tuple(x if x.lead else _without(x, held, asked, most) for x in records)
     cut = sum(item is not x for item, x in zip(shorter, records, strict=True))
     if cut:
         who = "the base" if found is None else "the model with its forces"
-        most = max(item.lead / len(item) for item in shorter)
+        share = max(item.lead / len(item) for item in shorter)
         say(
             f"the beginning of {cut} of {len(records)} {records[0].use} records is not "
-            f"scored, at most {percent(most)} of one: what {who} leaves there is what "
+            f"scored, at most {percent(share)} of one: what {who} leaves there is what "
             "another state at the first sample would do"
         )
     return shorter if cut else records
@@ -94,12 +101,12 @@ def begin_alike(records: Sequence[Record]) -> bool:
     return float(np.ptp([record.y[0] for record in records])) <= ONE_PLACE * moves
 
 
-def _without(record: Record, base: Model, asked: Model) -> Record:
+def _without(record: Record, base: Model, asked: Model, most: float) -> Record:
     if record.decay_s is not None:
         return record  # what its start does is a number of its own
-    free = _free_motion(asked, record)
+    free = _free_motion(asked, record, most)
     if len(free) == 0:  # what was found may hold no linear part
-        free = _free_motion(base, record)
+        free = _free_motion(base, record, most)
     lead = len(free)
     rest = record.y - asked.simulate(record.u, record.dt)
     first, behind = rest[:lead], rest[lead:][record.counted[lead:]]
@@ -115,13 +122,13 @@ def _without(record: Record, base: Model, asked: Model) -> Record:
     return replace(record, lead=lead)
 
 
-def _free_motion(model: Model, record: Record) -> FloatArray:
+def _free_motion(model: Model, record: Record, most: float) -> FloatArray:
     """Give what other states of a model at the first sample would do.
 
     Such states are left by other inputs before it: a pulse in each of as many samples
     as its linear parts have states. So what the forces of a mechanism make of a motion
     is in it. Shape (n, states): for as long as it lasts, but at least the first tenth;
-    none where half of the record is not long enough.
+    none where that is more than a share of the record.
     """
     order = 0
     for block in model.chain:
@@ -141,6 +148,6 @@ def _free_motion(model: Model, record: Record) -> FloatArray:
         motion[:, k] = (model.simulate(pulse, record.dt) - now)[order:]
     largest = np.max(np.abs(motion), axis=1, initial=0.0)
     lasting = np.flatnonzero(largest > LEFT * np.max(largest, initial=0.0))
-    if len(lasting) == 0 or lasting[-1] >= len(record) / 2:
+    if len(lasting) == 0 or lasting[-1] >= most * len(record):
         return motion[:0]
     return motion[: max(int(LEAD * len(record)), int(lasting[-1]) + 1)]
