@@ -60,8 +60,12 @@ def test_what_no_state_at_the_start_would_do_is_scored():
     assert leads(linear(), replace(first, y=first.y + hum)) == [0]
 
 
-def test_the_base_alone_has_to_forget_a_state_within_a_tenth():
-    assert leads(linear(), record(537, count=1000)) == [0]
+def test_the_base_of_what_may_be_a_store_has_to_forget_a_state_within_a_tenth():
+    short = record(537, count=1000)
+    assert leads(linear(), short) == [0]
+    moves = Quantities("force", "position")
+    (lead,) = leads(linear(), short, quantities=moves)
+    assert lead * DT == pytest.approx(0.3 * np.log(100), abs=3 * DT)
 
 
 def test_beside_what_was_found_a_lead_is_as_long_as_a_state_lasts():

@@ -50,9 +50,9 @@ def without_leads(
     The lead is what the model takes to forget a state, at least the first tenth, which
     an identified base was not fitted to either. It is left out of a record where the
     model leaves more of it than of the rest, in mean square, and another state at the
-    first sample would explain most of that. Beside what was found at least half of a
-    record stays. The base alone has to forget within the tenth: what it leaves may be
-    what is missing.
+    first sample would explain most of that. At least half of a record stays. Where the
+    device may be a store, whose level at the start is a number, the base alone has to
+    forget within the tenth.
 
     Parameters
     ----------
@@ -81,7 +81,8 @@ def without_leads(
         return records
     held = base.with_hold(hold)
     asked = held if found is None else found.with_hold(hold)
-    most = LEAD if found is None else HALF
+    moves = quantities.causality in ("force to motion", "motion to force")
+    most = HALF if moves or found is not None else LEAD
     shorter = tuple(x if x.lead else _without(x, held, asked, most) for x in records)
     cut = sum(item is not x for item, x in zip(shorter, records, strict=True))
     if cut:
