@@ -303,16 +303,20 @@ def _with_forces(
     their own.
     """
     identified, records, hold = is_identified(base), start.records, start.hold
-    say = asked.say
+    say, shorter = asked.say, start.records
 
-    def look(start: ModelState) -> Inside | None:
-        return named_inside(base, start, floor.rms, quantities, identified, asked, most)
-
-    inside, own = look(start), NONE
-    shorter = records
-    if inside is not None:
-        found = augmented(inside.base, inside.named.state)
+    def again(found: Model) -> bool:
+        nonlocal shorter
         shorter = without_leads(records, base, hold, quantities, say, found)
+        return shorter is not records
+
+    def look(start: ModelState, *more: Callable[[Model], bool]) -> Inside | None:
+        about = base, start, floor.rms, quantities, identified, asked, most
+        return named_inside(*about, *more)
+
+    inside, own = look(start, again), NONE
+    if inside is not None:
+        again(augmented(inside.base, inside.named.state))
     if shorter is not records:
         whole = start, floor
         start, floor = start_state(shorter, base, hold, declared, start.offered)

@@ -15,6 +15,7 @@ import numpy as np
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.effects import effects
+from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.fitting.model_score import score_of
@@ -66,6 +67,7 @@ def named_inside(
     identified: bool,
     asked: Asked = USUAL,
     most: Callable[[], float] = lambda: np.inf,
+    again: Callable[[Model], bool] = lambda found: False,
 ) -> Inside | None:
     """Find effects inside the dynamics; None where no force pays.
 
@@ -88,6 +90,9 @@ def named_inside(
         Tells how many effects are looked for at most; known numbers that are re-tuned
         are one. The first model of one coordinate that was identified is tried without
         asking: it takes less time than a chain, and is often enough.
+    again : callable
+        Told of a host with its best force. If it says that the search is to begin
+        again, on other records, this one ends at once: None.
     """
     say, share = asked.say, asked.unnamed_share
     fewer = on_fewer(start, quantities)
@@ -106,6 +111,10 @@ def named_inside(
         found = singles(host.fitted, offer, score, say, host.other)
         tried.append((host, found))
         best = chosen(found, score.floor, share)
+        if best.effects and again(
+            augmented(of_free_numbers(base, found[0].state), best.state)
+        ):
+            return None
         stays = best.state.power(score.floor)
         little = little or stays <= share * fewer.power(score.floor)
         enough = not may_gain(best, score)
