@@ -106,7 +106,11 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
         signals = (z, *(own for _, own in others))
         numbers = np.array([rows(each.forces) for each in every])
         path, before = path_from(z, self.start)
-        lines, fine = held_lines(path, self.holding)
+        holding = self.holding
+        if pieces < 1 and forces and self._parts(dt, forces, pieces) == 1:
+            # Finer lines would be shorter than a step.
+            holding = "linear" if holding == "band-limited" else holding
+        lines, fine = held_lines(path, holding)
         n, step = len(lines), dt / fine
         parts = self._parts(step, forces, pieces)
         gain, bias, mass, damping, stiffness = np.array(
@@ -118,7 +122,7 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
             first = before
             if signals[k] is not z:
                 own, first = path_from(signals[k], self.start)
-                p[k] = host.gain * held_lines(own, self.holding)[0] + host.bias
+                p[k] = host.gain * held_lines(own, holding)[0] + host.bias
             q[k, 0], v[k, 0] = host.start_position, host.start_velocity
             if self.start != "rest" and host.stiffness > 0.0:
                 q[k, 0] += host._balance(host.gain * first + host.bias, numbers[k])
@@ -129,7 +133,7 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
                 len(others),
                 parts,
                 step,
-                float(self.holding != "zero-order"),
+                float(holding != "zero-order"),
                 np.array([host._steps(step / parts) for host in hosts]),
                 numbers.shape[1],
                 numbers,
