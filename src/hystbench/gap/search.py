@@ -303,26 +303,26 @@ def _with_forces(
     their own.
     """
     identified, records, hold = is_identified(base), start.records, start.hold
-    say, shorter = asked.say, start.records
+    say, shorter, whole, own = asked.say, records, (start, floor), NONE
 
     def again(found: Model) -> bool:
         nonlocal shorter
-        shorter = without_leads(records, base, hold, quantities, say, found)
-        return shorter is not records
+        shorter = without_leads(start.records, base, hold, quantities, say, found)
+        return shorter is not start.records
 
     def look(start: ModelState, *more: Callable[[Model], bool]) -> Inside | None:
         about = base, start, floor.rms, quantities, identified, asked, most
         return named_inside(*about, *more)
 
-    inside, own = look(start, again), NONE
-    if inside is not None:
-        again(augmented(inside.base, inside.named.state))
-    if shorter is not records:
-        whole = start, floor
+    while True:  # each time fewer records are whole
+        inside = look(start, again)
+        if inside is not None:
+            again(augmented(inside.base, inside.named.state))
+        if shorter is start.records:
+            break
         start, floor = start_state(shorter, base, hold, declared, start.offered)
-        inside = look(start)
-        if inside is None:  # no force shows where a motion begins
-            start, floor = whole
+    if inside is None:  # no force shows where a motion begins
+        start, floor = whole
     if not _leaves_little(inside, floor) and own_offsets(records, quantities):
         start, inside, own = apart_inside(start, inside, floor.rms, look, say)
     return start, floor, inside, own

@@ -38,7 +38,7 @@ from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.memory import may_have_hysteresis
-from hystbench.gap.thresholds import ABOUT, FURTHER, PARAMETER, PAYS
+from hystbench.gap.thresholds import ABOUT, FURTHER, MOST, PARAMETER, PAYS
 from hystbench.model import Model
 from hystbench.quantities import Quantities, angle_in
 from hystbench.sentences import finely, percent
@@ -91,8 +91,8 @@ def named_inside(
         are one. The first model of one coordinate that was identified is tried without
         asking: it takes less time than a chain, and is often enough.
     again : callable
-        Told of a host with its best force. If it says that the search is to begin
-        again, on other records, this one ends at once: None.
+        Told of a host with its best force, where that takes most of the gap. If it says
+        that the search is to begin again, on other records, this one ends: None.
     """
     say, share = asked.say, asked.unnamed_share
     fewer = on_fewer(start, quantities)
@@ -111,11 +111,11 @@ def named_inside(
         found = singles(host.fitted, offer, score, say, host.other)
         tried.append((host, found))
         best = chosen(found, score.floor, share)
-        if best.effects and again(
-            augmented(of_free_numbers(base, found[0].state), best.state)
-        ):
-            return None
         stays = best.state.power(score.floor)
+        if best.effects and stays <= MOST * fewer.power(score.floor):
+            in_place = of_free_numbers(base, found[0].state)
+            if again(augmented(in_place, best.state)):
+                return None
         little = little or stays <= share * fewer.power(score.floor)
         enough = not may_gain(best, score)
         if enough:
