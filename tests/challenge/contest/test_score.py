@@ -341,6 +341,7 @@ def test_a_cell_that_is_neither_true_nor_false_is_refused(tmp_path):
     write_rows(tmp_path / "rows.csv", [judged(truth(effect()), RIGHT)])
     text = (tmp_path / "rows.csv").read_text()
     assert ",True," in text
-    (tmp_path / "rows.csv").write_text(text.replace(",True,", ",maybe,", 1))
+    other = tmp_path / "other.csv"
+    other.write_text(text.replace(",True,", ",maybe,", 1))
     with pytest.raises(InputError, match="'maybe' is no truth"):
-        read_rows([tmp_path / "rows.csv"])
+        read_rows([other])
