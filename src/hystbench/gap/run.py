@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.blocks.mechanism import Mechanism
 from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.lead import without_leads
@@ -186,7 +185,7 @@ def as_found(
     """
     about = base, evidence.input_hold, evidence.quantities, say
     records = without_leads(evidence.hold_out, *about, fit=evidence.fit)
-    if found.state.added or any(isinstance(x, Mechanism) for x in found.base.chain):
+    if is_identified(base):
         model = augmented(found.base, found.state)
         records = without_leads(records, *about, model)
     return replace(evidence, hold_out=records)
