@@ -23,7 +23,8 @@ from hystbench.gap.thresholds import MOST
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
-from hystbench.sentences import percent
+from hystbench.sentences import listed, percent
+from hystbench.units import sized
 
 LEFT = 0.01
 """Of what a state does at most: when no more is left, it is forgotten."""
@@ -86,7 +87,7 @@ def without_leads(
     shorter = tuple(x if x.lead else _without(x, held, asked, most) for x in records)
     cut = sum(item is not x for item, x in zip(shorter, records, strict=True))
     if cut:
-        who = "the base" if found is None else "the model with its forces"
+        who = "the base" if found is None else "the model found"
         share = max(item.lead / len(item) for item in shorter)
         say(
             f"the beginning of {cut} of {len(records)} {records[0].use} records is not "
@@ -94,6 +95,21 @@ def without_leads(
             "another state at the first sample would do"
         )
     return shorter if cut else records
+
+
+def in_words(records: Sequence[Record]) -> list[str]:
+    """Tell of which records a lead is not scored: a sentence, or none."""
+    told = [
+        f"{item.name} ({sized(item.lead * item.dt, 's')})"
+        for item in records
+        if item.lead
+    ]
+    if not told:
+        return []
+    return [
+        "not scored is the beginning of records that start in the middle of a motion: "
+        + listed(told)
+    ]
 
 
 def begin_alike(records: Sequence[Record]) -> bool:
