@@ -107,9 +107,9 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
         numbers = np.array([rows(each.forces) for each in every])
         path, before = path_from(z, self.start)
         holding = self.holding
-        if pieces < 1 and forces and self._parts(dt, forces, pieces) == 1:
-            # Finer lines would be shorter than a step.
-            holding = "linear" if holding == "band-limited" else holding
+        quick = holding == "band-limited" and forces and pieces < 1
+        if quick and self._parts(dt, forces, pieces) == 1:
+            holding = "linear"  # finer lines would be shorter than a step
         lines, fine = held_lines(path, holding)
         n, step = len(lines), dt / fine
         parts = self._parts(step, forces, pieces)

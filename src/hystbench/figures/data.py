@@ -36,8 +36,9 @@ def read_records(
     """
     outputs = []
     for path in runs:
-        check_unchanged(path.with_suffix(".npz"))
-        with np.load(path.with_suffix(".npz"), allow_pickle=False) as arrays:
+        beside = path.with_suffix(".npz")
+        check_unchanged(beside)
+        with np.load(beside, allow_pickle=False) as arrays:
             outputs.append(Output(read_run(path), arrays["output"], arrays["error"]))
     return [
         (record, [each for each in outputs if each.run.signal == record.name])

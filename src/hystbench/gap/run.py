@@ -183,11 +183,12 @@ def as_found(
     They are asked for beside the base, and again beside what was found: the base's own
     error may hide a start.
     """
+    if not is_identified(base):
+        return evidence
     about = base, evidence.input_hold, evidence.quantities, say
-    records = without_leads(evidence.hold_out, *about, fit=evidence.fit)
-    if is_identified(base):
-        model = augmented(found.base, found.state)
-        records = without_leads(records, *about, model)
+    records = evidence.hold_out
+    for model in (None, augmented(found.base, found.state)):
+        records = without_leads(records, *about, model, evidence.fit)
     return replace(evidence, hold_out=records)
 
 

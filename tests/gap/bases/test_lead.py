@@ -209,3 +209,19 @@ def test_a_store_that_is_found_forgets_the_level_it_begins_with():
     assert [x.lead for x in without_leads(several, *about, found=found)] == [0, 207]
     alone = several[1:]
     assert without_leads(alone, *about, found=found) is alone
+
+
+def test_a_lone_hold_out_record_is_asked_by_how_the_fit_records_begin():
+    store = block("store", gain=1.0, rate=3.0)
+    u = 2.0 + np.repeat(np.random.default_rng(3).uniform(-1, 1, 30), 100)
+    y = Model("found", *CHANNELS, (store,)).simulate(u, DT)
+    fit = tuple(
+        Record(f"{k}", DT, u[k:], y[k:], *CHANNELS, "measured", "fit") for k in (0, 930)
+    )
+    held = replace(fit[1], use="hold-out")
+    slow = TransferFunction(numerator=(1.0,), denominator=(500.0, 1.0))
+    base = IdentifiedModel("linear", *CHANNELS, (slow,), FREE)
+    state = ModelState((store,), fit, ScoredSamples.of(fit))
+    found = FitResult(base, state, Floor(0.001, "declared"), None, ())
+    evidence = Evidence("tank", fit, (held,), "zero-order", quantities=STORE)
+    assert as_found(evidence, base, found).hold_out[0].lead > 0

@@ -122,9 +122,11 @@ def _without(record: Record, base: Model, asked: Model, most: float) -> Record:
     if record.decay_s is not None:
         return record  # what its start does is a number of its own
     free = _free_motion(asked, record, most)
-    if len(free) == 0:  # what was found may hold no linear part
+    if len(free) == 0 and asked is not base:  # it may hold no linear part
         free = _free_motion(base, record, most)
     lead = len(free)
+    if lead == 0:
+        return record
     rest = record.y - asked.simulate(record.u, record.dt)
     first, behind = rest[:lead], rest[lead:][record.counted[lead:]]
     measured = record.counted[:lead]
