@@ -127,11 +127,17 @@ def check_moves(file: Path, item: Mapping[str, str], values: FloatArray) -> None
 
 
 def check_period(place: str, period: int, u: FloatArray) -> None:
-    """Refuse a period that does not fit twice, or with which no input repeats."""
+    """Refuse a period that no whole one is of, or with which no input repeats.
+
+    A record of one period, and no more, is one of a steady state.
+    """
+    if period == len(u):
+        return
     if 2 * period > len(u):
         raise InputError(
             f"{place}: period_samples: {period}; expected at most {len(u) // 2}, "
-            f"half of its {len(u)} samples"
+            f"half of its {len(u)} samples, or all of them: one period of a steady "
+            "state"
         )
     rounds = u[: len(u) // period * period].reshape(-1, period)
     # The nearest two of them: the input may be faded in and out.

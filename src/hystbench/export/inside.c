@@ -33,7 +33,7 @@ static double hb_mechanism(double gain, double bias, int segments, int points,
     }
     motion[0] = x;
     motion[1] = w;
-    const double force = hb_all_forces(count, forces, x, w, 0, 0, memory);
+    const double force = hb_sum_of_forces(count, forces, x, w, memory);
     return shown[0] * x + shown[1] * w + shown[2] * force + shown[3] * p;
 }
 
@@ -66,9 +66,9 @@ static double hb_force_between(int velocity, int fine, double dt, int width,
         else
             between[0] += moved;
         between[1] = v;
-        const double force = hb_all_forces(count, forces, between[0], v, moved,
-                                           first ? 0 : dt / fine, memory);
-        hb_remember(width, filtered, force);
+        hb_move_memories(count, forces, v, moved, first ? 0 : dt / fine, memory);
+        hb_remember(width, filtered,
+                    hb_sum_of_forces(count, forces, between[0], v, memory));
     }
     return hb_weighted(width, taps, filtered + 1);
 }
@@ -104,8 +104,9 @@ static double hb_impedance(double mass, double damping, double stiffness, double
         a = hb_weighted(points, curvature + row, history + 1);
     }
     place[0] = q;
-    if (!fine)
-        force = hb_all_forces(count, forces, q, v, moves ? q - before : 0,
-                              moves ? dt : 0, memory);
+    if (!fine) {
+        hb_move_memories(count, forces, v, moves ? q - before : 0, moves ? dt : 0, memory);
+        force = hb_sum_of_forces(count, forces, q, v, memory);
+    }
     return mass * a + damping * v + stiffness * q + force + bias;
 }

@@ -23,6 +23,7 @@ from hystbench.gap.fitting.re_tuning_gain import (
     charge_of_base,
     re_tuned_score,
     re_tuned_words,
+    repeats_a_mode,
 )
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
@@ -158,6 +159,15 @@ class _Searched:
             return Score.plain(self.start.sample, self.floor.rms**2)
         return make_score(self.start, self.floor.rms, forms=False)
 
+    @property
+    def margin(self) -> float:
+        """By how much a re-tuned base has to do better: the base is believed as given.
+
+        Where a mode was named that the base has about there, it may do as much worse:
+        what is called missing is then its own mode with other numbers.
+        """
+        return -PAYS if repeats_a_mode(self.named.state) else PAYS
+
     def value(self, score: Score, re_tuned: bool = False) -> float:
         """Score it, with what its effects and its numbers have to pay.
 
@@ -177,28 +187,34 @@ class _Searched:
             return True
         state, score = self.named.state, self.score_beside(self)
         now = score_of(state, score)
-        shorter = (
-            without_effect(state, number)
-            for number in range(len(state.added))
+        count = len(state.added)
+        shorter = [
+            (without_effect(state, number), now - self.margin)
+            for number in range(count)
             if removable(state, number)
-        )
+        ]
+        if count > 1:  # it may stand for both, and pays as one effect
+            alone = now + _pay(count) - _pay(1) - self.margin
+            shorter.append((self.start, alone))
         least = now - PAYS
-        beside = least if state.added else least - PAYS
+        beside = least if count else least - PAYS
         return re_tuned_score(state, score, beside) < beside or any(
-            re_tuned_score(short, score, least) < least for short in shorter
+            re_tuned_score(short, score, most) < most for short, most in shorter
         )
 
 
 def _stays(found: _Searched, again: _Searched, re_tuned: bool = False) -> bool:
     """Tell whether a base stays as it was, and not with other numbers or timing.
 
-    What was given is believed unless as much speaks against it as makes a gap. Numbers
-    that were re-tuned are charged as an effect; timing is a matter of the records.
+    What was given is believed unless as much speaks against it as makes a gap
+    (:attr:`_Searched.margin`). Numbers that were re-tuned are charged as an effect;
+    timing is a matter of the records.
     """
     score = found.score_beside(again)
     alike = len(again.start.sample) == len(found.start.sample)
     value = again.value(score, re_tuned)
-    return not alike or value >= found.value(score) - PAYS
+    margin = found.margin if re_tuned else PAYS
+    return not alike or value >= found.value(score) - margin
 
 
 def _in_better_time(found: _Searched) -> Model | None:

@@ -253,11 +253,10 @@ static double hb_mean_force(const double *f, double q, double way, double h,
     return NAN;
 }
 
-/* Moves all memories by a way in a time h and gives the sum of the forces at its end. */
-static double hb_all_forces(int count, const double *forces, double q, double v,
-                            double way, double h, double *memory)
+/* Moves all memories by a way in a time h; v is the velocity at its end. */
+static void hb_move_memories(int count, const double *forces, double v, double way,
+                             double h, double *memory)
 {
-    double sum = 0;
     for (int i = 0; i < count; i++) {
         const double *f = forces + 6 * i;
         if ((int)f[0] == 10 && h > 0) {
@@ -266,8 +265,14 @@ static double hb_all_forces(int count, const double *forces, double q, double v,
             memory[i + 1] += gained;
         }
         memory[i] = hb_remembered(f, way, v, h, memory[i]);
-        sum += hb_force(f, q, v, memory + i);
     }
+}
+
+static double hb_sum_of_forces(int count, const double *forces, double q, double v,
+                               const double *memory)
+{
+    double sum = 0;
+    for (int i = 0; i < count; i++) sum += hb_force(forces + 6 * i, q, v, memory + i);
     return sum;
 }
 
@@ -421,7 +426,7 @@ static int hb_moved(int count, const double *forces, double *memory,
                               *v, &after);
         *q += ways[i];
         *v = after;
-        hb_all_forces(count, forces, *q, *v, ways[i], h / fine, memory);
+        hb_move_memories(count, forces, *v, ways[i], h / fine, memory);
     }
     return fine;
 }

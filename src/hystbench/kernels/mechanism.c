@@ -34,11 +34,11 @@ static void follow(int count, index_t near, struct motion *all, index_t k, doubl
             const double own = way - (MISS(m, *x, *w, m->memory, way) - missed) / slope;
             *w = hb_after(step, AT(m, i), AT(m, i + 1), *x, *w, own);
             *x += own;
-            hb_all_forces(count, m->forces, *x, *w, own, h / pieces, m->memory);
+            hb_move_memories(count, m->forces, *w, own, h / pieces, m->memory);
         }
         v = hb_after(all->step + offset, AT(all, i), AT(all, i + 1), q, v, way);
         q += way;
-        hb_all_forces(count, all->forces, q, v, way, h / pieces, memory);
+        hb_move_memories(count, all->forces, v, way, h / pieces, memory);
 #undef MISS
 #undef AT
     }
@@ -66,8 +66,8 @@ EXPORT index_t hb_mechanism(index_t n, index_t near, index_t parts, double dt,
         all[i] = (struct motion){step + 16 * i,    forces + 6 * count * i, p + n * i,
                                  memory + count * i, q + n * i,            v + n * i,
                                  out + n * i};
-        all[i].out[0] = hb_all_forces(each, all[i].forces, q[n * i], v[n * i], 0, 0,
-                                      all[i].memory);
+        all[i].out[0] = hb_sum_of_forces(each, all[i].forces, q[n * i], v[n * i],
+                                         all[i].memory);
     }
     index_t k = 0;
     for (; k + 1 < n; k++) {
@@ -88,8 +88,8 @@ EXPORT index_t hb_mechanism(index_t n, index_t near, index_t parts, double dt,
         }
         if (!(fabs(*x) < 1e100 && fabs(*w) < 1e100)) break;
         for (index_t i = 0; i <= near; i++)
-            all[i].out[k + 1] = hb_all_forces(each, all[i].forces, all[i].q[k + 1],
-                                              all[i].v[k + 1], 0, 0, all[i].memory);
+            all[i].out[k + 1] = hb_sum_of_forces(each, all[i].forces, all[i].q[k + 1],
+                                                 all[i].v[k + 1], all[i].memory);
     }
     for (index_t i = 0; i <= near; i++)
         for (index_t j = k + 1; j < n; j++)
@@ -104,7 +104,8 @@ EXPORT void hb_forces(index_t n, double dt, index_t count, const double *forces,
     const int all = (int)count;
     for (index_t k = 0; k < n; k++) {
         const double way = k ? q[k] - q[k - 1] : 0;
-        out[k] = hb_all_forces(all, forces, q[k], v[k], way, k ? dt : 0, memory);
+        hb_move_memories(all, forces, v[k], way, k ? dt : 0, memory);
+        out[k] = hb_sum_of_forces(all, forces, q[k], v[k], memory);
     }
 }
 

@@ -240,3 +240,33 @@ def test_what_stands_still_is_not_told_and_a_zero_stays_zero():
     assert [free.element for free in start.free[:3]] == [0, 0, 1]
     assert all(np.isfinite([free.low, free.high]).all() for free in start.free)
     assert re_tuned_words(start, start) == "nothing moved far"
+
+
+SENSOR = {"thresholds": (2.0, 7.0, 15.0), "weights": (0.17, 0.15, 0.12)}
+
+
+def positioner(frequency_hz, gain):
+    mode = second_order(frequency_hz, 0.04)
+    return base(PrandtlIshlinskii(**SENSOR), Gain(value=gain), mode)
+
+
+def swept(model):
+    """Records of a positioner in steps a tenth as long: its mode is excited."""
+    rng, fine = np.random.default_rng(29), np.arange(40000) / 20000
+    for k, use in enumerate(["fit", "fit", "hold-out"]):
+        lines = zip(rng.uniform(1, 240, 20), rng.uniform(0, 6, 20), strict=True)
+        sines = sum(3 * np.sin(2 * np.pi * f * fine + p) for f, p in lines)
+        u = np.clip(fine / 0.2, 0, 1) * (40 + sines)
+        y = model.simulate(u, fine[1])[::10]
+        y += 0.02 * np.std(y) * rng.standard_normal(len(y))
+        yield record(u[::10], y, name=f"run-{k}", dt=10 * fine[1], use=use)
+
+
+def test_a_mode_and_a_gain_that_are_a_little_off_are_no_two_effects():
+    *fit, held = swept(positioner(210.0, 1.0))
+    evidence = Evidence("made", tuple(fit), (held,))
+    asked = Asked(vocabulary=among("resonance", "calibration-error", "input-delay"))
+    content = closed_gap(evidence, positioner(211.5, 1.01), asked).decision.content
+    assert content["effects"] == []
+    assert content["verdict"] == "parameters"
+    assert "denominator moved most" in content["reason"]

@@ -211,6 +211,19 @@ def test_a_tolerance_holds_a_number_of_the_base_back():
     assert 11.0 <= found[1e-3] < 11.5
 
 
+def test_beside_a_number_at_the_end_of_its_range_the_others_are_at_their_best():
+    # Cut off behind the step, the gain would leave the offset of a gain of 1.5.
+    u = 1.0 + np.sin(np.arange(400) / 7)
+    given = record(u, 1.5 * u + 0.2)
+    chain = (block("gain", value=1.0, offset=0.0),)
+    free = (Free(0, "value", low=0.9, high=1.1), Free(0, "offset"))
+    state = replace(state_of(chain, [given]), free=free)
+    found, _ = refit(state, plain_score(state, 0.01))
+    gain, offset = (found.value(item) for item in free)
+    assert gain == 1.1
+    assert offset == pytest.approx(np.mean(given.y - 1.1 * u), rel=1e-2)
+
+
 def test_a_held_number_stays_where_it_was_fitted_first():
     # Each refit would else begin where the last one ended, and pay nothing for it.
     loop, lag = hysteresis(), block("drive-lag", time_constant_s=4e-3)

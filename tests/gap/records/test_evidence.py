@@ -229,6 +229,8 @@ def test_an_output_of_a_few_steps_may_stand_still_while_its_input_moves(tmp_path
     ("period", "expected"),
     [
         (501, "period_samples: 501; expected at most 500, half of its 1000 samples"),
+        (999, "or all of them: one period of a steady state"),
+        (1001, "period_samples: 1001; expected at most 500"),
         (430, "period_samples: 430; the input differs from one period to the next"),
         (2.5, "period_samples: 2.5; expected a whole number"),
         (0, "period_samples"),
@@ -248,6 +250,11 @@ def test_a_period_that_fits_twice_is_taken(tmp_path):
     u = np.concatenate([faded, U])
     made = [record(u, 5 * u, name="a", period_samples=500), pair()[1]]
     assert load_evidence(write_folder(tmp_path / "e", made)).fit[0].period_samples
+
+
+def test_one_period_of_a_steady_state_is_taken(tmp_path):
+    folder = write_folder(tmp_path / "d", pair(period_samples=1000))
+    assert load_evidence(folder).fit[0].repeats
 
 
 def test_records_may_be_sampled_at_different_rates(tmp_path):

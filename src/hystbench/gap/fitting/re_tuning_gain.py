@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.blocks.input_delay import InputDelay
+from hystbench.blocks.linear import LinearBlock
+from hystbench.blocks.resonance import Resonance
 from hystbench.gap.bases.known_about import LATE, in_time, stated
 from hystbench.gap.fitting.model_score import beside_of
 from hystbench.gap.fitting.on_records import free_within
@@ -73,6 +75,17 @@ def _loosened(state: ModelState) -> ModelState:
     timing = Free(0, "delay_s", None, most, 0.0, 2 * most, given=most)
     state = replace(state, free=(*state.free, timing))
     return state.settled()
+
+
+def repeats_a_mode(state: ModelState) -> bool:
+    """Tell whether a mode was added where the base has one, as far as it is known."""
+    added = state.places_added
+    base = (x for place, x in enumerate(state.chain) if place not in added)
+    linear = [x.continuous().a for x in base if isinstance(x, LinearBlock)]
+    poles = np.concatenate([np.linalg.eigvals(a) for a in linear] or [np.empty(0)])
+    own = np.abs(poles[np.abs(poles.imag) > 0.0]) / (2 * np.pi)
+    modes = (x for x in (state.chain[k] for k in added) if isinstance(x, Resonance))
+    return any(np.any(np.abs(own / x.frequency_hz - 1.0) < ABOUT) for x in modes)
 
 
 def re_tuned_words(start: ModelState, state: ModelState) -> str:

@@ -13,7 +13,7 @@ from hystbench.gap.fitting.beside import beside_slope
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import beside_of, make_score, score_of
-from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.score import Held, Score
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.variant_search import Trial
@@ -31,6 +31,9 @@ DAMPING = (0.0, 1e2, 1e4, 1e6)
 
 FAR, NOWHERE = 1e6, 1e100
 """Times its own list's largest that a number may become; where all of it is zero."""
+
+FIXED = 1e30
+"""Charge for the square of a change of a number that goes to the end of its range."""
 
 ENOUGH = 0.05
 """A round that lowers the score by less is the last."""
@@ -91,14 +94,8 @@ def refit(
         size = sizes(state, tangents)
         begun, before = state, best
         for level in range(least, len(DAMPING)):
-            found = score.amplitudes(
-                state.residual,
-                tangents,
-                state.freedom,
-                state.held.in_steps(DAMPING[level] / size**2),
-                beside=beside_of(state, score),
-            )
-            change = dict(enumerate(found.values.tolist()))
+            step = _step_in_range(state, score, tangents, DAMPING[level] / size**2)
+            change = dict(enumerate(step.tolist()))
             try:
                 moved = state.moved(change, reflected=True)
                 value = score_of(moved, score)
@@ -106,7 +103,7 @@ def refit(
                 continue  # out of what the blocks accept together: go less far
             # At the floor the score is flat, and a short step still right. What a fold
             # does not tell would go anywhere.
-            idle = value > best - ENOUGH and np.any(np.abs(found.values) > size)
+            idle = value > best - ENOUGH and np.any(np.abs(step) > size)
             if value <= best and not idle:
                 state, best, least = moved, value, max(level - 1, 0)
                 break
@@ -122,6 +119,36 @@ def refit(
         else:
             tangents = mended(tangents, begun, state, size)
     return state, best
+
+
+def _step_in_range(
+    state: ModelState, score: Score, tangents: FloatArray, damping: FloatArray
+) -> FloatArray:
+    """Give the step of all free numbers that lowers the score most, as slopes tell.
+
+    A number that would leave its range goes to its end, and the others are solved for
+    anew: cut off behind, it would leave them a step that made up for its own.
+    """
+    ranges = np.array([state.range_of(free) for free in state.free]).reshape(-1, 2)
+    values = np.array([state.value(free) for free in state.free])
+    low, high = (ranges - values[:, None]).T
+    held = state.held.in_steps(damping)
+    while True:
+        found = score.amplitudes(
+            state.residual,
+            tangents,
+            state.freedom,
+            held,
+            beside=beside_of(state, score),
+        ).values
+        ends = np.clip(found, low, high)
+        beyond = np.abs(found - ends) > 1e-6 * np.maximum(np.abs(values), np.abs(ends))
+        beyond &= held.stiffness < FIXED
+        if not beyond.any():
+            return found
+        held = Held(
+            np.where(beyond, FIXED, held.stiffness), np.where(beyond, -ends, held.moved)
+        )
 
 
 def mended(

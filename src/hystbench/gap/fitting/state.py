@@ -275,6 +275,11 @@ class ModelState:
         value = getattr(self.chain[free.block], free.parameter)
         return float(value if free.element is None else value[free.element])
 
+    def range_of(self, free: Free) -> tuple[float, float]:
+        """Give the least and the largest value that a free number may have."""
+        about = self.chain[free.block].parameters()[free.parameter]
+        return max(about.low, free.low), min(about.high, free.high)
+
     def moved(self, changes: dict[int, float], reflected: bool = False) -> ModelState:
         """Give the state with some free numbers changed by so much; as :meth:`at`."""
         values = {k: self.value(self.free[k]) + x for k, x in changes.items()}
@@ -299,9 +304,7 @@ class ModelState:
         for k, wanted in values.items():
             free = self.free[k]
             block, own = self.chain[free.block], new.setdefault(free.block, {})
-            about = block.parameters()[free.parameter]
-            low, high = max(about.low, free.low), min(about.high, free.high)
-            value = float(np.clip(wanted, low, high))
+            value = float(np.clip(wanted, *self.range_of(free)))
             if free.element is None:
                 own[free.parameter] = value
             else:

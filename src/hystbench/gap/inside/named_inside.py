@@ -31,6 +31,7 @@ from hystbench.gap.inside.further_modes import (
     with_modes,
 )
 from hystbench.gap.inside.insert_law import Times, host_places, laws_for
+from hystbench.gap.inside.known_host import with_pairs_beside_free
 from hystbench.gap.inside.one_coordinate import ZEROS, Host
 from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.naming.add_effects import Named
@@ -147,7 +148,10 @@ def named_inside(
     full = [with_more(*item) for item in cheaper]
     known = [chosen(own, score.floor, share) for _, own in full]
     wanting = all(may_gain(item, score) for item in known)
-    full.append(with_more(host, found) if wanting else (host, found))
+    host, found = with_more(host, found) if wanting else (host, found)
+    if not identified and limit - host.counts > 1 and wanting:
+        found = with_pairs_beside_free(found, offer, score, say)
+    full.append((host, found))
     host, found = min(full, key=lambda item: charge_of(*item))
     best, alone = chosen(found, score.floor, share), host.alone
     if not best.effects:

@@ -1,0 +1,87 @@
+"""Pairs of forces in a host of known numbers, found where those numbers are free."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.gap.fitting.edit_chain import without_effect
+from hystbench.gap.fitting.least_squares import Fitted, fitted, fitted_to_the_end
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.inside.combine_forces import (
+    PAIRS,
+    best_of_each,
+    least,
+    singles,
+    together,
+)
+from hystbench.gap.inside.insert_law import Offer, host_of
+from hystbench.gap.progress import Say, silent
+
+LINEAR = ("mass", "damping", "stiffness")
+
+
+def with_pairs_beside_free(
+    found: Sequence[Fitted], offer: Offer, score: Score, say: Say = silent
+) -> list[Fitted]:
+    """Add the pairs of forces that do best where the host's own numbers are free.
+
+    Two forces that are missing each leave what a wrong spring and a wrong damper do.
+    With the numbers known, a single force is then judged by how well it makes up for
+    both, and the right two are not carried on. With the numbers free it is judged by
+    its own shape. The pairs that are best there are fitted beside the known numbers.
+
+    Parameters
+    ----------
+    found : sequence of Fitted
+        The host alone first, then with forces.
+    offer : callable
+        Gives what may be put in.
+    score : Score
+    say : callable
+
+    Returns
+    -------
+    list of Fitted
+        Those given, the pairs, and each of their forces alone; of each set of effects
+        the best.
+    """
+    host = found[0].state
+    place = host_of(host)
+    if not isinstance(host.chain[place], Mechanism) or not _known(host, place):
+        return list(found)
+    own = (Free(place, x) for x in LINEAR if getattr(host.chain[place], x) != 0.0)
+    others = (item for item in host.free if item.block != place)
+    begun = fitted(replace(host, free=(*others, *own)), score)
+    say("inside: with the host's own numbers free, to see which forces belong together")
+    beside_free = together(singles(begun, offer, score, say), offer, score, say, 2)
+    pairs = sorted(
+        (item for item in beside_free if len(item.effects) == 2),
+        key=lambda item: item.score,
+    )
+    every = list(found)
+    for pair in pairs[:PAIRS]:
+        beside = fitted_to_the_end(_beside_known(pair.state, host), score)
+        alone = (without_effect(beside.state, k) for k in range(2))
+        every += [beside, *(fitted_to_the_end(state, score) for state in alone)]
+    best = least(every)
+    say(f"inside: {' + '.join(best.effects)}: gain {found[0].score - best.score:.1f}")
+    return best_of_each(every)
+
+
+def _known(state: ModelState, place: int) -> bool:
+    """Tell whether the linear numbers of a host are known, exactly or about."""
+    own = (x for x in state.free if x.block == place and x.parameter in LINEAR)
+    return all(x.given is not None for x in own)
+
+
+def _beside_known(state: ModelState, host: ModelState) -> ModelState:
+    """Give a host of a model with forces its known numbers back."""
+    place, was = host_of(state), host_of(host)
+    chain = list(state.chain)
+    chain[place] = host.chain[was]
+    others = (x for x in state.free if x.block != place)
+    own = (x._replace(block=place) for x in host.free if x.block == was)
+    return replace(state, free=(*others, *own)).with_chain(tuple(chain))
