@@ -64,6 +64,10 @@ LAWS = {
         ),
     ),
     "drag": ({"coefficient": 0.3}, lambda q, v: 0.3 * v * np.abs(v)),
+    "velocity-limit": (
+        {"rate": 0.4, "damping": 3.0},
+        lambda q, v: 3 * np.sign(v) * np.maximum(np.abs(v) - 0.4, 0),
+    ),
     "smooth-friction": (
         {
             "coulomb": 2.0,

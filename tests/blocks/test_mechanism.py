@@ -126,6 +126,21 @@ def test_corners_of_a_force_leave_the_order_as_it_is(name):
     assert ratios == pytest.approx([4, 4], abs=0.5)
 
 
+def test_a_damper_beyond_a_velocity_follows_a_fine_solution():
+    # Where in a step the corner lies changes with the step: the order holds on average.
+    def beyond(q, v):
+        return 20 * np.sign(v) * np.maximum(np.abs(v) - 0.5, 0)
+
+    limit, errors = force("velocity-limit", rate=0.5, damping=20.0), []
+    for count in (800, 1600, 3200):
+        t = np.linspace(0, 2, count + 1)
+        wanted = solved(beyond, t)[0]
+        found = run(MACHINE, [limit], drive(t), t[1])
+        errors.append(np.abs(found - wanted).max() / np.ptp(wanted))
+    assert errors[-1] < 1e-3
+    assert errors[0] / errors[-1] > 12  # about 16: of second order
+
+
 @pytest.mark.parametrize("hold", ["zero-order", "linear", "band-limited"])
 def test_without_a_force_it_is_the_transfer_function(hold):
     # Both are exact for staircases and straight lines. A smooth input is taken as lines
@@ -216,6 +231,7 @@ def test_a_lossy_contact_only_loses_energy(stiffness, loss):
 #: What each force can store at most.
 DISSIPATIVE = {
     "drag": ("drag", {"coefficient": 2.0}, 0.0),
+    "hard limit": ("velocity-limit", {"rate": 0.2, "damping": 2e4}, 0.0),
     "friction": (
         "friction-force", {"coulomb": 4.0, "presliding_distance": 0.02}, 0.04
     ),

@@ -33,6 +33,7 @@ LAWS = {
         "stribeck_velocity": 0.9,
     },
     "drag": {"coefficient": 0.8},
+    "velocity-limit": {"rate": 0.5, "damping": 20.0},
     "hysteretic-force": {"largest": 30.0, "yield_distance": 0.1, "sharing": 0.3},
     "gravity": {"amplitude": 50.0, "angle": 0.5},
     "slider-with-gap": {"contact_stiffness": 300.0, "slip_force": 20.0, "gap": 0.1},

@@ -177,6 +177,8 @@ static double hb_force(const double *f, double q, double v, const double *memori
         return hb_level(f[1], f[3], f[4], v) * tanh(v / f[2]);
     case 4: /* drag */
         return f[1] * v * fabs(v);
+    case 12: /* faster */
+        return f[2] * hb_dead_zone(f[1], v);
     case 5: /* hysteretic */
         return f[1] * memory;
     case 6: /* gravity */
@@ -229,6 +231,8 @@ static double hb_mean_force(const double *f, double q, double way, double h,
         return hb_level(f[1], f[3], f[4], v) * tanh(v / f[2]);
     case 4: /* drag */
         return f[1] * v * fabs(v);
+    case 12: /* faster */
+        return f[2] * hb_dead_zone(f[1], v);
     case 5: /* hysteretic */ {
         double integral;
         if (way == 0) return f[1] * memory;

@@ -10,8 +10,9 @@ import numpy as np
 from scipy.special import expit, logit
 
 from hystbench.blocks.eddy_diffusion import GEOMETRIES
+from hystbench.blocks.velocity_limit import VelocityLimit
 from hystbench.gap.effects.effect import Effect
-from hystbench.gap.effects.law import Law, Passed
+from hystbench.gap.effects.law import Law, Moved, Passed
 from hystbench.gap.effects.material import SHARPEST, SOFTEST, STRAIGHT
 from hystbench.gap.effects.places import (
     drives_a_machine,
@@ -83,8 +84,12 @@ def _values(geometry: str, given: Values) -> dict[str, Any]:
     return {**given, "geometry": geometry}
 
 
+HARD = 100.0
+"""Dampings that make the force at the largest velocity, beyond a limit of it."""
+
+
 class SlewLimit(Effect):
-    """A rate below the fastest of the records' inputs.
+    """A rate below the fastest of the records' inputs, or of a servo inside.
 
     Where the input steps within a sample interval and rests on both sides, the fastest
     is a third of that: a limit that makes three intervals of the step moves its middle
@@ -94,6 +99,7 @@ class SlewLimit(Effect):
     name = "slew-limit"
     shows = "rate"
     place = "drive"
+    laws = ("velocity-limit",)
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer rates from 2 to 98 % of the fastest there.
@@ -114,6 +120,13 @@ class SlewLimit(Effect):
                 grids={"rate": rates},
                 limits={"rate": (slowest, float(rates[-1]))},
             )
+
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
+        """Offer a servo that goes no faster, a little and far below its fastest."""
+        damping = HARD * moved.force / moved.speed
+        for share in (0.3, 0.7):
+            block = VelocityLimit(rate=share * moved.speed, damping=damping)
+            yield Law("of a servo", block, ("rate",))
 
 
 STEP = 0.25

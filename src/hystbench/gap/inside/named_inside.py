@@ -22,8 +22,13 @@ from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.as_late import with_others_as_late
 from hystbench.gap.inside.choose import as_rounds, charged, chosen, not_taken, way_to
-from hystbench.gap.inside.combine_forces import may_gain, singles, together
+from hystbench.gap.inside.combine_forces import (
+    may_gain,
+    singles,
+    together,
+)
 from hystbench.gap.inside.fewer import OnAll, on_fewer
 from hystbench.gap.inside.further_modes import (
     further_words,
@@ -154,6 +159,8 @@ def named_inside(
     full.append((host, found))
     host, found = min(full, key=lambda item: charge_of(*item))
     best, alone = chosen(found, score.floor, share), host.alone
+    found = with_others_as_late(best, found, offer, score)
+    best = chosen(found, score.floor, share)
     if not best.effects:
         say("inside: no force pays")
         if identified and fewer is start and not may_gain(best, score):

@@ -1,0 +1,66 @@
+"""A servo that turns no faster than its pump lets it."""
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from hystbench.gap.asked import Asked
+from hystbench.gap.bases.load import load_base
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.run import closed_gap
+from hystbench.quantities import Quantities
+from hystbench.record import Channel, Record
+from tests.gap.searched import among
+
+DT, COUNT, NOISE = 0.1, 1500, 0.1
+RATE, LAG, PUMP = 3.2, 1.1, 0.12  # deg/s, s, s
+LIKELY = Asked(
+    vocabulary=among(
+        *("slew-limit", "drag", "drive-saturation", "friction", "hysteretic-force"),
+        *("saturation", "backlash", "drive-lag", "input-delay"),
+    )
+)
+"""What a servo's limit may be taken for."""
+
+
+def turned(order):
+    """A rudder by a general solver; the order is a staircase."""
+
+    def slope(t, state):
+        angle, rate = state
+        now = order[min(int(t / DT + 1e-9), COUNT - 1)]
+        return [rate, (np.clip((now - angle) / LAG, -RATE, RATE) - rate) / PUMP]
+
+    time = np.arange(COUNT) * DT
+    given = {"method": "RK45", "rtol": 1e-6, "atol": 1e-8, "max_step": DT / 2}
+    return solve_ivp(slope, (0.0, time[-1]), [0.0, 0.0], t_eval=time, **given).y[0]
+
+
+def orders():
+    rng, time = np.random.default_rng(12), np.arange(COUNT) * DT
+    yield "zigzag", np.repeat(rng.choice([-10.0, 0.0, 10.0], COUNT // 100), 100)
+    lines = zip(rng.uniform(0.01, 0.12, 9), rng.uniform(0, 6, 9), strict=True)
+    yield "autopilot", sum(2.5 * np.sin(2 * np.pi * f * time + p) for f, p in lines)
+    yield "steps", np.repeat(rng.uniform(-20, 20, COUNT // 75), 75)
+
+
+def test_a_servo_that_goes_no_faster_is_a_slew_limit_inside():
+    rng, records = np.random.default_rng(13), []
+    about = Channel("order", "deg"), Channel("rudder", "deg"), "twin"
+    for (name, u), use in zip(orders(), ["fit", "fit", "hold-out"], strict=True):
+        y = turned(u) + NOISE * rng.standard_normal(COUNT)
+        records.append(Record(name, DT, u, y, *about, use))
+    evidence = Evidence(
+        "gear",
+        tuple(records[:2]),
+        (records[2],),
+        input_hold="zero-order",
+        noise_rms=NOISE,
+        quantities=Quantities("position", "position"),
+    )
+    base, _ = load_base("linear", evidence)
+    content = closed_gap(evidence, base, LIKELY).decision.content
+    (effect,) = content["effects"]
+    assert content["verdict"] == "named"
+    assert (effect["name"], effect["place"]) == ("slew-limit", "inside")
+    assert abs(effect["parameters"]["rate"]["value"] / RATE - 1) < 0.03
+    assert content["gap"]["after"] < 2 * NOISE
