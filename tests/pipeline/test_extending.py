@@ -185,7 +185,8 @@ def test_an_edited_effect_is_searched_again(searched):
 def test_all_of_the_package_keeps_the_contracts(configured):
     """Those that hystbench's own filters, waveforms, blocks and effects keep."""
     path = map(str, filter(None, (configured.packages, os.environ.get("PYTHONPATH"))))
-    contracts = ("test_registered.py", "blocks", "gap/effects/test_effects.py")
+    files = ("blocks/test_contract.py", "gap/effects/test_effects.py")
+    contracts = ("test_registered.py", *files)
     ran = subprocess.run(
         [
             *(sys.executable, "-m", "pytest", "-v", "-p", "no:cacheprovider"),

@@ -1,65 +1,57 @@
 """A delay beside a force: to first order a lag does the same."""
 
+from functools import partial
+
 import numpy as np
 
 from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.gap.asked import Asked
-from hystbench.gap.bases.load import load_base
-from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.run import closed_gap
-from hystbench.quantities import Quantities
+from hystbench.gap.effects.law import Law
+from hystbench.gap.fitting.edit_chain import without_effect
+from hystbench.gap.fitting.least_squares import fitted_to_the_end
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.inside.as_late import lateness, with_others_as_late
+from hystbench.gap.inside.insert_law import laws_for, with_law
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.record import Channel, Record
-from tests.gap.searched import among
 
-DT, FINE, COUNT, NOISE, LATE = 2e-3, 5, 3000, 0.05, 9
-AXIS = """
-name: axis
-input: {name: force, unit: N}
-output: {name: position, unit: mm}
-free: {mechanism.mass: 0.03, mechanism.stiffness: 0.03, mechanism.damping: 0.03}
-chain:
-- mechanism: {mass: 0.00455, damping: 0.025, stiffness: 1.71}
-"""
-LIKELY = Asked(
-    vocabulary=among(
-        *("friction", "hysteretic-force", "backlash"),
-        *("input-delay", "sensor-lag", "drive-lag"),
-    )
-)
+DT, FINE, COUNT, NOISE, LATE = 2e-3, 5, 2500, 0.05, 9
+AXIS = Mechanism(mass=0.0045, damping=0.025, stiffness=1.7, hold="zero-order")
+DRY = FrictionForce(coulomb=2.2, presliding_distance=0.06)
+OFFERED = ("friction", "sensor-lag", "drive-lag", "input-delay")
 
 
-def commands():
+def late_record():
+    """An axis with dry friction, to which its command comes nine samples late."""
     rng, time = np.random.default_rng(25), np.arange(COUNT) * DT
     lines = zip(rng.uniform(0.2, 4, 12), rng.uniform(0, 6, 12), strict=True)
-    sines = sum(4 * np.sin(2 * np.pi * f * time + p) for f, p in lines)
-    yield "random", sines * np.clip(time / 0.4, 0, 1)
-    yield "sweep", 12 * np.sin(2 * np.pi * (0.4 + 0.7 * time) * time)
-    yield "steps", np.repeat(rng.uniform(-18, 18, COUNT // 300), 300)
-
-
-def test_a_command_that_is_late_is_no_lag_beside_friction(tmp_path):
-    # The axis itself is the project's own, in fine steps; what counts is the choice.
-    axis = Mechanism(mass=0.0045, damping=0.025, stiffness=1.7, hold="zero-order")
-    dry = FrictionForce(coulomb=2.2, presliding_distance=0.06)
-    rng, records = np.random.default_rng(26), []
+    u = sum(4 * np.sin(2 * np.pi * f * time + p) for f, p in lines)
+    u *= np.clip(time / 0.4, 0, 1)
+    acts = np.repeat(np.concatenate([np.zeros(LATE), u[:-LATE]]), FINE)
+    y = AXIS.motion(acts, DT / FINE, (DRY,)).position[::FINE]
+    y += NOISE * rng.standard_normal(COUNT)
     about = Channel("force", "N"), Channel("position", "mm"), "twin"
-    for (name, u), use in zip(commands(), ["fit", "fit", "hold-out"], strict=True):
-        acts = np.repeat(np.concatenate([np.zeros(LATE), u[:-LATE]]), FINE)
-        y = axis.motion(acts, DT / FINE, (dry,)).position[::FINE]
-        y += NOISE * rng.standard_normal(COUNT)
-        records.append(Record(name, DT, u, y, *about, use))
-    evidence = Evidence(
-        "axis",
-        tuple(records[:2]),
-        (records[2],),
-        input_hold="zero-order",
-        noise_rms=NOISE,
-        quantities=Quantities("force", "position"),
-    )
-    (tmp_path / "model.yaml").write_text(AXIS)
-    base, _ = load_base(str(tmp_path / "model.yaml"), evidence)
-    content = closed_gap(evidence, base, LIKELY).decision.content
-    late = {item["name"]: item for item in content["effects"]}["input-delay"]
-    delay = late["parameters"]["delay_s"]["value"]
-    assert abs(delay / (LATE * DT) - 1) < 0.05
+    return Record("random", DT, u, y, *about)
+
+
+def test_beside_friction_a_delay_takes_the_place_of_a_lag_that_is_as_late():
+    records = (late_record(),)
+    free = tuple(Free(0, name) for name in ("mass", "damping", "stiffness"))
+    sample = ScoredSamples.of(records)
+    axis = ModelState((AXIS,), records, sample, free=free, hold="zero-order").settled()
+    score = Score.plain(sample, NOISE**2)
+    host = fitted_to_the_end(axis, score)
+    offer = partial(laws_for, offered=OFFERED)
+    friction = with_law(axis, "friction", Law("dry", DRY, ("coulomb",)))
+    laws = {law.form: law for law in offer(host)["sensor-lag"]}
+    begun = with_law(friction, "sensor-lag", laws["second order"])
+    lagging = fitted_to_the_end(begun, score)
+    every = with_others_as_late(lagging, [host, lagging], offer, score)
+    best = min(every, key=lambda item: item.score)
+    assert set(best.effects) == {"friction", "input-delay"}
+    assert best.score < lagging.score - 20
+    assert abs(lateness(best.state.chain[0]) / (LATE * DT) - 1) < 0.03
+    # What is left of both without the one that is late was tried as well.
+    left = without_effect(lagging.state, 1).added
+    assert any(item.effects == tuple(x.effect for x in left) for item in every)
