@@ -13,7 +13,7 @@ from hystbench.gap.fitting.tried import tried
 from hystbench.gap.judging.effect_rows import ranking_rows
 from hystbench.gap.naming import second_looks as reconsider
 from hystbench.gap.naming.add_effects import Named
-from hystbench.gap.naming.rounds import Candidate, Round
+from hystbench.gap.naming.rounds import WIDER, Candidate, Round
 from hystbench.gap.naming.second_looks import reconsidered
 from hystbench.gap.progress import silent
 from hystbench.gap.thresholds import PAYS
@@ -74,6 +74,26 @@ def test_a_second_look_counts_only_where_the_effect_itself_could_be_judged(
     assert own.score == pytest.approx(now)
     assert own.score < 0.0
     assert own.score + own.gain == pytest.approx(1.0)
+
+
+def test_an_effect_whose_refit_lost_its_way_is_looked_at_again(two, monkeypatch):
+    """Beside the second effect a wrong shape may no longer hide what it does."""
+    state, (first,) = two
+    lost = Candidate("eddy-diffusion", "drive", declined=WIDER)
+    never = Candidate("creep", "mechanics", declined="added already")
+    rounds = (replace(first, ranking=(*first.ranking, lost, never)),)
+    asked = {}
+
+    def looked(short, score, known, folds):
+        names = [item.name for item in known]
+        asked[next(x for x in ("drive-lag", "asymmetry") if x in names)] = names
+        return tuple(Candidate(name, "drive", state=state) for name in names)
+
+    monkeypatch.setattr(reconsider, "rank", looked)
+    reconsidered(state, rounds, NOISE, silent)
+    assert set(asked["drive-lag"]) == {"drive-lag", "eddy-diffusion"}
+    # It was declined in the round of the other effect.
+    assert asked["asymmetry"] == ["asymmetry"]
 
 
 def test_a_rival_that_takes_a_place_is_seen_with_what_it_scored(two, monkeypatch):

@@ -30,7 +30,13 @@ from hystbench.gap.naming.rivals import (
     on_folds,
     simplest_of_a_tie,
 )
-from hystbench.gap.naming.rounds import Candidate, TriedVariant, best_forms, in_order
+from hystbench.gap.naming.rounds import (
+    WIDER,
+    Candidate,
+    TriedVariant,
+    best_forms,
+    in_order,
+)
 from hystbench.gap.thresholds import CERTAIN, LOOSE, PAYS, SCALE, SHAPE
 
 NEAR = 80.0
@@ -293,7 +299,7 @@ def _judged(
     hidden = score.directions.shape[1] > 0  # what a wrong shape may do hardly counts
     power = state.power(score.floor)
     if hidden and after.share(state, score.floor, power) < -LOOSE:
-        return item.but("makes the gap wider")
+        return item.but(WIDER)
     return replace(item, score=value, gain=now - value, state=after)
 
 

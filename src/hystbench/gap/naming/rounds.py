@@ -15,6 +15,10 @@ MOST_EFFECTS = 4
 """Effects that are looked for, at most."""
 
 
+WIDER = "makes the gap wider"
+"""Why a finalist was declined whose refit went to where a wrong shape hides it."""
+
+
 class TriedVariant(NamedTuple):
     """A variant of an effect: where and how it was tried, and its score."""
 

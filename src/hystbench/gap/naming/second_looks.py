@@ -14,7 +14,13 @@ from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.naming.rank import does_without_itself, rank
-from hystbench.gap.naming.rounds import Candidate, Round, SecondLook, in_order
+from hystbench.gap.naming.rounds import (
+    WIDER,
+    Candidate,
+    Round,
+    SecondLook,
+    in_order,
+)
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import PAYS, SCALE, SHAPE
 
@@ -119,10 +125,17 @@ def _with(
 
 
 def _near(effect: str, rounds: Sequence[Round]) -> set[str]:
+    """Give the effects that came near one in the rounds.
+
+    And those that were refitted in its round and lost their way: beside what came later
+    they may not.
+    """
     found = set()
     for one in rounds:
         best = one.ranking[0].gain
         near = {x.effect for x in one.ranking if x.gain > CLOSE * best}
         if effect in near:
             found |= near
+        if effect == one.ranking[0].effect:
+            found |= {x.effect for x in one.ranking if x.declined == WIDER} - {SHAPE}
     return found
