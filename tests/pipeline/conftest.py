@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import multiprocessing
 import os
+import pkgutil
 import re
 import shlex
 import shutil
@@ -14,14 +15,18 @@ import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from multiprocessing.reduction import DupFd
 from pathlib import Path
 
 import pytest
 import yaml
 
+from hystbench.commands import jobs as commands_of_jobs
 from hystbench.written import ENTRIES
 from tests.conftest import ROOT, own_config, run_hystbench, shorten
+
+from . import programs
 
 
 def small_config() -> dict:
@@ -99,7 +104,7 @@ class Workflow:
         }
 
 
-#: What a run imports: it takes most of one that has nothing to do.
+#: What a run and its jobs import: it takes most of one that has little to do.
 IMPORTED = (
     *("snakemake.cli", "snakemake.report.html_reporter", "smart_open", "yte"),
     *("snakemake.executors.dryrun", "snakemake.executors.local"),
@@ -107,9 +112,18 @@ IMPORTED = (
     *("hystbench.settings", "hystbench.settings_checks", "hystbench.figures"),
     *("hystbench.model", "hystbench.gap.vocabulary", "hystbench.gap.bases.kinds"),
     *("hystbench.challenge.contest.plan", "hystbench.commands.rival"),
+    *("hystbench.cli", "matplotlib.backends.backend_svg", "scipy.optimize"),
+    *(
+        f"{commands_of_jobs.__name__}.{module.name}"
+        for module in pkgutil.iter_modules(commands_of_jobs.__path__)
+    ),
 )
+# As the command line does; here libraries are imported before it.
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
 FORKING = multiprocessing.get_context("forkserver")
 FORKING.set_forkserver_preload(list(IMPORTED))
+#: Names the packages to find first in jobs.
+PACKAGES = "HYSTBENCH_TEST_PACKAGES"
 
 
 def forked(
@@ -121,12 +135,23 @@ def forked(
         tempfile.TemporaryFile("w+") as err,
     ):
         streams = (DupFd(out.fileno()), DupFd(err.fileno()))
-        given = (words, folder, packages, dict(os.environ), *streams)
+        own = {**os.environ, "BASH_ENV": str(started_programs())}
+        given = (words, folder, packages, own, *streams)
         process = FORKING.Process(target=begin, args=given)
         process.start()
         process.join()
         printed = [stream.seek(0) or stream.read() for stream in (out, err)]
     return subprocess.CompletedProcess(words, process.exitcode, *printed)
+
+
+@cache
+def started_programs() -> Path:
+    return programs.started(FORKING, find_what_a_job_is_to_find)
+
+
+def find_what_a_job_is_to_find() -> None:
+    if PACKAGES in os.environ:
+        find_first(Path(os.environ[PACKAGES]))
 
 
 def begin(
@@ -155,6 +180,7 @@ def begin(
 def find_first(packages: Path) -> None:
     """Find packages of a folder before others, here and in the jobs of this process."""
     sys.path.insert(0, str(packages))
+    os.environ[PACKAGES] = str(packages)
     before = os.environ.get("PYTHONPATH")
     os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(packages), before)))
     shadowed = {place.name for place in packages.iterdir()}
