@@ -108,6 +108,14 @@ def test_a_mode_that_runs_away_has_no_output_from_there_on():
     assert np.isnan(y[first:]).all()
 
 
+def test_a_sharp_limit_of_a_huge_signal_is_its_level():
+    block = Saturation(level=0.5, sharpness=20.0)
+    z = np.array([-1e200, -0.5, 0.0, 0.5, 1e200])
+    at_the_level = 0.5 / 2 ** (1 / 20)
+    wanted = [-0.5, -at_the_level, 0.0, at_the_level, 0.5]
+    np.testing.assert_allclose(block.simulate(z, z, 1e-3), wanted, rtol=1e-12)
+
+
 def test_saturation_by_hand():
     z = np.array([-100.0, 0.0, 1e-6, 2.0 * np.arctanh(0.5)])
     y = Saturation(level=2.0).simulate(z, z, DT)

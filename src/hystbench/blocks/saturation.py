@@ -40,5 +40,9 @@ class Saturation(Block, name="saturation", place="material", curve="saturation")
         ratio = z / self.level
         if self.sharpness == 0.0:
             return self.level * np.tanh(ratio)
-        size = 1.0 + np.abs(ratio) ** self.sharpness
-        return z / size ** (1.0 / self.sharpness)
+        # Beyond the level by the inverse of the ratio: no power of a large one is taken.
+        size = np.abs(ratio)
+        inside = np.minimum(size, 1.0)
+        small = inside / np.maximum(size, 1.0)
+        bent = inside / (1.0 + small**self.sharpness) ** (1.0 / self.sharpness)
+        return np.asarray(np.copysign(self.level * bent, z))

@@ -69,7 +69,11 @@ static double hb_saturation(double level, double sharpness, double z)
 {
     const double ratio = z / level;
     if (sharpness == 0) return level * tanh(ratio);
-    return z / pow(1 + pow(fabs(ratio), sharpness), 1 / sharpness);
+    /* Beyond the level by the inverse of the ratio: no power of a large one is taken. */
+    const double size = fabs(ratio), inside = fmin(size, 1);
+    const double bent =
+        inside / pow(1 + pow(inside / fmax(size, 1), sharpness), 1 / sharpness);
+    return copysign(level * bent, z);
 }
 
 static double hb_rounded_dead_zone(double half_width, double rounding, double z)
