@@ -40,7 +40,7 @@ class Saturation(Block, name="saturation", place="material", curve="saturation")
         ratio = z / self.level
         if self.sharpness == 0.0:
             return self.level * np.tanh(ratio)
-        # Beyond the level by the inverse of the ratio: no power of a large one is taken.
+        # Beyond the level the inverse of the ratio: no power of a large one is taken.
         size = np.abs(ratio)
         inside = np.minimum(size, 1.0)
         small = inside / np.maximum(size, 1.0)

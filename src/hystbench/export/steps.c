@@ -69,7 +69,7 @@ static double hb_saturation(double level, double sharpness, double z)
 {
     const double ratio = z / level;
     if (sharpness == 0) return level * tanh(ratio);
-    /* Beyond the level by the inverse of the ratio: no power of a large one is taken. */
+    /* Beyond the level the inverse of the ratio: no power of a large one is taken. */
     const double size = fabs(ratio), inside = fmin(size, 1);
     const double bent =
         inside / pow(1 + pow(inside / fmax(size, 1), sharpness), 1 / sharpness);
