@@ -127,9 +127,9 @@ def check_moves(file: Path, item: Mapping[str, str], values: FloatArray) -> None
 
 
 def check_period(place: str, period: int, u: FloatArray) -> None:
-    """Refuse a period that no whole one is of, or with which no input repeats.
+    """Refuse a period that does not fit twice, or with which no input repeats.
 
-    A record of one period, and no more, is one of a steady state.
+    A record may also be just one period, of a steady state.
     """
     if period == len(u):
         return

@@ -187,14 +187,14 @@ class _Searched:
             return True
         state, score = self.named.state, self.score_beside(self)
         now = score_of(state, score)
-        count = len(state.added)
+        count, margin = len(state.added), self.margin
         shorter = [
-            (without_effect(state, number), now - self.margin)
+            (without_effect(state, number), now - margin)
             for number in range(count)
             if removable(state, number)
         ]
         if count > 1:  # it may stand for both, and pays as one effect
-            alone = now + _pay(count) - _pay(1) - self.margin
+            alone = now + _pay(count) - _pay(1) - margin
             shorter.append((self.start, alone))
         least = now - PAYS
         beside = least if count else least - PAYS

@@ -80,11 +80,13 @@ def _loosened(state: ModelState) -> ModelState:
 def repeats_a_mode(state: ModelState) -> bool:
     """Tell whether a mode was added where the base has one, as far as it is known."""
     added = state.places_added
+    modes = [x for x in (state.chain[k] for k in added) if isinstance(x, Resonance)]
+    if not modes:
+        return False
     base = (x for place, x in enumerate(state.chain) if place not in added)
     linear = [x.continuous().a for x in base if isinstance(x, LinearBlock)]
     poles = np.concatenate([np.linalg.eigvals(a) for a in linear] or [np.empty(0)])
     own = np.abs(poles[np.abs(poles.imag) > 0.0]) / (2 * np.pi)
-    modes = (x for x in (state.chain[k] for k in added) if isinstance(x, Resonance))
     return any(np.any(np.abs(own / x.frequency_hz - 1.0) < ABOUT) for x in modes)
 
 

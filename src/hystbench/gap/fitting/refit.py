@@ -132,14 +132,10 @@ def _step_in_range(
     ranges = np.array([state.range_of(free) for free in state.free]).reshape(-1, 2)
     values = np.array([state.value(free) for free in state.free])
     low, high = (ranges - values[:, None]).T
-    held = state.held.in_steps(damping)
+    held, beside = state.held.in_steps(damping), beside_of(state, score)
     while True:
         found = score.amplitudes(
-            state.residual,
-            tangents,
-            state.freedom,
-            held,
-            beside=beside_of(state, score),
+            state.residual, tangents, state.freedom, held, beside=beside
         ).values
         ends = np.clip(found, low, high)
         beyond = np.abs(found - ends) > 1e-6 * np.maximum(np.abs(values), np.abs(ends))

@@ -360,13 +360,12 @@ class ModelState:
 
     def _step(self, free: Free) -> float:
         value = self.value(free)
-        about = self.chain[free.block].parameters()[free.parameter]
         size = 1e-3 * abs(value)
         if size == 0:
             size = 1e-6
         # A tolerance may leave less room than that.
         size = min(size, (free.high - free.low) / 4)
-        return -size if value + size > min(about.high, free.high) else size
+        return -size if value + size > self.range_of(free)[1] else size
 
 
 def _moved_effect(item: Added, moved: Mapping[int, int]) -> Added:

@@ -64,7 +64,7 @@ def lateness(block: Block) -> float:
     A lag by its time constant, one of second order by ``2 damping_ratio`` of them.
     """
     if isinstance(block, InputDelay):
-        return block.delay_s - block.lead_s
+        return block.shift_s
     if isinstance(block, DriveLag):
         return block.time_constant_s * (2 * block.damping_ratio or 1.0)
     return 0.0

@@ -11,7 +11,7 @@ import numpy as np
 from hystbench.blocks.attached_mass import AttachedMass
 from hystbench.blocks.base import Block
 from hystbench.blocks.force import Force, against
-from hystbench.blocks.impedance import Impedance
+from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
@@ -25,6 +25,9 @@ from hystbench.record import Record
 
 REMAINS = 0.05
 """Of a spring or a damper, at least, where a force begins that does its work."""
+
+LINEAR = NUMBERS[:-1]
+"""Numbers of the linear part of a mechanism."""
 
 Laws = Mapping[str, Sequence[Law | Changed]]
 """What may be put into a host, by effect."""
@@ -284,6 +287,17 @@ def _if_free(state: ModelState, place: int, name: str, value: float) -> float:
 def host_of(state: ModelState) -> int:
     """Give the place of what forces are put inside of: the last host of the chain."""
     return host_places(state.chain)[-1]
+
+
+def own_numbers(state: ModelState, place: int) -> tuple[Free, ...]:
+    """Give the numbers that a host has itself as free ones.
+
+    What drives a mechanism has none of its own: it would be one of mass, damping and
+    stiffness together.
+    """
+    block = state.chain[place]
+    names = NUMBERS if isinstance(block, Impedance) else LINEAR
+    return tuple(Free(place, name) for name in names if getattr(block, name) != 0.0)
 
 
 def host_places(chain: Sequence[Block]) -> list[int]:

@@ -9,7 +9,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import Fitted, fitted, fitted_to_the_end
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.combine_forces import (
     PAIRS,
     best_of_each,
@@ -17,10 +17,8 @@ from hystbench.gap.inside.combine_forces import (
     singles,
     together,
 )
-from hystbench.gap.inside.insert_law import Offer, host_of
+from hystbench.gap.inside.insert_law import LINEAR, Offer, host_of, own_numbers
 from hystbench.gap.progress import Say, silent
-
-LINEAR = ("mass", "damping", "stiffness")
 
 
 def with_pairs_beside_free(
@@ -52,9 +50,9 @@ def with_pairs_beside_free(
     place = host_of(host)
     if not isinstance(host.chain[place], Mechanism) or not _known(host, place):
         return list(found)
-    own = (Free(place, x) for x in LINEAR if getattr(host.chain[place], x) != 0.0)
     others = (item for item in host.free if item.block != place)
-    begun = fitted(replace(host, free=(*others, *own)), score)
+    free = (*others, *own_numbers(host, place))
+    begun = fitted(replace(host, free=free), score)
     say("inside: with the host's own numbers free, to see which forces belong together")
     beside_free = together(singles(begun, offer, score, say), offer, score, say, 2)
     pairs = sorted(
@@ -64,10 +62,11 @@ def with_pairs_beside_free(
     every = list(found)
     for pair in pairs[:PAIRS]:
         beside = fitted_to_the_end(_beside_known(pair.state, host), score)
-        alone = (without_effect(beside.state, k) for k in range(2))
-        every += [beside, *(fitted_to_the_end(state, score) for state in alone)]
-    best = least(every)
-    say(f"inside: {' + '.join(best.effects)}: gain {found[0].score - best.score:.1f}")
+        each = (without_effect(beside.state, k) for k in range(2))
+        every += [beside, *(fitted_to_the_end(state, score) for state in each)]
+    best, alone = least(every), found[0].score
+    if best.effects:
+        say(f"inside: {' + '.join(best.effects)}: gain {alone - best.score:.1f}")
     return best_of_each(every)
 
 

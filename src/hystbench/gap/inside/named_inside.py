@@ -24,11 +24,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.as_late import with_others_as_late
 from hystbench.gap.inside.choose import as_rounds, charged, chosen, not_taken, way_to
-from hystbench.gap.inside.combine_forces import (
-    may_gain,
-    singles,
-    together,
-)
+from hystbench.gap.inside.combine_forces import may_gain, singles, together
 from hystbench.gap.inside.fewer import OnAll, on_fewer
 from hystbench.gap.inside.further_modes import (
     further_words,
@@ -153,9 +149,10 @@ def named_inside(
     full = [with_more(*item) for item in cheaper]
     known = [chosen(own, score.floor, share) for _, own in full]
     wanting = all(may_gain(item, score) for item in known)
-    host, found = with_more(host, found) if wanting else (host, found)
-    if not identified and limit - host.counts > 1 and wanting:
-        found = with_pairs_beside_free(found, offer, score, say)
+    if wanting:
+        host, found = with_more(host, found)
+        if not identified and limit - host.counts > 1:
+            found = with_pairs_beside_free(found, offer, score, say)
     full.append((host, found))
     host, found = min(full, key=lambda item: charge_of(*item))
     best, alone = chosen(found, score.floor, share), host.alone

@@ -19,7 +19,6 @@ import numpy as np
 from hystbench.blocks.attached_mass import AttachedMass
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
-from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.store import Store
@@ -28,7 +27,7 @@ from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.fitting.least_squares import Fitted, fitted, fitted_to_the_end
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.inside.insert_law import host_places
+from hystbench.gap.inside.insert_law import host_places, own_numbers
 from hystbench.gap.inside.modes import frequency_of, modes
 from hystbench.gap.inside.one_coordinate import (
     BEGUN,
@@ -245,21 +244,14 @@ def _in_front(delay: Block, start: ModelState, state: ModelState) -> ModelState:
 
 
 def own_mechanism(start: ModelState) -> ModelState | None:
-    """Give a base that holds a mechanism itself, with the numbers of that free.
-
-    What drives the mechanism has no number of its own: it would be one of mass, damping
-    and stiffness together.
-    """
+    """Give a base that holds a mechanism itself, with the numbers of that free."""
     places = host_places(start.chain)
     if len(places) != 1:
         return None
     if start.free:
         return start
     (place,) = places
-    block = start.chain[place]
-    names = NUMBERS if isinstance(block, Impedance) else NUMBERS[:-1]
-    free = tuple(Free(place, x) for x in names if getattr(block, x) != 0.0)
-    return replace(start, free=free)
+    return replace(start, free=own_numbers(start, place))
 
 
 def is_seen_moving(state: ModelState) -> bool:

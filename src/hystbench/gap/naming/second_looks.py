@@ -14,13 +14,7 @@ from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.naming.rank import does_without_itself, rank
-from hystbench.gap.naming.rounds import (
-    WIDER,
-    Candidate,
-    Round,
-    SecondLook,
-    in_order,
-)
+from hystbench.gap.naming.rounds import WIDER, Candidate, Round, SecondLook, in_order
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import PAYS, SCALE, SHAPE
 
