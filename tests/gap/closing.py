@@ -1,6 +1,7 @@
 """A gap searched and written, as the command does it."""
 
 from hystbench.gap.asked import Asked
+from hystbench.gap.bases.load import load_base
 from hystbench.gap.run import closed_gap, will_write
 
 
@@ -10,3 +11,9 @@ def close_gap(evidence, base, folder, *, report=True, place="model", **asked):
     closed = closed_gap(evidence, base, Asked(**asked), place)
     closed.write(folder, report)
     return closed.decision
+
+
+def closed_beside(base, evidence, asked):
+    """What is decided beside a base, by its file or by a word for it."""
+    model, _ = load_base(str(base), evidence)
+    return closed_gap(evidence, model, asked).decision.content

@@ -3,7 +3,9 @@
 import numpy as np
 import yaml
 
+from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.scored_samples import Compared
+from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 
 CURRENT = Channel("current", "A")
@@ -24,6 +26,18 @@ def record(
     y = np.zeros_like(u) if y is None else np.array(y, dtype=float)
     about = CURRENT, DISPLACEMENT, "twin", use, period_samples, simulated
     return Record(name, dt, u, y, *about)
+
+
+def evidence_of(name, records, hold, noise, takes, gives):
+    """Records by their use, with their noise and the device's quantities told."""
+    by_use = {use: [x for x in records if x.use == use] for use in ("fit", "hold-out")}
+    return Evidence(
+        name,
+        *map(tuple, by_use.values()),
+        input_hold=hold,
+        noise_rms=noise,
+        quantities=Quantities(takes, gives),
+    )
 
 
 def sine(frequency_hz, *, amplitude=1.0, count=2000, dt=0.001, phase=0.0):

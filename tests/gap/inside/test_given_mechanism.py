@@ -14,12 +14,12 @@ from hystbench.gap.bases.load import load_base
 from hystbench.gap.fitting.least_squares import fitted, fitted_to_the_end
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.run import closed_gap
 from hystbench.gap.thresholds import SCALE
-from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
+from tests.gap import made
+from tests.gap.closing import closed_beside
 from tests.gap.searched import among
 
 DT, COUNT = 5e-4, 1500
@@ -81,14 +81,7 @@ def evidence_of(motions, noise, tones=()):
         measured = y + beside + noise * rng.standard_normal(COUNT)
         use = "hold-out" if k == 2 else "fit"
         records.append(Record(f"run-{k}", DT, u, measured, *about, use))
-    return Evidence(
-        "isolator",
-        tuple(records[:2]),
-        (records[2],),
-        input_hold="linear",
-        noise_rms=noise,
-        quantities=Quantities("force", "position"),
-    )
+    return made.evidence_of("isolator", records, "linear", noise, "force", "position")
 
 
 LIKELY = Asked(
@@ -102,8 +95,7 @@ LIKELY = Asked(
 
 def closed(model, evidence, path, asked=LIKELY):
     path.write_text(model)
-    base, _ = load_base(str(path), evidence)
-    return closed_gap(evidence, base, asked).decision.content
+    return closed_beside(path, evidence, asked)
 
 
 def test_what_steps_miss_of_an_exact_model_is_no_effect(motions, tmp_path):

@@ -4,11 +4,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from hystbench.gap.asked import Asked
-from hystbench.gap.bases.load import load_base
-from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.run import closed_gap
-from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
+from tests.gap.closing import closed_beside
+from tests.gap.made import evidence_of
 from tests.gap.searched import among
 
 DT, COUNT, NOISE = 0.02, 1500, 5e-3
@@ -65,18 +63,11 @@ def records():
 
 
 def test_a_weight_and_a_drag_are_named_though_each_alone_is_beaten(tmp_path):
-    *fit, held = records()
-    evidence = Evidence(
-        "paddle",
-        tuple(fit),
-        (held,),
-        input_hold="linear",
-        noise_rms=NOISE,
-        quantities=Quantities("force", "position"),
-    )
-    (tmp_path / "model.yaml").write_text(PADDLE)
-    base, _ = load_base(str(tmp_path / "model.yaml"), evidence)
-    content = closed_gap(evidence, base, LIKELY).decision.content
+    model = tmp_path / "model.yaml"
+    model.write_text(PADDLE)
+    told = "linear", NOISE, "force", "position"
+    evidence = evidence_of("paddle", list(records()), *told)
+    content = closed_beside(model, evidence, LIKELY)
     assert content["verdict"] == "named"
     found = {item["name"]: item["parameters"] for item in content["effects"]}
     assert set(found) == {"gravity", "drag"}

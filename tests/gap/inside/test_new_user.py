@@ -5,10 +5,9 @@ import pytest
 
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.load import load_base
-from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.run import closed_gap
-from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
+from tests.gap.made import evidence_of
 from tests.gap.searched import among
 
 DT, COUNT, NOISE = 2e-3, 500, 5e-6
@@ -76,14 +75,7 @@ def measured():
         y = with_friction(u) + NOISE * rng.standard_normal(COUNT)
         about = Channel("force", "N"), Channel("position", "m"), "twin", use
         found.append(Record(f"run-{k}", DT, u, y, *about))
-    return Evidence(
-        "oscillator",
-        tuple(found[:3]),
-        (found[3],),
-        input_hold="linear",
-        noise_rms=NOISE,
-        quantities=Quantities("force", "position"),
-    )
+    return evidence_of("oscillator", found, "linear", NOISE, "force", "position")
 
 
 @pytest.fixture(scope="module")

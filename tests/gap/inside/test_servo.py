@@ -4,11 +4,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from hystbench.gap.asked import Asked
-from hystbench.gap.bases.load import load_base
-from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.run import closed_gap
-from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
+from tests.gap.closing import closed_beside
+from tests.gap.made import evidence_of
 from tests.gap.searched import among
 
 DT, COUNT, NOISE = 0.1, 1500, 0.1
@@ -48,16 +46,8 @@ def test_a_servo_that_goes_no_faster_is_a_slew_limit_inside():
     for (name, u), use in zip(orders(), ["fit", "fit", "hold-out"], strict=True):
         y = turned(u) + NOISE * rng.standard_normal(COUNT)
         records.append(Record(name, DT, u, y, *about, use))
-    evidence = Evidence(
-        "gear",
-        tuple(records[:2]),
-        (records[2],),
-        input_hold="zero-order",
-        noise_rms=NOISE,
-        quantities=Quantities("position", "position"),
-    )
-    base, _ = load_base("linear", evidence)
-    content = closed_gap(evidence, base, LIKELY).decision.content
+    told = "zero-order", NOISE, "position", "position"
+    content = closed_beside("linear", evidence_of("gear", records, *told), LIKELY)
     (effect,) = content["effects"]
     assert content["verdict"] == "named"
     assert (effect["name"], effect["place"]) == ("slew-limit", "inside")
