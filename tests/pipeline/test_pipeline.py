@@ -203,7 +203,6 @@ def test_an_edited_module_reruns_what_imports_it(workflow):
     copied = Workflow(workflow.folder, source)
     # The first run sees other paths of the same files; touch makes it up to date.
     assert copied.snakemake("--touch").returncode == 0
-    assert copied.would_run("--rerun-triggers", "mtime") == {}
     with (source / "hystbench" / "filters" / "volterra.py").open("a") as stream:
         stream.write("\n# edited\n")
     assert_one_filter_runs_again(copied.would_run("--rerun-triggers", "mtime"))

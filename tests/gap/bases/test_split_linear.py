@@ -31,7 +31,7 @@ CURVES = among(
     *("sensor-nonlinearity", "hysteresis"),
 )
 FRONT, BACK = mode(30.0, 0.5), mode(55.0, 0.35)
-COUNT, DT = 2000, 1e-3
+COUNT, DT = 1000, 1e-3
 
 
 def behind(y, response):
@@ -112,7 +112,7 @@ def test_the_base_is_no_worse_than_one_block(split, clipped_records):
 
 def test_without_a_curve_inside_the_base_is_one_block():
     """The curve is before all that moves; where there is none, see the given base."""
-    records = measured(clipped, front=lambda s: 1 + 0 * s, count=COUNT // 2)
+    records = measured(clipped, front=lambda s: 1 + 0 * s, count=COUNT)
     model, note = load_base("linear", records)
     assert "series" not in note
     assert [block.name for block in model.chain] == ["transfer-function", "gain"]

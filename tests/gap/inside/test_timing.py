@@ -123,8 +123,8 @@ def test_a_tank_whose_input_was_stamped_late_still_shows_its_outlet():
     """Half a sample late, its outflow was found right and left unnamed."""
     rng, made, fine = np.random.default_rng(4), [], 40
     channels = Channel("pump", "V"), Channel("level", "cm")
-    for k in range(3):
-        u = np.repeat(rng.uniform(1.0, 6.0, 80), 12)
+    for k in range(2):
+        u = np.repeat(rng.uniform(1.0, 6.0, 40), 12)
         pump = np.repeat(u, fine)
         pump = np.concatenate([np.full(fine // 2, u[0]), pump])[: len(u) * fine]
         level, y = 5.0, np.empty(len(u))
