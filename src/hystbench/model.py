@@ -136,7 +136,8 @@ class Model:
             Its own first.
         """
         u = np.ascontiguousarray(u, dtype=np.float64)
-        return through_near([self.steps, *(item.steps for item in others)], u, dt)
+        chains = [self.steps, *(item.steps for item in others)]
+        return [y for (y,) in through_near(chains, (u,), (dt,))]
 
     @cached_property
     def steps(self) -> tuple[Simulated, ...]:

@@ -540,3 +540,23 @@ def test_a_record_may_be_short(hold, count):
     assert run(replace(MACHINE, hold=hold), forces, z, 0.01).shape == (count,)
     back = Impedance(mass=1.0, damping=1.0, stiffness=1.0)
     assert run(back, forces, z, 0.01).shape == (count,)
+
+
+@pytest.mark.parametrize("start", ["rest", "settled", "moving", "repeating"])
+@pytest.mark.parametrize("hold", ["zero-order", "linear", "band-limited"])
+def test_many_records_at_once_are_as_one_by_one(hold, start):
+    """Records of two rates, of which some are shorter than a curve needs."""
+    machine = replace(MACHINE, hold=hold, start=start)
+    step = force("friction-force", coulomb=20.0, presliding_distance=0.02).attach(
+        machine
+    )
+    signals = [drive(0.02 * np.arange(n) + 0.3 * n) for n in (300, 0, 1, 2, 50, 120)]
+    rates = [0.02, 0.02, 0.02, 0.01, 0.01, 0.02]
+    near = [(replace(step, host=replace(machine, mass=2.1)), signals)]
+    together = step.simulate_records(signals, rates)
+    both = step.near_records(signals, rates, near)
+    assert all(map(np.array_equal, together, both[0]))
+    for k, (z, dt) in enumerate(zip(signals, rates, strict=True)):
+        np.testing.assert_array_equal(together[k], step.simulate(z, z, dt))
+        alone = step.near_records((z,), (dt,), [(near[0][0], (z,))])
+        np.testing.assert_array_equal(both[1][k], alone[1][0])

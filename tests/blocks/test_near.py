@@ -52,17 +52,29 @@ def moved(chain, place, name, factor):
     return tuple(chain)
 
 
+def outputs(chains, u):
+    """Send an input through chains, of which it is one record."""
+    return [y for (y,) in through_near(chains, (u,), (DT,))]
+
+
+def alongside(step, u, others):
+    """Simulate a step and others near on one record."""
+    us = (u,)
+    every = [(other, us if z is u else (z,)) for other, z in others]
+    return [y for (y,) in near(step, us, us, (DT,), every)]
+
+
 def check(chain, u, names):
     """Compare the derivative with each number to that of whole simulations."""
     steps = attached(chain)
-    (plain,) = through_near([steps], u, DT)
+    (plain,) = outputs([steps], u)
     size = 1e-6
     chains = [moved(chain, *name, 1 + size) for name in names]
-    first, *others = through_near([steps, *map(attached, chains)], u, DT)
+    first, *others = outputs([steps, *map(attached, chains)], u)
     assert np.array_equal(first, plain)
     for name, other in zip(names, others, strict=True):
         ends = [
-            through_near([attached(moved(chain, *name, 1 + sign * size))], u, DT)[0]
+            outputs([attached(moved(chain, *name, 1 + sign * size))], u)[0]
             for sign in (1, -1)
         ]
         expected = (ends[0] - ends[1]) / (2 * size)
@@ -98,7 +110,7 @@ def test_so_are_those_of_two_forces_and_of_other_modes_beside():
     other = moved(chain, 0, "mass", 1 + size)
     slower = replace(chain[3], denominator=(1.0, 2.0, 900.0 * (1 + size)))
     both = [attached(x) for x in (other, (*chain[:3], slower, chain[4]))]
-    first, mass, mode = through_near([steps, *both], drive(), DT)
+    first, mass, mode = outputs([steps, *both], drive())
     alone = attached((chain[0], slower))[0].simulate(drive(), drive(), DT)
     before = attached((chain[0], chain[3]))[0].simulate(drive(), drive(), DT)
     assert mode - first == pytest.approx(alone - before, abs=1e-12)
@@ -126,7 +138,7 @@ def test_plays_near_are_as_each_alone_and_run_once_for_all_weights(start, monkey
         "grow",
         lambda self, *given: runs.append(self) or alone(self, *given),
     )
-    found = near(plays, u, u, DT, every)
+    found = alongside(plays, u, every)
     assert runs == [bent, wider, heavier]
     for y, right in zip(found, expected, strict=True):
         assert y == pytest.approx(right, abs=1e-12)
@@ -148,11 +160,11 @@ def test_what_is_equal_is_simulated_once():
 
     u = drive()
     one, same, other = Counted(2.0), Counted(2.0), Counted(3.0)
-    y, again, larger = near(one, u, u, DT, [(same, u), (other, u)])
+    y, again, larger = alongside(one, u, [(same, u), (other, u)])
     assert again is y
     assert np.array_equal(larger, 3 * u)
     assert (one.runs, same.runs, other.runs) == (1, 0, 1)
-    y, further = near(one, u, u, DT, [(same, 2 * u)])
+    y, further = alongside(one, u, [(same, 2 * u)])
     assert np.array_equal(further, 2 * y)
 
 

@@ -66,7 +66,7 @@ def test_numbers_near_are_moved_along_in_each_mode():
         block, moved = chain[place], list(chain)
         moved[place] = replace(block, **{name: getattr(block, name) * (1 + size)})
         (other,) = attached(moved)
-        first, near = step.near(U, U, DT, [(other, U)])
+        (first,), (near,) = step.near_records((U,), (DT,), [(other, (U,))])
         expected = output(*moved) - output(*chain)
         off = np.linalg.norm(near - first - expected) / np.linalg.norm(expected)
         assert off < 1e-3, name

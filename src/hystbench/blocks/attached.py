@@ -16,8 +16,12 @@ class Simulated(Protocol):
         """Compute the output, as :meth:`Block.simulate` does."""
 
 
+Signals = Sequence[FloatArray]
+"""One signal a record."""
 Others = Sequence[tuple[Any, FloatArray]]
 """Steps with numbers near those of another one, each with what enters it."""
+OthersOnRecords = Sequence[tuple[Any, Signals]]
+"""The same, with what enters it of every record."""
 
 
 class AttachedBlock(Block):
@@ -44,9 +48,30 @@ class AttachedBlock(Block):
         raise InputError(f"{self.name}: expected {self.hosts} before it")
 
 
+def sent(step: Any, signals: Signals, us: Signals, dts: Sequence[float]) -> Signals:
+    """Send a signal of each record through a step, all at once where it takes that.
+
+    Parameters
+    ----------
+    step : Simulated
+    signals, us : sequence of ndarray
+        By record, those of :meth:`Block.simulate`.
+    dts : sequence of float
+        Sampling intervals in seconds.
+    """
+    if hasattr(step, "simulate_records"):
+        return tuple(step.simulate_records(signals, dts))
+    every = zip(signals, us, dts, strict=True)
+    return tuple(step.simulate(*record) for record in every)
+
+
 def near(
-    step: Any, z: FloatArray, u: FloatArray, dt: float, others: Others
-) -> list[FloatArray]:
+    step: Any,
+    signals: Signals,
+    us: Signals,
+    dts: Sequence[float],
+    others: OthersOnRecords,
+) -> list[Signals]:
     """Simulate a step of a chain, and others of its kind with numbers near.
 
     For derivatives: one that is equal and has the same input is not simulated again,
@@ -54,49 +79,55 @@ def near(
 
     Parameters
     ----------
-    step : Simulated
-    z, u, dt
-        Those of :meth:`Block.simulate`.
-    others : sequence of (Simulated, ndarray)
-        Each with its own z.
+    step, signals, us, dts
+        Those of :func:`sent`.
+    others : sequence of (Simulated, sequence of ndarray)
+        Each with its own signals.
 
     Returns
     -------
-    list of ndarray
-        The output of the step, then those of the others.
+    list of sequence of ndarray
+        The outputs of the step, then those of the others.
     """
-    moved = [own is not z or other != step for other, own in others]
+    moved = [own is not signals or other != step for other, own in others]
     changed = [pair for pair, new in zip(others, moved, strict=True) if new]
-    if hasattr(step, "near"):
-        y, *found = step.near(z, u, dt, changed)
+    if hasattr(step, "near_records"):
+        y, *found = step.near_records(signals, dts, changed)
+    elif hasattr(step, "near"):
+        of_records = [
+            step.near(z, us[k], dts[k], [(other, own[k]) for other, own in changed])
+            for k, z in enumerate(signals)
+        ]
+        y, *found = zip(*of_records, strict=True)
     else:
-        y, *found = (x.simulate(own, u, dt) for x, own in ((step, z), *changed))
+        y, *found = (sent(x, z, us, dts) for x, z in ((step, signals), *changed))
     rest = iter(found)
     return [y, *(next(rest) if new else y for new in moved)]
 
 
 def through_near(
-    chains: Sequence[Sequence[Any]], u: FloatArray, dt: float
-) -> list[FloatArray]:
-    """Send a model's input through chains of the same steps with numbers near.
+    chains: Sequence[Sequence[Any]], us: Signals, dts: Sequence[float]
+) -> list[Signals]:
+    """Send a model's inputs through chains of the same steps with numbers near.
 
     Parameters
     ----------
     chains : sequence of sequence of Simulated
         The first is the one that the others are near.
-    u : ndarray, shape (n,)
-    dt : float
-        Sampling interval in seconds.
+    us : sequence of ndarray, shape (n,)
+        By record.
+    dts : sequence of float
+        Sampling intervals in seconds.
 
     Returns
     -------
-    list of ndarray, shape (n,)
-        The output of each.
+    list of sequence of ndarray, shape (n,)
+        The outputs of each.
     """
-    signals = [u] * len(chains)
+    signals = [us] * len(chains)
     for step, *others in zip(*chains, strict=True):
         z, *own = signals
-        signals = near(step, z, u, dt, [*zip(others, own, strict=True)])
+        signals = near(step, z, us, dts, [*zip(others, own, strict=True)])
     return signals
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.attached import AttachedBlock, Others
+from hystbench.blocks.attached import AttachedBlock, OthersOnRecords, Signals
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError
@@ -41,25 +42,30 @@ class Dynamics(HeldBlock):
     @abstractmethod
     def motions(
         self,
-        z: FloatArray,
-        dt: float,
+        signals: Signals,
+        dts: Sequence[float],
         forces: tuple[Force, ...],
-        others: Others,
+        others: OthersOnRecords,
         pieces: float = 1.0,
-    ) -> list[Motion]:
+    ) -> list[list[Motion]]:
         """Compute how the coordinate moves, and how others with numbers near do.
 
         Parameters
         ----------
-        z : ndarray, shape (n,)
-            What drives it.
-        dt : float
-            Sampling interval in seconds.
+        signals : sequence of ndarray, shape (n,)
+            What drives it, by record.
+        dts : sequence of float
+            Sampling intervals in seconds.
         forces : tuple of Force
-        others : sequence of (Driven, ndarray)
+        others : sequence of (Driven, sequence of ndarray)
             Each with what drives it.
         pieces : float
             Steps in place of each that a simulation takes by itself.
+
+        Returns
+        -------
+        list of list of Motion
+            Its own by record, then those of each of the others.
         """
 
     @abstractmethod
@@ -73,8 +79,8 @@ class Dynamics(HeldBlock):
     def motion(
         self, z: FloatArray, dt: float, forces: tuple[Force, ...], pieces: float = 1.0
     ) -> Motion:
-        """Compute how the coordinate moves; arguments are those of :meth:`motions`."""
-        return self.motions(z, dt, forces, (), pieces)[0]
+        """Compute how the coordinate moves in one record, as :meth:`motions` does."""
+        return self.motions((z,), (dt,), forces, (), pieces)[0][0]
 
     def driven(
         self, z: FloatArray, dt: float, forces: tuple[Force, ...], pieces: float = 1.0
@@ -86,12 +92,16 @@ class Dynamics(HeldBlock):
         """Compute the output without a force inside."""
         return self.driven(z, dt, ())
 
-    def near(
-        self, z: FloatArray, u: FloatArray, dt: float, others: Others
-    ) -> list[FloatArray]:
-        """Compute the output, and those of others near, without a force inside."""
+    def simulate_records(self, signals: Signals, dts: Sequence[float]) -> Signals:
+        """Compute the outputs of many records without a force inside."""
+        return Driven(self).simulate_records(signals, dts)
+
+    def near_records(
+        self, signals: Signals, dts: Sequence[float], others: OthersOnRecords
+    ) -> list[Signals]:
+        """Compute the outputs, and those of others near, without a force inside."""
         every = [(Driven(host), own) for host, own in others]
-        return Driven(self).near(z, u, dt, every)
+        return Driven(self).near_records(signals, dts, every)
 
     def step(self, sampling: Sampling) -> Step:
         """Say what it does at one sample without a force inside."""
@@ -223,13 +233,20 @@ class Driven:
         """Compute the output, as :meth:`Block.simulate` does."""
         return self.host.driven(z, dt, self.forces, self.pieces)
 
-    def near(
-        self, z: FloatArray, u: FloatArray, dt: float, others: Others
-    ) -> list[FloatArray]:
-        """Compute the output, and those of others with numbers near."""
-        motions = self.host.motions(z, dt, self.forces, others, self.pieces)
+    def simulate_records(self, signals: Signals, dts: Sequence[float]) -> Signals:
+        """Compute the outputs of many records at once: of short ones that is faster."""
+        return self.near_records(signals, dts, ())[0]
+
+    def near_records(
+        self, signals: Signals, dts: Sequence[float], others: OthersOnRecords
+    ) -> list[Signals]:
+        """Compute the outputs, and those of others with numbers near."""
+        motions = self.host.motions(signals, dts, self.forces, others, self.pieces)
         hosts = (self.host, *(other.host for other, _ in others))
-        return [host.given(motion) for host, motion in zip(hosts, motions, strict=True)]
+        return [
+            tuple(map(host.given, own))
+            for host, own in zip(hosts, motions, strict=True)
+        ]
 
     def step(self, sampling: Sampling) -> Step:
         """Say what both do at one sample, as :meth:`Block.step` does."""

@@ -1,10 +1,11 @@
 """Block ``impedance``: the force that a given motion takes."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
 
-from hystbench.blocks.attached import Others
+from hystbench.blocks.attached import Others, OthersOnRecords, Signals
 from hystbench.blocks.curve import (
     AHEAD,
     POINTS,
@@ -106,17 +107,27 @@ class Impedance(Dynamics, name="impedance", place="base"):
 
     def motions(
         self,
-        z: FloatArray,
-        dt: float,
+        signals: Signals,
+        dts: Sequence[float],
         forces: tuple[Force, ...],
-        others: Others,
+        others: OthersOnRecords,
         pieces: float = 1.0,
-    ) -> list[Motion]:
+    ) -> list[list[Motion]]:
         """Give the motion and the forces that it meets, and those of others.
 
         What moves alike moves once, and meets forces that are the same once. The motion
         is given, so that ``pieces`` of steps change nothing.
         """
+        of_records = [
+            self._near(z, dt, forces, [(other, own[k]) for other, own in others])
+            for k, (z, dt) in enumerate(zip(signals, dts, strict=True))
+        ]
+        return [list(own) for own in zip(*of_records, strict=True)]
+
+    def _near(
+        self, z: FloatArray, dt: float, forces: tuple[Force, ...], others: Others
+    ) -> list[Motion]:
+        """Give the motion of one record, and those of others."""
         path = np.ascontiguousarray(z, dtype=np.float64)
         still = Motion(*self._moved(path, dt), np.zeros(len(path)))
         own = still._replace(force=self._met(still, path, dt, forces))

@@ -1,18 +1,20 @@
 """Block ``mechanism``: one coordinate whose forces act inside the dynamics."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from functools import lru_cache
 from math import ceil, pi, sqrt
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.attached import Others
+from hystbench.blocks.attached import OthersOnRecords, Signals
 from hystbench.blocks.curve import held_lines
 from hystbench.blocks.force import Driven, Dynamics, Force, Motion, exported, rows
 from hystbench.blocks.parameter import TINY, choice, number
 from hystbench.blocks.starts import PASTS, STARTS, path_from
-from hystbench.blocks.state_space import StateSpace, discretise
 from hystbench.blocks.step import Sampling, Step, lines_of
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -91,63 +93,88 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
 
     def motions(
         self,
-        z: FloatArray,
-        dt: float,
+        signals: Signals,
+        dts: Sequence[float],
         forces: tuple[Force, ...],
-        others: Others,
+        others: OthersOnRecords,
         pieces: float = 1.0,
-    ) -> list[Motion]:
+    ) -> list[list[Motion]]:
         """Compute how the coordinate moves, and how others with numbers near do.
 
         Each step of those is the tangent of this one's: right for small differences.
+        Records of one sampling interval take one call of the kernel.
         """
-        every = (Driven(self, forces), *(other for other, _ in others))
+        every = (Driven(self, forces, pieces), *(other for other, _ in others))
+        given = (signals, *(own for _, own in others))
+        alike: dict[tuple[float, int], list[int]] = {}
+        for k, (z, dt) in enumerate(zip(signals, dts, strict=True)):
+            alike.setdefault((dt, min(len(z), 3)), []).append(k)
+        found: list[dict[int, Motion]] = [{} for _ in every]
+        for (dt, _), places in alike.items():
+            drives = [[own[k] for k in places] for own in given]
+            for own, moves in zip(found, self._moved(every, drives, dt), strict=True):
+                own.update(zip(places, moves, strict=True))
+        return [[own[k] for k in range(len(signals))] for own in found]
+
+    def _moved(
+        self, every: Sequence[Driven], drives: Sequence[Signals], dt: float
+    ) -> list[list[Motion]]:
+        """Move near motions through records, which have three samples or as many."""
+        first, signals = every[0], drives[0]
         hosts: list[Any] = [each.host for each in every]
-        signals = (z, *(own for _, own in others))
+        if not len(signals[0]):
+            return [[Motion(*[z] * 4) for z in signals] for _ in hosts]
         numbers = np.array([rows(each.forces) for each in every])
-        path, before = path_from(z, self.start)
         holding = self.holding
-        quick = holding == "band-limited" and forces and pieces < 1
-        if quick and self._parts(dt, forces, pieces) == 1:
+        quick = holding == "band-limited" and first.forces and first.pieces < 1
+        if quick and self._parts(dt, first.forces, first.pieces) == 1:
             holding = "linear"  # finer lines would be shorter than a step
-        lines, fine = held_lines(path, holding)
-        n, step = len(lines), dt / fine
-        parts = self._parts(step, forces, pieces)
+        driven = _Corners.of(signals, self.start, holding)
+        step, ends = dt / driven.fine, np.cumsum(driven.lengths)
+        parts = self._parts(step, first.forces, first.pieces)
         gain, bias, mass, damping, stiffness = np.array(
             [[x.gain, x.bias, x.mass, x.damping, x.stiffness] for x in hosts]
         ).T[..., None]
-        q, v, force = np.zeros((3, len(hosts), n))
-        p = gain * lines + bias
-        for k, host in enumerate(hosts if n else ()):
-            first = before
-            if signals[k] is not z:
-                own, first = path_from(signals[k], self.start)
-                p[k] = host.gain * held_lines(own, holding)[0] + host.bias
-            q[k, 0], v[k, 0] = host.start_position, host.start_velocity
+        q, v, force = np.zeros((3, len(hosts), ends[-1]))
+        p = gain * driven.values + bias
+        begins = ends - driven.lengths
+        for k, host in enumerate(hosts):
+            own = driven
+            if any(x is not z for x, z in zip(drives[k], signals, strict=True)):
+                own = _Corners.of(drives[k], self.start, holding)
+                p[k] = host.gain * own.values + host.bias
+            q[k, begins], v[k, begins] = host.start_position, host.start_velocity
             if self.start != "rest" and host.stiffness > 0.0:
-                q[k, 0] += host._balance(host.gain * first + host.bias, numbers[k])
-        if n:
-            kernels.call(
-                "hb_mechanism",
-                n,
-                len(others),
-                parts,
-                step,
-                float(holding != "zero-order"),
-                np.array([host._steps(step / parts) for host in hosts]),
-                numbers.shape[1],
-                numbers,
-                np.zeros(numbers.shape[:2]),
-                p,
-                q,
-                v,
-                force,
-            )
+                rested = host.gain * np.array(own.before) + host.bias
+                q[k, begins] += [host._balance(z, numbers[k]) for z in rested]
+        kernels.call(
+            "hb_mechanism",
+            ends[-1],
+            len(ends),
+            ends.ctypes.data,
+            len(every) - 1,
+            parts,
+            step,
+            float(holding != "zero-order"),
+            step_weights(tuple(x.linear for x in hosts), step / parts),
+            numbers.shape[1],
+            numbers,
+            np.empty(numbers.shape[:2]),
+            p,
+            q,
+            v,
+            force,
+        )
         with np.errstate(over="ignore", invalid="ignore"):  # it may have run away
             curved = (p - damping * v - stiffness * q - force) / mass
-        shown = slice((len(path) - len(z)) * fine, None, fine)
-        moves = (x[:, shown] for x in (q, v, curved, force))
-        return [Motion(*each) for each in zip(*moves, strict=True)]
+        shown = [
+            slice(end - (len(z) - 1) * driven.fine - 1, end, driven.fine)
+            for z, end in zip(signals, ends.tolist(), strict=True)
+        ]
+        return [
+            [Motion(*(x[k, own] for x in (q, v, curved, force))) for own in shown]
+            for k in range(len(hosts))
+        ]
 
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
         """Move the coordinate over the interval that has passed."""
@@ -162,7 +189,7 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
             **lines.constants,
             "parts": parts,
             "h": line / parts,
-            "step": self._steps(line / parts).ravel(),
+            "step": step_weights((self.linear,), line / parts).ravel(),
             "shown": self._shown(),
             "start": np.array([self.start_position, self.start_velocity, balanced]),
             **inside,
@@ -214,9 +241,31 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
             return natural
         return natural * natural / (half + sqrt(half**2 - natural**2))
 
-    def _steps(self, dt: float) -> FloatArray:
-        """Weights of a step, and of an eighth of it."""
-        return step_weights(self.mass, self.damping, self.stiffness, dt)
+    @property
+    def linear(self) -> tuple[float, float, float]:
+        """Mass, damping and stiffness."""
+        return self.mass, self.damping, self.stiffness
+
+
+class _Corners(NamedTuple):
+    """What drives a coordinate: corners of straight lines, a record behind another."""
+
+    values: FloatArray
+    lengths: list[int]
+    """Corners of each record, with what was before it."""
+    before: list[float]
+    """What was for ever before that."""
+    fine: int
+    """Lines between two samples."""
+
+    @classmethod
+    def of(cls, signals: Signals, start: str, holding: str) -> _Corners:
+        """Give those of signals from a start."""
+        begun = [path_from(z, start) for z in signals]
+        held = [held_lines(path, holding) for path, _ in begun]
+        corners = [lines for lines, _ in held]
+        before = [first for _, first in begun]
+        return cls(np.concatenate(corners), [*map(len, corners)], before, held[0][1])
 
 
 def free_starts(output: str) -> tuple[str, ...]:
@@ -230,31 +279,47 @@ def free_starts(output: str) -> tuple[str, ...]:
 
 @lru_cache(maxsize=256)
 def step_weights(
-    mass: float, damping: float, stiffness: float, dt: float
+    coordinates: tuple[tuple[float, float, float], ...], dt: float
 ) -> FloatArray:
     """Give weights of q, q' and of the driving force at both ends of a step.
 
-    Of a mass on a spring without forces inside. They are kept, as a fit simulates many
-    records with the same linear part.
+    Of masses on springs without forces inside: by one matrix exponential each of the
+    augmented system [1]_. They are kept, as a fit simulates many records with the same
+    linear part.
+
+    Parameters
+    ----------
+    coordinates : tuple of (float, float, float)
+        Mass, damping and stiffness of each.
+    dt : float
+        The step in seconds.
 
     Returns
     -------
-    ndarray, shape (2, 2, 4)
+    ndarray, shape (coordinates, 2, 2, 4)
         Of a step, and of an eighth of it; not to be written to.
+
+    References
+    ----------
+    .. [1] C. F. Van Loan, "Computing integrals involving the matrix exponential",
+       IEEE Transactions on Automatic Control 23 (1978) 395-404.
     """
-    system = StateSpace(
-        np.array([[0.0, 1.0], [-stiffness / mass, -damping / mass]]),
-        np.array([0.0, 1.0 / mass]),
-        np.array([1.0, 0.0]),
-        0.0,
-    )
-    weights = np.array(
-        [
-            np.column_stack([phi, now, following])
-            for phi, now, following in (
-                discretise(system, step, "linear") for step in (dt, dt / 8)
-            )
-        ]
-    )
-    weights.setflags(write=False)
-    return weights
+    from scipy.linalg import expm  # late: a filter's process never needs it
+
+    every = {each: k for k, each in enumerate(dict.fromkeys(coordinates))}
+    mass, damping, stiffness = np.array(list(every)).T
+    # Columns: position, velocity, a force of one, and one that rises to one.
+    system = np.zeros((2, len(every), 4, 4))
+    system[..., 0, 1] = 1.0
+    system[..., 1, 0], system[..., 1, 1] = -stiffness / mass, -damping / mass
+    system[..., 1, 2] = 1.0 / mass
+    system *= np.array([dt, dt / 8])[:, None, None, None]
+    system[..., 2, 3] = 1.0
+    # A fit may try what runs away within a step: NaN, as of all that runs away.
+    with np.errstate(over="ignore", invalid="ignore"):
+        weights = expm(system)[..., :2, :]
+    weights[..., 2] -= weights[..., 3]
+    found = weights[:, [every[each] for each in coordinates]].swapaxes(0, 1)
+    found = np.ascontiguousarray(found)
+    found.setflags(write=False)
+    return found

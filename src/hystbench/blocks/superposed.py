@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
-from hystbench.blocks.attached import AttachedBlock, Others, Simulated, near
+from hystbench.blocks.attached import (
+    AttachedBlock,
+    OthersOnRecords,
+    Signals,
+    Simulated,
+    near,
+    sent,
+)
 from hystbench.blocks.force import Driven, Force
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.errors import InputError
@@ -68,31 +76,49 @@ class Superposed:
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output, as :meth:`Block.simulate` does."""
-        return _kept(self.inner, z, u, dt) + _kept(self.by, z, u, dt)
+        return self.simulate_records((z,), (dt,))[0]
 
-    def near(
-        self, z: FloatArray, u: FloatArray, dt: float, others: Others
-    ) -> list[FloatArray]:
-        """Compute the output, and those of others with numbers near."""
-        inner = near(self.inner, z, u, dt, [(x.inner, own) for x, own in others])
-        by = near(self.by, z, u, dt, [(x.by, own) for x, own in others])
-        return [a + b for a, b in zip(inner, by, strict=True)]
+    def simulate_records(self, signals: Signals, dts: Sequence[float]) -> Signals:
+        """Compute the outputs of many records at once."""
+        inner, by = (_kept(part, signals, dts) for part in (self.inner, self.by))
+        return tuple(a + b for a, b in zip(inner, by, strict=True))
+
+    def near_records(
+        self, signals: Signals, dts: Sequence[float], others: OthersOnRecords
+    ) -> list[Signals]:
+        """Compute the outputs, and those of others with numbers near."""
+        inner, by = (
+            near(part, signals, signals, dts, own)
+            for part, own in (
+                (self.inner, [(x.inner, own) for x, own in others]),
+                (self.by, [(x.by, own) for x, own in others]),
+            )
+        )
+        return [
+            tuple(a + b for a, b in zip(*both, strict=True))
+            for both in zip(inner, by, strict=True)
+        ]
 
 
-def _kept(part: Simulated, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-    """Compute the response of a part, or give the one that is kept.
+def _kept(part: Simulated, signals: Signals, dts: Sequence[float]) -> Signals:
+    """Compute the responses of a part, or give those that are kept.
 
     While the numbers of one mode are fitted, the others answer the same records with
     the same numbers again and again.
     """
-    if z.flags.writeable:
-        return part.simulate(z, u, dt)
-    key = (id(z), dt, part)
-    if key not in _KEPT:
-        y = part.simulate(z, u, dt)
-        y.setflags(write=False)
-        _KEPT[key] = z, y  # with z kept, no other array has its identity
-        while len(_KEPT) > KEPT:
-            _KEPT.popitem(last=False)
-    _KEPT.move_to_end(key)
-    return _KEPT[key][1]
+    keys = [(id(z), dt, part) for z, dt in zip(signals, dts, strict=True)]
+    new = [k for k, key in enumerate(keys) if key not in _KEPT]
+    given = [signals[k] for k in new]
+    responses = sent(part, given, given, [dts[k] for k in new]) if new else ()
+    found = dict(zip(new, responses, strict=True))
+    for k, y in found.items():
+        if not signals[k].flags.writeable:
+            y.setflags(write=False)
+            _KEPT[keys[k]] = signals[k], y  # with z kept, no other has its identity
+    for k, key in enumerate(keys):
+        if k not in found:
+            _KEPT.move_to_end(key)
+            found[k] = _KEPT[key][1]
+    while len(_KEPT) > KEPT:
+        _KEPT.popitem(last=False)
+    return tuple(found[k] for k in range(len(keys)))

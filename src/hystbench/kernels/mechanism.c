@@ -44,7 +44,44 @@ static void follow(int count, index_t near, struct motion *all, index_t k, doubl
     }
 }
 
-/* Motion q, v and force F of the samples, from q[0], v[0].  step holds, for one of
+/* Moves near motions through a record, each from its first q and v. */
+static void move(index_t n, index_t near, index_t parts, double dt, double ramp,
+                 int count, struct motion *all, double *before)
+{
+    const double h = dt / parts;
+    double ways[8];
+    for (index_t i = 0; i <= near; i++)
+        all[i].out[0] = hb_sum_of_forces(count, all[i].forces, all[i].q[0], all[i].v[0],
+                                         all[i].memory);
+    index_t k = 0;
+    for (; k + 1 < n; k++) {
+        for (index_t i = 0; i <= near; i++)
+            all[i].q[k + 1] = all[i].q[k], all[i].v[k + 1] = all[i].v[k];
+        double *x = all->q + k + 1, *w = all->v + k + 1;
+        for (index_t s = 0; s < parts && fabs(*x) < 1e100; s++) {
+            for (index_t i = 0; i <= near; i++) {
+                const double now = all[i].p[k], slope = ramp * (all[i].p[k + 1] - now) / parts;
+                all[i].from = now + s * slope, all[i].to = all[i].from + slope;
+            }
+            const double x_before = *x, w_before = *w;
+            for (int i = 0; i < count; i++) before[i] = all->memory[i];
+            const int pieces = hb_moved(count, all->forces, all->memory, all->step, h,
+                                        all->from, all->to, x, w, ways);
+            if (near)
+                follow(count, near, all, k, h, pieces, ways, x_before, w_before, before);
+        }
+        if (!(fabs(*x) < 1e100 && fabs(*w) < 1e100)) break;
+        for (index_t i = 0; i <= near; i++)
+            all[i].out[k + 1] = hb_sum_of_forces(count, all[i].forces, all[i].q[k + 1],
+                                                 all[i].v[k + 1], all[i].memory);
+    }
+    for (index_t i = 0; i <= near; i++)
+        for (index_t j = k + 1; j < n; j++)
+            all[i].q[j] = all[i].v[j] = all[i].out[j] = NAN;
+}
+
+/* Motion q, v and force F of the samples, from q[0], v[0].  One record follows another:
+ * each ends where `ends` says, and begins without a memory.  step holds, for one of
  * `parts` equal parts of an interval of dt: q and v after it of q, v, and of p at its
  * beginning and its end (two rows of four); then the same for an eighth of a part.
  * Over a part the forces count with their mean over the way, which does their exact
@@ -52,49 +89,23 @@ static void follow(int count, index_t near, struct motion *all, index_t k, doubl
  * of second order.  p moves by the share ramp of a straight line in each interval (1:
  * straight, 0: a staircase).  Of each array follow those of `near` motions with numbers
  * near these.
- * Returns the samples taken: fewer than n where the motion runs away; the rest is NaN. */
-EXPORT index_t hb_mechanism(index_t n, index_t near, index_t parts, double dt,
-                            double ramp, const double *step, index_t count,
-                            const double *forces, double *memory, const double *p,
-                            double *q, double *v, double *out)
+ * Where a motion runs away the rest of its record is NaN. */
+EXPORT void hb_mechanism(index_t n, index_t records, const index_t *ends, index_t near,
+                         index_t parts, double dt, double ramp, const double *step,
+                         index_t count, const double *forces, double *memory,
+                         const double *p, double *q, double *v, double *out)
 {
-    const int each = (int)count;
-    const double h = dt / parts;
     struct motion all[near + 1];
-    double before[count + 1], ways[8];
-    for (index_t i = 0; i <= near; i++) {
-        all[i] = (struct motion){step + 16 * i,    forces + 6 * count * i, p + n * i,
-                                 memory + count * i, q + n * i,            v + n * i,
-                                 out + n * i};
-        all[i].out[0] = hb_sum_of_forces(each, all[i].forces, q[n * i], v[n * i],
-                                         all[i].memory);
-    }
-    index_t k = 0;
-    for (; k + 1 < n; k++) {
-        for (index_t i = 0; i <= near; i++)
-            all[i].q[k + 1] = all[i].q[k], all[i].v[k + 1] = all[i].v[k];
-        double *x = q + k + 1, *w = v + k + 1;
-        for (index_t s = 0; s < parts && fabs(*x) < 1e100; s++) {
-            for (index_t i = 0; i <= near; i++) {
-                const double now = all[i].p[k], slope = ramp * (all[i].p[k + 1] - now) / parts;
-                all[i].from = now + s * slope, all[i].to = all[i].from + slope;
-            }
-            const double x_before = *x, w_before = *w;
-            for (index_t i = 0; i < count; i++) before[i] = memory[i];
-            const int pieces = hb_moved(each, forces, memory, step, h, all->from, all->to,
-                                        x, w, ways);
-            if (near)
-                follow(each, near, all, k, h, pieces, ways, x_before, w_before, before);
+    double before[count + 1];
+    for (index_t r = 0, begin = 0; r < records; begin = ends[r++]) {
+        for (index_t i = 0; i <= near; i++) {
+            const index_t at = begin + n * i;
+            all[i] = (struct motion){step + 16 * i, forces + 6 * count * i, p + at,
+                                     memory + count * i, q + at, v + at, out + at};
         }
-        if (!(fabs(*x) < 1e100 && fabs(*w) < 1e100)) break;
-        for (index_t i = 0; i <= near; i++)
-            all[i].out[k + 1] = hb_sum_of_forces(each, all[i].forces, all[i].q[k + 1],
-                                                 all[i].v[k + 1], all[i].memory);
+        for (index_t i = 0; i < count * (near + 1); i++) memory[i] = 0;
+        move(ends[r] - begin, near, parts, dt, ramp, (int)count, all, before);
     }
-    for (index_t i = 0; i <= near; i++)
-        for (index_t j = k + 1; j < n; j++)
-            all[i].q[j] = all[i].v[j] = all[i].out[j] = NAN;
-    return k + 1;
 }
 
 /* Forces against a given motion, sample by sample. */

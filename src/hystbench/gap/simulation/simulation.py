@@ -93,7 +93,7 @@ class Simulation:
         finely = self.steps == "fine" and self.hold == LIMITED
         dts = [record.dt for record in self.records]
         for step, first in zip(steps, begun, strict=True):
-            if step is first and isinstance(step, LinearBlock):
+            if step is first and hasattr(step, "simulate_records"):
                 signals = tuple(step.simulate_records(signals, dts))
                 continue
             signals = tuple(
@@ -106,21 +106,19 @@ class Simulation:
         """Send one signal through one step."""
         if finely and (isinstance(step, Wrapped) or step.hysteretic):
             return _finely(step, z, record.dt, SHORT_STEPS)
-        if self.steps == "fine" and isinstance(step, Driven | Superposed):
-            return step.in_pieces(PIECES).simulate(z, record.u, record.dt)
         if self.steps == "quick" and _takes_short_steps(step):
             return _finely(step, z, record.dt, QUICK_STEPS)
         return self._known(step, z).simulate(z, record.u, record.dt)
 
     def _steps(self, blocks: Sequence[Block]) -> list[Any]:
-        if self.steps != "quick":
+        if self.steps == "plain":
             return attached(blocks)
-        steps = attached([cast(Block, _quick(block)) for block in blocks])
+        quick = self.steps == "quick"
+        wanted = [cast(Block, _quick(block)) for block in blocks] if quick else blocks
+        pieces = LONG_PIECES if quick else PIECES
         return [
-            step.in_pieces(LONG_PIECES)
-            if isinstance(step, Driven | Superposed)
-            else step
-            for step in steps
+            step.in_pieces(pieces) if isinstance(step, Driven | Superposed) else step
+            for step in attached(wanted)
         ]
 
     def near(self, chains: Sequence[Sequence[Block]]) -> tuple[FloatArray, ...]:
@@ -134,10 +132,9 @@ class Simulation:
             One a record: the chain's own output first.
         """
         steps = [self._steps(chain) for chain in (self.chain, *chains)]
-        return tuple(
-            np.column_stack(through_near(steps, record.u, record.dt))
-            for record in self.records
-        )
+        us, dts = zip(*((record.u, record.dt) for record in self.records), strict=True)
+        found = through_near(steps, us, dts)
+        return tuple(np.column_stack(own) for own in zip(*found, strict=True))
 
     def _known(self, step: Block | Wrapped, z: FloatArray) -> Block | Wrapped:
         """Put in what the chain's own hysteresis gives for a signal, if it is wrapped.
