@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hystbench.periods import find_period
+from hystbench.periods import find_period, repeats
 
 K = np.arange(4000)
 RNG = np.random.default_rng(3)
@@ -51,3 +51,8 @@ def test_a_period_is_found(u, period):
 )
 def test_what_does_not_repeat_itself_has_none(u):
     assert find_period(u) is None
+
+
+def test_nothing_contradicts_a_period_that_the_record_holds_once():
+    assert repeats(ROUND, len(ROUND))
+    assert repeats(np.tile(ROUND, 2)[:700], len(ROUND))

@@ -92,10 +92,13 @@ def _steady(u: FloatArray, period: int) -> tuple[FloatArray, FloatArray, float]:
 def repeats(u: FloatArray, period: int) -> bool:
     """Tell whether an input repeats itself after a period, but for noise.
 
-    It must fit twice into the record. One that grows changes by a share of itself; one
-    whose period is no whole number of samples changes by a share of its slope. Least
-    squares on both, and on a constant, leave what is new in each period.
+    Where it does not fit twice into the record, nothing contradicts it. One that grows
+    changes by a share of itself; one whose period is no whole number of samples changes
+    by a share of its slope. Least squares on both, and on a constant, leave what is new
+    in each period.
     """
+    if 2 * period > len(u):
+        return True
     before, change, square = _steady(u, period)
     if square <= EXACT * np.var(u):
         return True

@@ -62,6 +62,13 @@ def test_a_period_with_which_an_input_grows_is_doubted(tmp_path):
     assert told.startswith("grow: ")
 
 
+def test_a_record_of_one_period_is_not_doubted(tmp_path):
+    entries = {"sine-5": f", period_samples: {COUNT}"}
+    place = write(tmp_path, records(), entries=entries, roles=HELD)
+    found = check(load_dataset(place), False).findings
+    assert not [item for item in found if "does not repeat" in item.text]
+
+
 def test_the_noise_is_measured_by_the_repeats_that_were_found(plain):
     assert plain.floor.method == "repeats"
     assert plain.floor.rms == pytest.approx(NOISE, rel=0.15)

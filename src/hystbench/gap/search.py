@@ -34,6 +34,7 @@ from hystbench.gap.inside.named_inside import (
     beats_chain,
     named_inside,
 )
+from hystbench.gap.inside.one_coordinate import Kind
 from hystbench.gap.inside.timing import better_timed, in_time_words, timed_as_named
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
 from hystbench.gap.naming.add_effects import Named, add_effects
@@ -90,13 +91,13 @@ def search(
     shifted = _in_better_time(found) if identified else None
     if shifted is not None:
         asked.say("the input may be taken at another time: naming beside that")
-        again = _beside(shifted, evidence, asked, quantities)
+        again = _beside(shifted, evidence, asked, quantities, found.hosts)
         found = found if _stays(found, again) else again
         asked.say("it is" if found is again else "that explains no more: it is not")
     about = None if identified else known_about(base, evidence.fit)
     if about is not None and found.may_be_simpler():
         asked.say("the base's numbers or timing may be off: naming beside that")
-        again = _beside(about, evidence, asked, quantities)
+        again = _beside(about, evidence, asked, quantities, found.hosts)
         if _stays(found, again, re_tuned=True):
             asked.say("that explains no more: they stay as they are")
         else:
@@ -142,6 +143,11 @@ class _Searched:
         found = self.chain if self.inside is None else self.inside.named
         assert found is not None  # noqa: S101  (one of them was looked for)
         return found
+
+    @property
+    def hosts(self) -> tuple[Kind, ...]:
+        """What forces were found in: a further look is at that alone."""
+        return () if self.tried is None else (self.tried.host,)
 
     @property
     def counts(self) -> int:
@@ -230,9 +236,16 @@ def _pay(effects: int) -> float:
 
 
 def _beside(
-    base: Model, evidence: Evidence, asked: Asked, quantities: Quantities | None
+    base: Model,
+    evidence: Evidence,
+    asked: Asked,
+    quantities: Quantities | None,
+    kinds: tuple[Kind, ...] = (),
 ) -> _Searched:
-    """Name in a chain and inside the dynamics, on the records as they are."""
+    """Name in a chain and inside the dynamics, on the records as they are.
+
+    Forces are tried in hosts of some kinds; in all by default.
+    """
     records, hold, declared = evidence.fit, evidence.input_hold, evidence.noise_rms
     offered, say, share = asked.vocabulary.offered, asked.say, asked.unnamed_share
     if any(record.decay_s is not None for record in records):
@@ -258,7 +271,7 @@ def _beside(
     if quantities is not None:
         whole = start, floor
         start, floor, inside, own = _with_forces(
-            base, start, floor, quantities, declared, asked, most
+            base, start, floor, quantities, declared, asked, most, kinds
         )
         if inside is not None and not beats_base(inside, start, floor.rms):
             say("inside: what stands for the base leaves more than the base does")
@@ -312,11 +325,12 @@ def _with_forces(
     declared: float | None,
     asked: Asked,
     most: Callable[[], float],
+    kinds: tuple[Kind, ...],
 ) -> tuple[ModelState, Floor, Inside | None, OwnValues]:
     """Look for forces inside the dynamics, beside what is a record's own.
 
     What is given back first is the base on the records without what was found to be
-    their own.
+    their own. After the first look only such hosts are tried as it has found best.
     """
     identified, records, hold = is_identified(base), start.records, start.hold
     say, shorter, whole, own = asked.say, records, (start, floor), NONE
@@ -326,9 +340,14 @@ def _with_forces(
         shorter = without_leads(start.records, base, hold, quantities, say, found)
         return shorter is not start.records
 
-    def look(start: ModelState, *more: Callable[[Model], bool]) -> Inside | None:
+    def look(
+        start: ModelState, again: Callable[[Model], bool] = lambda _: False
+    ) -> Inside | None:
+        nonlocal kinds
         about = base, start, floor.rms, quantities, identified, asked, most
-        return named_inside(*about, *more)
+        found = named_inside(*about, again, kinds)
+        kinds = kinds if found is None else (found.host,)
+        return found
 
     while True:  # each time fewer records are whole
         inside = look(start, again)

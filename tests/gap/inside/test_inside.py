@@ -29,6 +29,7 @@ from hystbench.gap.inside.combine_forces import (
     starts,
     with_one_fewer,
 )
+from hystbench.gap.inside.fitted_numbers import re_tuning
 from hystbench.gap.inside.insert_law import (
     Times,
     evened,
@@ -41,7 +42,6 @@ from hystbench.gap.inside.named_inside import (
     beats_base,
     beats_chain,
     named_inside,
-    re_tuning,
 )
 from hystbench.gap.inside.one_coordinate import (
     best_host,

@@ -70,6 +70,17 @@ def test_friction_of_the_motor_is_found_with_its_number(base):
     assert np.sqrt(np.mean(best.state.residual**2)) < 1.3 * NOISE
 
 
+def test_hosts_of_one_kind_alone_are_given_when_asked(base):
+    score = Score.plain(base.sample, NOISE**2)
+    asked = base, Quantities("torque", "velocity"), True, score
+    every = list(hosts(*asked))
+    for kind in ("coordinate", "two masses"):
+        wanted = [x.words for x in every if x.kind == kind]
+        assert wanted
+        assert [x.words for x in hosts(*asked, kinds=(kind,))] == wanted
+    assert len({x.kind for x in every}) > 1
+
+
 def test_a_base_of_two_poles_has_no_second_mass(base):
     block = TransferFunction(numerator=(1.0,), denominator=(1.0, 0.2, 40.0))
     assert further_modes_of(base.with_chain((block, *base.chain[1:]))) == []

@@ -39,6 +39,8 @@ LEAST_GAIN = 1e-5
 BEGUN_DAMPING = 0.01
 #: Peaks of what is left at which a further mode is begun.
 PEAKS = 3
+#: Lines whose coherence is one number.
+TOGETHER = 8
 #: Half the width of a band, as a share of its frequency.
 BAND = 0.05
 #: A pole is kept off the imaginary axis by this share of its size.
@@ -202,17 +204,34 @@ def with_a_mode(
 
 
 def _peaks(spectra: Spectra, left: Sequence[FloatArray]) -> Iterator[float]:
-    """Give where most power is left in a band of a tenth, in units of the scale."""
+    """Give where most coherent power is left in a band of a tenth.
+
+    That is the power which follows the input by one frequency response [1]_, of some
+    lines next to each other: noise and distortion have more power where the output has.
+    Frequencies are in units of the scale.
+
+    References
+    ----------
+    .. [1] J. S. Bendat, A. G. Piersol, Random Data, 4th ed., Wiley, 2010, chapter 6.
+    """
     s = np.concatenate([lines.s.imag for lines in spectra.lines])
-    power = np.concatenate(
+    u = np.concatenate([lines.u for lines in spectra.lines])
+    rest = np.concatenate(
         [
-            np.abs(np.fft.rfft(rest)[: len(lines.s)]) ** 2 / len(rest)
+            np.fft.rfft(rest)[: len(lines.s)] / np.sqrt(len(rest))
             for rest, lines in zip(left, spectra.lines, strict=True)
         ]
     )
-    s, power = s[s > 0], power[s > 0]
-    order = np.argsort(s)
-    s, power = s[order], power[order]
+    order = np.argsort(s)[np.sum(s <= 0) :]
+    order = order[: len(order) - len(order) % TOGETHER]
+    s, u, rest = (x[order].reshape(-1, TOGETHER) for x in (s, u, rest))
+    driven = np.sum(np.abs(u) ** 2, axis=1)
+    follows = np.abs(np.sum(rest * u.conj(), axis=1)) ** 2
+    follows = np.divide(follows, driven, out=np.zeros(len(u)), where=driven > 0)
+    # Of noise one line's share of all follows by chance.
+    every = np.sum(np.abs(rest) ** 2, axis=1)
+    power = np.maximum(TOGETHER * follows - every, 0.0) / (TOGETHER - 1)
+    s = s.mean(axis=1)
     for _ in range(PEAKS):
         total = np.concatenate([[0.0], np.cumsum(power)])
         first, end = (np.searchsorted(s, s * k) for k in (1 - BAND, 1 + BAND))

@@ -114,6 +114,7 @@ class ThermalDrift(Effect):
             end,
             form="one body",
             grids={"time_constant_s": logarithmic(low, high, 2.5)},
+            refused={"time_constant_s": "lower"},  # no body warms as fast as that
             unit={"coefficient": small},
         )
         slower = logarithmic(simulation.span / 20, high, 2.5)

@@ -23,7 +23,7 @@ Values = Mapping[str, float]
 SomeSamples = slice | NDArray[np.intp]
 """Some samples of a record."""
 EVERY: SomeSamples = slice(None)
-Refused = Literal["", "either", "upper"]
+Refused = Literal["", "either", "lower", "upper"]
 """Ends of a number's range at which an effect is not accepted."""
 
 

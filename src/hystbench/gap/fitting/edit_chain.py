@@ -130,6 +130,7 @@ def at_end(state: ModelState) -> str:
             continue
         value = state.value(free)
         place = np.log(value / free.low) / np.log(free.high / free.low)
-        if place > 1 - AT_END or (free.refused == "either" and place < AT_END):
+        upper = free.refused != "lower" and place > 1 - AT_END
+        if upper or (free.refused != "upper" and place < AT_END):
             return f"{free.parameter} = {value:.3g}"
     return ""

@@ -6,7 +6,7 @@ Whether they do better than those in the chain is asked afterwards
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -14,7 +14,6 @@ import numpy as np
 
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.gap.asked import USUAL, Asked
-from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
@@ -26,6 +25,7 @@ from hystbench.gap.inside.as_late import with_others_as_late
 from hystbench.gap.inside.choose import as_rounds, charged, chosen, not_taken, way_to
 from hystbench.gap.inside.combine_forces import may_gain, singles, together
 from hystbench.gap.inside.fewer import OnAll, on_fewer
+from hystbench.gap.inside.fitted_numbers import more_for_numbers, re_tuning
 from hystbench.gap.inside.further_modes import (
     further_words,
     in_further_modes,
@@ -33,17 +33,22 @@ from hystbench.gap.inside.further_modes import (
 )
 from hystbench.gap.inside.insert_law import Times, host_places, laws_for
 from hystbench.gap.inside.known_host import with_pairs_beside_free
-from hystbench.gap.inside.one_coordinate import ZEROS, Host
+from hystbench.gap.inside.one_coordinate import Host, Kind
 from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.memory import may_have_hysteresis
-from hystbench.gap.thresholds import ABOUT, FURTHER, MOST, PARAMETER, PAYS
+from hystbench.gap.thresholds import (
+    FURTHER,
+    MOST,
+    PARAMETER,
+    PAYS,
+)
 from hystbench.model import Model
 from hystbench.quantities import Quantities, angle_in
-from hystbench.sentences import finely, percent
+from hystbench.sentences import finely
 from hystbench.units import sized
 
 
@@ -59,6 +64,8 @@ class Inside:
     """What it stands in place of."""
     counts: int = 0
     """As how many effects more it counts: one if known numbers were fitted."""
+    host: Kind = "coordinate"
+    """What the effects act in."""
 
 
 def named_inside(
@@ -70,6 +77,7 @@ def named_inside(
     asked: Asked = USUAL,
     most: Callable[[], float] = lambda: np.inf,
     again: Callable[[Model], bool] = lambda found: False,
+    kinds: Collection[Kind] = (),
 ) -> Inside | None:
     """Find effects inside the dynamics; None where no force pays.
 
@@ -95,6 +103,8 @@ def named_inside(
     again : callable
         Told of a host with its best force, where that takes most of the gap. If it says
         that the search is to begin again, on other records, this one ends: None.
+    kinds : collection of str
+        Hosts that are tried; all by default.
     """
     say, share = asked.say, asked.unnamed_share
     fewer = on_fewer(start, quantities)
@@ -104,7 +114,8 @@ def named_inside(
     offer = partial(laws_for, turns=turns, offered=start.offered, times=times)
     tried: list[tuple[Host, list[Fitted]]] = []
     limit, little, enough = np.inf, False, False
-    for host in hosts(fewer, quantities, identified, score, base.exact):
+    about = fewer, quantities, identified, score, base.exact
+    for host in hosts(*about, kinds=kinds):
         if (tried or not identified) and not little:
             limit = most()
         if limit - host.counts < 1:
@@ -146,6 +157,15 @@ def named_inside(
     def with_more(host: Host, found: Sequence[Fitted]) -> tuple[Host, list[Fitted]]:
         return host, together(found, offer, score, say, limit - host.counts)
 
+    def extra(host: Host, found: Sequence[Fitted]) -> float:
+        best = chosen(found, score.floor, share)
+        as_few = [
+            len(chosen(own, score.floor, share).effects)
+            for other, own in full
+            if not other.charge
+        ]
+        return more_for_numbers(host, best.state, min(as_few, default=np.inf))
+
     full = [with_more(*item) for item in cheaper]
     known = [chosen(own, score.floor, share) for _, own in full]
     wanting = all(may_gain(item, score) for item in known)
@@ -154,7 +174,7 @@ def named_inside(
         if not identified and limit - host.counts > 1:
             found = with_pairs_beside_free(found, offer, score, say)
     full.append((host, found))
-    host, found = min(full, key=lambda item: charge_of(*item))
+    host, found = min(full, key=lambda item: charge_of(*item) + extra(*item))
     best, alone = chosen(found, score.floor, share), host.alone
     found = with_others_as_late(best, found, offer, score)
     best = chosen(found, score.floor, share)
@@ -190,7 +210,9 @@ def named_inside(
     # The first rung is the host re-tuned, so that no effect has the credit of that.
     rounds = as_rounds(replace(re_tuned, offered=start.offered).settled(), best, found)
     model = of_free_numbers(base, alone)
-    return Inside(model, alone, Named(state, tuple(rounds)), sentence, host.counts)
+    return Inside(
+        model, alone, Named(state, tuple(rounds)), sentence, host.counts, host.kind
+    )
 
 
 def without_forces(
@@ -213,7 +235,7 @@ def without_forces(
     )
     rounds = (not_taken(alone, found),) if len(found) > 1 else ()
     model = of_free_numbers(base, alone)
-    return Inside(model, alone, Named(alone, rounds), sentence, host.counts)
+    return Inside(model, alone, Named(alone, rounds), sentence, host.counts, host.kind)
 
 
 def lefts(states: Iterable[ModelState], floor_rms: float, unit: str) -> list[str]:
@@ -243,34 +265,6 @@ def in_short_steps(state: ModelState, score: Score) -> ModelState:
             break
         state = again
     return state
-
-
-def re_tuning(alone: ModelState, state: ModelState) -> str:
-    """Say which of a host's own numbers the fit with the effects moved most, if far.
-
-    Nobody said that they are free: a wrong number of the base would hide behind a name.
-    What an effect stands for is taken out of the host's own numbers, and is not meant.
-    """
-    added = state.places_added
-    own = [place for place in range(len(state.chain)) if place not in added]
-    if len(own) != len(alone.chain):
-        return ""  # effects of stores are the stores' own numbers
-    meant = {effects()[item.effect].taken_from for item in state.added}
-    moves = [(0.0, "")]
-    for place, given in zip(own, alone.chain, strict=True):
-        for free in state.free:
-            if free.block != place or free.parameter in {*meant, *ZEROS}:
-                continue
-            was = getattr(given, free.parameter)
-            if free.element is None and was:
-                moves.append((abs(state.value(free) / was - 1.0), free.parameter))
-    far, name = max(moves)
-    if far < ABOUT:
-        return ""
-    return (
-        f"; of its own numbers the fit moved {name} most, by {percent(far)}: check "
-        "whether it can be so far off"
-    )
 
 
 def apart_inside(

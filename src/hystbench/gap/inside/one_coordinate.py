@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -29,6 +29,10 @@ ZEROS = ("bias", "offset", "delay_s", "blend")
 """Numbers that are counted from a zero: a share of them says nothing."""
 
 
+Kind = Literal["stores", "coordinate", "loose mass", "two masses", "given", "mode"]
+"""What a host is made of."""
+
+
 @dataclass(frozen=True)
 class Host:
     """A linear model that forces may act inside of."""
@@ -44,6 +48,7 @@ class Host:
     would come back."""
     charge: float = 0.0
     """For numbers of a given base that are fitted though nobody set them free."""
+    kind: Kind = "coordinate"
 
     @property
     def counts(self) -> int:

@@ -9,7 +9,7 @@ in place of a base that does something else, which is then said.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
 from typing import Any
@@ -34,6 +34,7 @@ from hystbench.gap.inside.one_coordinate import (
     MOTIONS,
     ZEROS,
     Host,
+    Kind,
     best_host,
     free_masses,
     one_coordinate,
@@ -55,6 +56,7 @@ def hosts(
     score: Score,
     exact: bool = False,
     timed: bool = False,
+    kinds: Collection[Kind] = (),
 ) -> Iterator[Host]:
     """Give the linear models that forces are tried in.
 
@@ -71,38 +73,51 @@ def hosts(
         Whether a given base calls its numbers exact.
     timed : bool
         Whether the input was moved in time already.
+    kinds : collection of str
+        Those that are wanted; all by default.
     """
+
+    def wanted(*some: Kind) -> bool:
+        return not kinds or any(kind in kinds for kind in some)
+
+    about = quantities, identified, score
     delay = start.chain[0]
     if identified and isinstance(delay, InputDelay):
-        for host in hosts(_behind(start), quantities, identified, score, timed=True):
+        for host in hosts(_behind(start), *about, timed=True, kinds=kinds):
             state = _in_front(delay, start, host.fitted.state)
             alone = _in_front(delay, start, host.alone)
             other = host.other and _in_front(delay, start, host.other)
             whole = replace(host.fitted, state=state)
             yield replace(host, alone=alone, fitted=whole, other=other)
         # A force that is not linear turns the phase: it may be what looked like timing.
-        yield from hosts(_without_timing(start), quantities, identified, score)
+        yield from hosts(_without_timing(start), *about, kinds=kinds)
         return
-    if quantities.causality in ("storage", "unknown") and not exact:
+    stored = quantities.causality in ("storage", "unknown")
+    if stored and not exact and wanted("stores"):
         yield from store_hosts(start, identified, score)
     # Of a mass that follows at once only its spring is seen: a force inside is then a
     # curve or a loop of what drives it, which a chain has.
     shows_a_pole = not all(isinstance(block, Gain) for block in start.chain)
     moves = shows_a_pole or quantities.causality == "motion to force"
-    if identified and moves and not of_many_modes(start):
+    of_masses = wanted("coordinate", "loose mass", "two masses")
+    if identified and moves and not of_many_modes(start) and of_masses:
         begun = one_coordinate(start.records, quantities, start.hold)
         best = best_host(begun, score)
         if best is not None and is_seen_moving(best.state):
             words = "a model of one coordinate stands in place of the linear base"
-            yield Host(best.state, best, words)
-            if not timed:
-                yield from _in_time(best, score)
-            yield from _loose(best.state, score, words)
-            yield from _of_two(best, further_modes_of(start), score)
+            if wanted("coordinate"):
+                yield Host(best.state, best, words)
+                if not timed:
+                    yield from _in_time(best, score)
+            if wanted("loose mass"):
+                yield from _loose(best.state, score, words)
+            if wanted("two masses"):
+                yield from _of_two(best, further_modes_of(start), score)
     if not identified and all(isinstance(block, Store) for block in start.chain):
-        yield Host(start, fitted(start, score), "the base is stores already")
+        words = "the base is stores already"
+        yield Host(start, fitted(start, score), words, kind="stores")
         return
-    if not identified:
+    if not identified and wanted("given"):
         words = "the base holds a mechanism"
         same = own_mechanism(start)
         if same is None:
@@ -111,9 +126,10 @@ def hosts(
             )
             same = same_as(start, quantities, score.floor)
         if same is not None:
-            about = _about(same)
-            yield from _as_given(same, about, score, words, start.free, exact)
-    if quantities.causality not in ("force to motion", "unknown"):
+            own = same, _about(same), score, words, start.free, exact
+            yield from _as_given("given", *own)
+    moved = quantities.causality in ("force to motion", "unknown")
+    if not moved or not wanted("mode"):
         return
     known = quantities.output in MOTIONS
     split = modes(start, quantities.output if known else "position", identified)
@@ -123,12 +139,14 @@ def hosts(
         words = f"the base's mode at {at} is a mechanism of its own"
         if identified:
             best = fitted(mode, score)
-            yield Host(best.state, best, words)
+            yield Host(best.state, best, words, kind="mode")
         else:
-            yield from _as_given(mode, mode, score, words, start.free, exact)
+            own = mode, mode, score, words, start.free, exact
+            yield from _as_given("mode", *own)
 
 
 def _as_given(
+    kind: Kind,
     state: ModelState,
     about: ModelState,
     score: Score,
@@ -146,15 +164,16 @@ def _as_given(
     if free:
         known = all(item.given is not None for item in free)
         own = fitted_to_the_end(about, score) if known else fitted(state, score)
-        yield Host(state, own, words)
+        yield Host(state, own, words, kind=kind)
         return
     held = replace(state, free=())
-    yield Host(held, fitted(held, score), f"{words}, its numbers as they are")
+    as_they_are = f"{words}, its numbers as they are"
+    yield Host(held, fitted(held, score), as_they_are, kind=kind)
     if not exact:
         words = f"{words}, its numbers fitted to the records"
         held_by = about is not state
         own = fitted_to_the_end(about, score) if held_by else fitted(state, score)
-        yield Host(state, own, words, charge=FURTHER)
+        yield Host(state, own, words, charge=FURTHER, kind=kind)
 
 
 def _about(state: ModelState) -> ModelState:
@@ -184,7 +203,7 @@ def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
         return
     for begun in free_masses(state.records, block.output, state.hold):
         alone = fitted(begun, score)
-        yield Host(alone.state, alone, words)
+        yield Host(alone.state, alone, words, kind="loose mass")
 
 
 def _in_time(one: Fitted, score: Score) -> Iterator[Host]:
@@ -219,7 +238,7 @@ def _of_two(one: Fitted, frequencies: Sequence[float], score: Score) -> Iterator
     best = best_host(two_masses([state, *loose], frequencies), score)
     if best is not None and best.score < one.score - PAYS:
         words = "a mass with another one attached stands in place of the linear base"
-        yield Host(best.state, best, words)
+        yield Host(best.state, best, words, kind="two masses")
 
 
 def _behind(start: ModelState) -> ModelState:

@@ -168,9 +168,9 @@ def store_hosts(start: ModelState, identified: bool, score: Score) -> Iterator[H
                 words += ", as none simulates the same"
             else:
                 alone = same
-        yield Host(alone, best, words, charge=charge)
+        yield Host(alone, best, words, charge=charge, kind="stores")
         for other in in_other_order(best.state):
-            yield Host(alone, best, words, other, charge)
+            yield Host(alone, best, words, other, charge, "stores")
 
 
 def may_be_stores(start: ModelState) -> bool:
