@@ -91,7 +91,8 @@ def _each(facts: Sequence[Facts], unit: str) -> list[str]:
     width = max(len(item.name) for item in facts)
     told = []
     for item in facts:
-        period = f"{item.periods:.3g} periods" if item.period else "no period"
+        several = "s" * (item.periods != 1)
+        period = f"{item.periods:.3g} period{several}" if item.period else "no period"
         jitter = "" if item.jitter is None else f", jitter {jitter_text(item.jitter)}"
         told += _lines(
             f"{item.name:{width}} {item.use:8} {item.samples} at {1 / item.dt:.5g} Hz"
