@@ -35,10 +35,11 @@ static double hb_mean_dead_zone(double from, double to, double gap)
 static double hb_mean_held(double z, double way, double reach, double gap)
 {
     const double from = hb_clip(reach, z), to = hb_clip(reach, z + way);
-    const double moved = to - from;
+    if (gap == 0 && from == z && to == z + way) return (from + to) / 2; /* not held */
     if (way == 0) return hb_dead_zone(gap, from);
-    const double rest = way - moved;
-    const double climbed = hb_mean_dead_zone(from, to, gap) * moved;
+    const double moved = to - from, rest = way - moved;
+    const double climbed = moved * (gap == 0 ? (from + to) / 2
+                                             : hb_mean_dead_zone(from, to, gap));
     return (climbed + hb_dead_zone(gap, to) * rest) / way;
 }
 
