@@ -1,6 +1,7 @@
 """Two forces that are missing in a mechanism of known numbers."""
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 
 from hystbench.gap.asked import Asked
@@ -16,7 +17,6 @@ PADDLE = f"""
 name: paddle
 input: {{name: torque, unit: Nm}}
 output: {{name: angle, unit: rad}}
-free: []
 chain:
 - mechanism: {{mass: {MASS}, damping: {DAMPING}, stiffness: {1.01 * SPRING}}}
 """
@@ -62,9 +62,11 @@ def records():
         yield Record(name, DT, u, y, *about)
 
 
-def test_a_weight_and_a_drag_are_named_though_each_alone_is_beaten(tmp_path):
+@pytest.mark.parametrize("free", ["free: []\n", ""], ids=["exact", "about"])
+def test_a_weight_and_a_drag_are_named_though_each_alone_is_beaten(free, tmp_path):
+    """In a host that is exact there is no other one with its numbers fitted."""
     model = tmp_path / "model.yaml"
-    model.write_text(PADDLE)
+    model.write_text(PADDLE + free)
     told = "linear", NOISE, "force", "position"
     evidence = evidence_of("paddle", list(records()), *told)
     content = closed_beside(model, evidence, LIKELY)

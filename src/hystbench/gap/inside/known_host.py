@@ -18,28 +18,23 @@ from hystbench.gap.inside.combine_forces import (
     together,
 )
 from hystbench.gap.inside.insert_law import LINEAR, Offer, host_of, own_numbers
-from hystbench.gap.inside.one_coordinate import Host
 from hystbench.gap.progress import Say, silent
 
 
-def with_pairs_of_fitted(
-    tried: Sequence[tuple[Host, list[Fitted]]],
-    offer: Offer,
-    score: Score,
-    say: Say = silent,
-) -> list[tuple[Host, list[Fitted]]]:
-    """Add to a host of known numbers the pairs of forces found with them fitted.
+def with_pairs_beside_free(
+    found: Sequence[Fitted], offer: Offer, score: Score, say: Say = silent
+) -> list[Fitted]:
+    """Add the pairs of forces that do best where the host's own numbers are free.
 
     Two forces that are missing each leave what a wrong spring and a wrong damper do.
     With the numbers known, a single force is then judged by how well it makes up for
-    both, and the right two are not carried on. With the numbers fitted it is judged by
+    both, and the right two are not carried on. With the numbers free it is judged by
     its own shape. The pairs that are best there are fitted beside the known numbers.
 
     Parameters
     ----------
-    tried : sequence of (Host, list of Fitted)
-        Of each host itself first, then with forces. That of which numbers were fitted
-        is looked in; without one the numbers are set free.
+    found : sequence of Fitted
+        The host alone first, then with forces.
     offer : callable
         Gives what may be put in.
     score : Score
@@ -47,42 +42,21 @@ def with_pairs_of_fitted(
 
     Returns
     -------
-    list of (Host, list of Fitted)
-        With the pairs, and each of their forces alone, for hosts of known numbers.
-    """
-    fitted_too = [own for host, own in tried if host.charge and host.kind == "given"]
-    return [
-        (host, own)
-        if host.charge
-        else (host, _with_pairs(own, offer, score, say, next(iter(fitted_too), None)))
-        for host, own in tried
-    ]
-
-
-def _with_pairs(
-    found: list[Fitted],
-    offer: Offer,
-    score: Score,
-    say: Say,
-    beside_fitted: Sequence[Fitted] | None,
-) -> list[Fitted]:
-    """Add the best pairs found beside fitted numbers; of each set of effects the best.
-
-    Where none were looked for, they are now, with the host's own numbers free.
+    list of Fitted
+        Those given, the pairs, and each of their forces alone; of each set of effects
+        the best.
     """
     host = found[0].state
     place = host_of(host)
     if not isinstance(host.chain[place], Mechanism) or not _known(host, place):
-        return found
-    if beside_fitted is None:
-        others = (item for item in host.free if item.block != place)
-        free = (*others, *own_numbers(host, place))
-        begun = fitted(replace(host, free=free), score)
-        say("inside: with its numbers free, to see which forces belong together")
-        ones = singles(begun, offer, score, say)
-        beside_fitted = together(ones, offer, score, say, 2)
+        return list(found)
+    others = (item for item in host.free if item.block != place)
+    free = (*others, *own_numbers(host, place))
+    begun = fitted(replace(host, free=free), score)
+    say("inside: with the host's own numbers free, to see which forces belong together")
+    beside_free = together(singles(begun, offer, score, say), offer, score, say, 2)
     pairs = sorted(
-        (item for item in beside_fitted if len(item.effects) == 2),
+        (item for item in beside_free if len(item.effects) == 2),
         key=lambda item: item.score,
     )
     every = list(found)

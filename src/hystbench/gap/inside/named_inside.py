@@ -32,7 +32,7 @@ from hystbench.gap.inside.further_modes import (
     with_modes,
 )
 from hystbench.gap.inside.insert_law import Times, host_places, laws_for
-from hystbench.gap.inside.known_host import with_pairs_of_fitted
+from hystbench.gap.inside.known_host import with_pairs_beside_free
 from hystbench.gap.inside.one_coordinate import Host, Kind
 from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.naming.add_effects import Named
@@ -171,10 +171,15 @@ def named_inside(
     wanting = all(may_gain(item, score) for item in known)
     full.append(with_more(host, found) if wanting else (host, found))
     if wanting and not identified and limit - host.counts > 1:
-        fitted_too = [item for item in tried if item[0].charge and item[0] is not host]
         if host.kind == "given" and not host.charge:
-            full += [with_more(*x) for x in fitted_too if x[0].kind == "given"]
-        full = with_pairs_of_fitted(full, offer, score, say)
+            also = (x for x in tried if x[0].charge and x[0].kind == "given")
+            full += [with_more(*item) for item in also]
+        full = [
+            (own, more)
+            if own.charge
+            else (own, with_pairs_beside_free(more, offer, score, say))
+            for own, more in full
+        ]
     host, found = min(full, key=lambda item: charge_of(*item) + extra(*item))
     best, alone = chosen(found, score.floor, share), host.alone
     found = with_others_as_late(best, found, offer, score)
