@@ -205,7 +205,7 @@ def test_what_does_not_pay_or_was_not_refitted_is_not_put_to_folds():
 
 
 def test_finalists_are_ranked_by_records_held_back():
-    given = measured(lines(6), [1.0] * 6, bend=0.03)
+    given = measured(lines(6), [1.0] * 6, bend=0.08)
     before = state_of((block("gain", value=1.0),), given)
     score = make_score(before, NOISE)
     ranking = rank(before, score)
