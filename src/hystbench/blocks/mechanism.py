@@ -15,6 +15,7 @@ from hystbench.blocks.curve import held_lines
 from hystbench.blocks.force import Driven, Dynamics, Force, Motion, exported, rows
 from hystbench.blocks.parameter import TINY, choice, number
 from hystbench.blocks.starts import PASTS, STARTS, path_from
+from hystbench.blocks.state_space import after_interval
 from hystbench.blocks.step import Sampling, Step, lines_of
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -283,9 +284,8 @@ def step_weights(
 ) -> FloatArray:
     """Give weights of q, q' and of the driving force at both ends of a step.
 
-    Of masses on springs without forces inside: by one matrix exponential each of the
-    augmented system [1]_. They are kept, as a fit simulates many records with the same
-    linear part.
+    Of masses on springs without forces inside. They are kept, as a fit simulates many
+    records with the same linear part.
 
     Parameters
     ----------
@@ -298,26 +298,14 @@ def step_weights(
     -------
     ndarray, shape (coordinates, 2, 2, 4)
         Of a step, and of an eighth of it; not to be written to.
-
-    References
-    ----------
-    .. [1] C. F. Van Loan, "Computing integrals involving the matrix exponential",
-       IEEE Transactions on Automatic Control 23 (1978) 395-404.
     """
-    from scipy.linalg import expm  # late: a filter's process never needs it
-
     every = {each: k for k, each in enumerate(dict.fromkeys(coordinates))}
     mass, damping, stiffness = np.array(list(every)).T
-    # Columns: position, velocity, a force of one, and one that rises to one.
-    system = np.zeros((2, len(every), 4, 4))
-    system[..., 0, 1] = 1.0
-    system[..., 1, 0], system[..., 1, 1] = -stiffness / mass, -damping / mass
-    system[..., 1, 2] = 1.0 / mass
-    system *= np.array([dt, dt / 8])[:, None, None, None]
-    system[..., 2, 3] = 1.0
-    # A fit may try what runs away within a step: NaN, as of all that runs away.
-    with np.errstate(over="ignore", invalid="ignore"):
-        weights = expm(system)[..., :2, :]
+    a, b = np.zeros((len(every), 2, 2)), np.zeros((len(every), 2))
+    a[:, 0, 1], a[:, 1, 0], a[:, 1, 1] = 1.0, -stiffness / mass, -damping / mass
+    b[:, 1] = 1.0 / mass
+    steps = np.array([dt, dt / 8])[:, None, None]
+    weights = after_interval(a * steps[..., None], b * steps)
     weights[..., 2] -= weights[..., 3]
     found = weights[:, [every[each] for each in coordinates]].swapaxes(0, 1)
     found = np.ascontiguousarray(found)

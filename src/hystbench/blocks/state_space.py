@@ -86,7 +86,26 @@ def _exponential(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Give what is left of the state after one interval, and what an input adds to it.
 
-    The input is a one, and a ramp from zero to one; by one matrix exponential [1]_.
+    The input is a one, and a ramp from zero to one.
+    """
+    m = len(system.b)
+    weights = after_interval(system.a * dt, system.b * dt)
+    return np.ascontiguousarray(weights[:, :m]), weights[:, m], weights[:, m + 1]
+
+
+def after_interval(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Give the state after an interval of one: of the state, a one and a ramp to one.
+
+    By one matrix exponential of each system [1]_.
+
+    Parameters
+    ----------
+    a : ndarray, shape (..., m, m)
+    b : ndarray, shape (..., m)
+
+    Returns
+    -------
+    ndarray, shape (..., m, m + 2)
 
     References
     ----------
@@ -95,16 +114,14 @@ def _exponential(
     """
     from scipy.linalg import expm  # late: a filter's process never needs it
 
-    m = len(system.b)
-    augmented = np.zeros((m + 2, m + 2))
-    augmented[:m, :m] = system.a * dt
-    augmented[:m, m] = system.b * dt
-    augmented[m, m + 1] = 1.0
+    m = b.shape[-1]
+    augmented = np.zeros((*b.shape[:-1], m + 2, m + 2))
+    augmented[..., :m, :m] = a
+    augmented[..., :m, m] = b
+    augmented[..., m, m + 1] = 1.0
     # A fit may try what runs away within an interval: NaN, as of all that runs away.
     with np.errstate(over="ignore", invalid="ignore"):
-        exponential = expm(augmented)
-    phi = np.ascontiguousarray(exponential[:m, :m])
-    return phi, exponential[:m, m], exponential[:m, m + 1]
+        return np.asarray(expm(augmented)[..., :m, :])
 
 
 def _of_modes(x: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -340,12 +340,10 @@ def _with_forces(
         shorter = without_leads(start.records, base, hold, quantities, say, found)
         return shorter is not start.records
 
-    def look(
-        start: ModelState, again: Callable[[Model], bool] = lambda _: False
-    ) -> Inside | None:
+    def look(start: ModelState, *more: Callable[[Model], bool]) -> Inside | None:
         nonlocal kinds
         about = base, start, floor.rms, quantities, identified, asked, most
-        found = named_inside(*about, again, kinds)
+        found = named_inside(*about, *more, kinds=kinds)
         kinds = kinds if found is None else (found.host,)
         return found
 

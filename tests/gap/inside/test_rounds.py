@@ -185,12 +185,12 @@ def spring_found_once(host, spring, key):
     """What records are when forces are looked for, and a look that finds a spring."""
     seen = []
 
-    def look(base, start, *more):
+    def look(base, start, *_, kinds):
         seen.append([getattr(record, key) for record in start.records])
         if len(seen) > 1:
-            assert more[-1] == ("given",)
+            assert kinds == ("given",)
             raise FarEnoughError
-        assert more[-1] == ()
+        assert kinds == ()
         added = Added("stiffness-hardening", "inside", "", (1,), {}, 1.0)
         state = replace(start, chain=(host, spring), added=(added,)).settled()
         return Inside(base, start, Named(state), "", host="given")

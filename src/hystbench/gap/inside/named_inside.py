@@ -40,12 +40,7 @@ from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.memory import may_have_hysteresis
-from hystbench.gap.thresholds import (
-    FURTHER,
-    MOST,
-    PARAMETER,
-    PAYS,
-)
+from hystbench.gap.thresholds import FURTHER, MOST, PARAMETER, PAYS
 from hystbench.model import Model
 from hystbench.quantities import Quantities, angle_in
 from hystbench.sentences import finely
@@ -77,6 +72,7 @@ def named_inside(
     asked: Asked = USUAL,
     most: Callable[[], float] = lambda: np.inf,
     again: Callable[[Model], bool] = lambda found: False,
+    *,
     kinds: Collection[Kind] = (),
 ) -> Inside | None:
     """Find effects inside the dynamics; None where no force pays.
@@ -157,15 +153,6 @@ def named_inside(
     def with_more(host: Host, found: Sequence[Fitted]) -> tuple[Host, list[Fitted]]:
         return host, together(found, offer, score, say, limit - host.counts)
 
-    def extra(host: Host, found: Sequence[Fitted]) -> float:
-        best = chosen(found, score.floor, share)
-        as_few = [
-            len(chosen(own, score.floor, share).effects)
-            for other, own in full
-            if not other.charge
-        ]
-        return more_for_numbers(host, best.state, min(as_few, default=np.inf))
-
     full = [with_more(*item) for item in cheaper]
     known = [chosen(own, score.floor, share) for _, own in full]
     wanting = all(may_gain(item, score) for item in known)
@@ -180,7 +167,20 @@ def named_inside(
             else (own, with_pairs_beside_free(more, offer, score, say))
             for own, more in full
         ]
-    host, found = min(full, key=lambda item: charge_of(*item) + extra(*item))
+    best_of = [chosen(own, score.floor, share) for _, own in full]
+    fewest = min(
+        (
+            len(best.effects)
+            for best, (own, _) in zip(best_of, full, strict=True)
+            if not own.charge
+        ),
+        default=np.inf,
+    )
+    costs = [
+        charge_of(own, more) + more_for_numbers(own, best.state, fewest)
+        for best, (own, more) in zip(best_of, full, strict=True)
+    ]
+    host, found = full[int(np.argmin(costs))]
     best, alone = chosen(found, score.floor, share), host.alone
     found = with_others_as_late(best, found, offer, score)
     best = chosen(found, score.floor, share)
