@@ -58,6 +58,7 @@ SOURCES = [
     "play.c",
     "preisach.c",
     "state_space.c",
+    "structure.c",
     "volterra.c",
 ]
 
@@ -75,7 +76,10 @@ setup(
         Extension(
             "hystbench.kernels._kernels",
             sources=[f"{HERE}/{name}" for name in SOURCES],
-            depends=[f"{HERE}/{name}" for name in ("lanes.h", "tangent.h", "forces.c")],
+            depends=[
+                f"{HERE}/{name}"
+                for name in ("lanes.h", "tangent.h", "forces.c", "joint.c")
+            ],
         ),
         # The hiding plant's own: it shares no code with the library above.
         Extension(

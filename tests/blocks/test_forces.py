@@ -273,8 +273,8 @@ def test_a_force_without_a_mechanism_is_refused_in_one_line(chain, place, before
     with pytest.raises(InputError) as told:
         chained(*chain)
     assert str(told.value) == (
-        f"chain: block {place} (drag): expected mechanism or impedance just before it, "
-        f"or another force inside one, got {before}"
+        f"chain: block {place} (drag): expected mechanism, impedance or structure just "
+        f"before it, or another force inside one, got {before}"
     )
 
 

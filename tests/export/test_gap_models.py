@@ -40,6 +40,7 @@ def example(name, **more):
     return (name, EXAMPLES[name] | more)
 
 
+NO_JOINT = EXAMPLES["structure"] | {"joint": [], "start": "settled"}
 RESTING = {"gain": 40.0, "rate": 20.0, "start": "settled"}
 
 #: Of blocks that the gap adds beside one another, with the hold that it writes.
@@ -62,6 +63,15 @@ OTHERS = {
         example("other-modes", start="moving", **SMOOTH),
         example("sensor-lag", **SMOOTH),
         example("sensor-nonlinearity"),
+    ),
+    "a joint that several modes move": (
+        example("structure", output="acceleration", start="moving", **SMOOTH),
+        example("iwan-force"),
+        example("other-modes", start="moving", **SMOOTH),
+    ),
+    "modes without a joint": (
+        ("structure", NO_JOINT),
+        example("saturation"),
     ),
     "stores that spill": (
         example("store", gain=400.0, bias=100.0, output="outflow", **SMOOTH),

@@ -70,7 +70,7 @@ def variants():
                     host = registry()["mechanism"]
                     before = [host.from_mapping(EXAMPLES["mechanism"]), own]
                 if isinstance(own, Force):
-                    host = ("mechanism", "impedance")[draw % 2]
+                    host = ("mechanism", "impedance", "structure")[draw % 3]
                     before = [registry()[host].from_mapping(EXAMPLES[host]), own]
                 chains[f"{name} {draw} {hold}"] = before
     return chains

@@ -42,6 +42,7 @@ from hystbench.blocks.slew_limit import SlewLimit  # noqa: E402
 from hystbench.blocks.stiffness import Stiffness  # noqa: E402
 from hystbench.blocks.stiffness_hardening import StiffnessHardening  # noqa: E402
 from hystbench.blocks.store import Store  # noqa: E402
+from hystbench.blocks.structure import Structure  # noqa: E402
 from hystbench.envelope import Envelope  # noqa: E402
 from hystbench.filters import FILTERS, run_many  # noqa: E402
 from hystbench.inverse.feedforward import Plays  # noqa: E402
@@ -175,6 +176,18 @@ def blocks(x):
     yield "mechanism", (machine.driven(x, DT, forces),)
     held = Mechanism(mass=1e-4, damping=5e-3, stiffness=10.0, start="settled")
     yield "settled mechanism", (held.driven(x + 1.0, DT, forces),)
+    modes = Structure.from_mapping(
+        {
+            "stiffness": [1e5, 4e5],
+            "damping": [50.0, 30.0],
+            "modal_constant": [1e4, 2e4],
+            "drive": [100.0, 120.0],
+            "joint": [90.0, -70.0],
+            "blend": [0.0, 1e-4],
+            "start": "settled",
+        }
+    )
+    yield "structure", (modes.driven(x + 1.0, DT, forces),)
     back = Impedance(mass=1e-4, damping=5e-3, stiffness=10.0, hold="band-limited")
     yield "impedance", (back.driven(x, DT, forces),)
     smooth = {"hold": "band-limited"}

@@ -34,10 +34,15 @@ class Motion(NamedTuple):
     acceleration: FloatArray
     force: FloatArray
     """Sum of the forces inside."""
+    shown: FloatArray | None = None
+    """The output, where the coordinate alone does not tell it."""
 
 
 class Dynamics(HeldBlock):
     """A block with a coordinate, which meets forces: a mechanism or an impedance."""
+
+    def check_meets_forces(self) -> None:
+        """Raise InputError if no force can act inside."""
 
     @abstractmethod
     def motions(
@@ -114,7 +119,7 @@ class Force(AttachedBlock, place="inside"):
     It depends on the position q and the velocity q', and may remember a distance.
     """
 
-    hosts = "mechanism or impedance"
+    hosts = "mechanism, impedance or structure"
 
     law: ClassVar[str]
     """The kernel's law, one of :data:`LAWS`; the line of a subclass says it."""
@@ -157,9 +162,10 @@ class Force(AttachedBlock, place="inside"):
             return before.taking(self)
         if not isinstance(before, Dynamics):
             raise InputError(
-                "expected mechanism or impedance just before it, or another force "
-                f"inside one, got {getattr(before, 'name', 'none')}"
+                "expected mechanism, impedance or structure just before it, or another "
+                f"force inside one, got {getattr(before, 'name', 'none')}"
             )
+        before.check_meets_forces()
         return Driven(before, (self,))
 
 

@@ -4,35 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from math import ceil, pi, sqrt
-from typing import Any, NamedTuple
+from math import sqrt
+from typing import Any
 
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.attached import OthersOnRecords, Signals
-from hystbench.blocks.curve import held_lines
-from hystbench.blocks.force import Driven, Dynamics, Force, Motion, exported, rows
+from hystbench.blocks.attached import Signals
+from hystbench.blocks.force import Driven, Force, Motion, exported, rows
+from hystbench.blocks.forced import ForcedDynamics
 from hystbench.blocks.parameter import TINY, choice, number
-from hystbench.blocks.starts import PASTS, STARTS, path_from
+from hystbench.blocks.starts import PASTS
 from hystbench.blocks.state_space import after_interval
 from hystbench.blocks.step import Sampling, Step, lines_of
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 OUTPUTS = ("position", "velocity", "acceleration", "force")
-PHASE = 0.05
-"""Largest angle, in radians, by which the linear coordinate turns in one step.
-
-Steps miss a thousandth of the motion of a mode that hardens threefold.
-"""
-MOST = 40
-"""Steps of an interval, at most: the linear part is exact however fast it is."""
-CONTACT = 10
-"""Steps of an interval that a stiff contact may ask for: it is stable without."""
 
 
-class Mechanism(Dynamics, name="mechanism", place="base"):
+class Mechanism(ForcedDynamics, name="mechanism", place="base"):
     """A coordinate q of a machine: ``m q'' + c q' + k q + F(q, q') = gain z + bias``.
 
     F is the sum of the forces that follow it in the chain; without one it is linear. A
@@ -67,7 +58,6 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
         "the velocity",
         default=0.0,
     )
-    start: str = choice("state before the first sample", STARTS, "rest")
     start_position: float = number("Q", "q at the first sample", default=0.0)
     start_velocity: float = number("Q/s", "q' at the first sample", default=0.0)
 
@@ -92,72 +82,36 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
                 return motion.velocity + self.blend * motion.acceleration
             return motion.acceleration + self.blend * motion.velocity
 
-    def motions(
-        self,
-        signals: Signals,
-        dts: Sequence[float],
-        forces: tuple[Force, ...],
-        others: OthersOnRecords,
-        pieces: float = 1.0,
-    ) -> list[list[Motion]]:
-        """Compute how the coordinate moves, and how others with numbers near do.
-
-        Each step of those is the tangent of this one's: right for small differences.
-        Records of one sampling interval take one call of the kernel.
-        """
-        every = (Driven(self, forces, pieces), *(other for other, _ in others))
-        given = (signals, *(own for _, own in others))
-        alike: dict[tuple[float, int], list[int]] = {}
-        for k, (z, dt) in enumerate(zip(signals, dts, strict=True)):
-            alike.setdefault((dt, min(len(z), 3)), []).append(k)
-        found: list[dict[int, Motion]] = [{} for _ in every]
-        for (dt, _), places in alike.items():
-            drives = [[own[k] for k in places] for own in given]
-            for own, moves in zip(found, self._moved(every, drives, dt), strict=True):
-                own.update(zip(places, moves, strict=True))
-        return [[own[k] for k in range(len(signals))] for own in found]
-
     def _moved(
         self, every: Sequence[Driven], drives: Sequence[Signals], dt: float
     ) -> list[list[Motion]]:
         """Move near motions through records, which have three samples or as many."""
-        first, signals = every[0], drives[0]
         hosts: list[Any] = [each.host for each in every]
-        if not len(signals[0]):
-            return [[Motion(*[z] * 4) for z in signals] for _ in hosts]
         numbers = np.array([rows(each.forces) for each in every])
-        holding = self.holding
-        quick = holding == "band-limited" and first.forces and first.pieces < 1
-        if quick and self._parts(dt, first.forces, first.pieces) == 1:
-            holding = "linear"  # finer lines would be shorter than a step
-        driven = _Corners.of(signals, self.start, holding)
-        step, ends = dt / driven.fine, np.cumsum(driven.lengths)
-        parts = self._parts(step, first.forces, first.pieces)
+        driven = self.lines(every[0], drives, dt)
         gain, bias, mass, damping, stiffness = np.array(
             [[x.gain, x.bias, x.mass, x.damping, x.stiffness] for x in hosts]
         ).T[..., None]
-        q, v, force = np.zeros((3, len(hosts), ends[-1]))
+        q, v, force = np.zeros((3, len(hosts), driven.count))
         p = gain * driven.values + bias
-        begins = ends - driven.lengths
         for k, host in enumerate(hosts):
-            own = driven
-            if any(x is not z for x, z in zip(drives[k], signals, strict=True)):
-                own = _Corners.of(drives[k], self.start, holding)
-                p[k] = host.gain * own.values + host.bias
-            q[k, begins], v[k, begins] = host.start_position, host.start_velocity
+            q[k, driven.begins], v[k, driven.begins] = (
+                host.start_position,
+                host.start_velocity,
+            )
             if self.start != "rest" and host.stiffness > 0.0:
-                rested = host.gain * np.array(own.before) + host.bias
-                q[k, begins] += [host._balance(z, numbers[k]) for z in rested]
+                rested = host.gain * driven.before[k] + host.bias
+                q[k, driven.begins] += [host._balance(z, numbers[k]) for z in rested]
         kernels.call(
             "hb_mechanism",
-            ends[-1],
-            len(ends),
-            ends.ctypes.data,
+            driven.count,
+            len(driven.ends),
+            driven.ends.ctypes.data,
             len(every) - 1,
-            parts,
-            step,
-            float(holding != "zero-order"),
-            step_weights(tuple(x.linear for x in hosts), step / parts),
+            driven.parts,
+            driven.step,
+            driven.ramp,
+            step_weights(tuple(x.linear for x in hosts), driven.step / driven.parts),
             numbers.shape[1],
             numbers,
             np.empty(numbers.shape[:2]),
@@ -168,12 +122,11 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
         )
         with np.errstate(over="ignore", invalid="ignore"):  # it may have run away
             curved = (p - damping * v - stiffness * q - force) / mass
-        shown = [
-            slice(end - (len(z) - 1) * driven.fine - 1, end, driven.fine)
-            for z, end in zip(signals, ends.tolist(), strict=True)
-        ]
         return [
-            [Motion(*(x[k, own] for x in (q, v, curved, force))) for own in shown]
+            [
+                Motion(*(x[k, own] for x in (q, v, curved, force)))
+                for own in driven.shown
+            ]
             for k in range(len(hosts))
         ]
 
@@ -181,7 +134,7 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
         """Move the coordinate over the interval that has passed."""
         lines = lines_of(self.holding, sampling)
         line = sampling.dt / lines.segments
-        parts = self._parts(line, forces)
+        parts = self.parts(line, forces)
         balanced = 0.0 if self.start == "rest" else self.stiffness
         inside, memory = exported(forces)
         constants = {
@@ -218,22 +171,12 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
         kernels.call("hb_settle", self.stiffness, p, len(numbers), numbers, memory, q)
         return float(q[0])
 
-    def _parts(self, dt: float, forces: tuple[Force, ...], pieces: float = 1.0) -> int:
-        """Steps of an interval: one without forces, as the linear part is exact.
+    def rates(self, contact: float) -> tuple[float, float]:
+        """Give how fast it swings, in rad/s: alone, and in a contact of a stiffness.
 
-        With forces they are short for the linear coordinate, as far as it swings no
-        faster than half the sampling rate, and for a contact. Of a
-        damped coordinate the slow pole counts: what dies out fast is exact.
+        Of what is damped the slow pole counts: what dies out faster is exact.
         """
-        if not forces:
-            return 1
-        contact = max(item.stiffest for item in forces)
-        linear, stiff = (
-            self._rate(k) for k in (self.stiffness, self.stiffness + contact)
-        )
-        swings = min(max(linear, *(item.swings for item in forces)), pi / dt)
-        smooth, met = (ceil(pieces * dt * rate / PHASE) for rate in (swings, stiff))
-        return max(1, min(smooth, MOST), min(met, CONTACT))
+        return self._rate(self.stiffness), self._rate(self.stiffness + contact)
 
     def _rate(self, stiffness: float) -> float:
         """Give the magnitude of the slower pole, in rad/s, for a stiffness."""
@@ -246,27 +189,6 @@ class Mechanism(Dynamics, name="mechanism", place="base"):
     def linear(self) -> tuple[float, float, float]:
         """Mass, damping and stiffness."""
         return self.mass, self.damping, self.stiffness
-
-
-class _Corners(NamedTuple):
-    """What drives a coordinate: corners of straight lines, a record behind another."""
-
-    values: FloatArray
-    lengths: list[int]
-    """Corners of each record, with what was before it."""
-    before: list[float]
-    """What was for ever before that."""
-    fine: int
-    """Lines between two samples."""
-
-    @classmethod
-    def of(cls, signals: Signals, start: str, holding: str) -> _Corners:
-        """Give those of signals from a start."""
-        begun = [path_from(z, start) for z in signals]
-        held = [held_lines(path, holding) for path, _ in begun]
-        corners = [lines for lines, _ in held]
-        before = [first for _, first in begun]
-        return cls(np.concatenate(corners), [*map(len, corners)], before, held[0][1])
 
 
 def free_starts(output: str) -> tuple[str, ...]:

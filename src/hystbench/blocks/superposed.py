@@ -16,7 +16,7 @@ from hystbench.blocks.attached import (
     sent,
 )
 from hystbench.blocks.force import Driven, Force
-from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.forced import ForcedDynamics
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
@@ -32,12 +32,12 @@ class BesideBlock(AttachedBlock, place="inside"):
     In the chain it stands behind the mechanism's forces.
     """
 
-    hosts = "mechanism or a force inside one"
+    hosts = "mechanism, structure or a force inside one"
 
     def attach(self, before: Any) -> Superposed:
         """Add the response to the output of the mechanism before."""
         host = before.host if isinstance(before, Driven) else before
-        if not isinstance(host, Mechanism | Superposed):
+        if not isinstance(host, ForcedDynamics | Superposed):
             raise InputError(
                 f"expected {self.hosts} just before it, got "
                 f"{getattr(before, 'name', 'none')}"

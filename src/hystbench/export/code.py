@@ -24,6 +24,7 @@ Version = Literal["2", "3"]
 #: The laws of forces are those of the compiled kernel.
 LIBRARY = (
     Path(kernels.__file__).with_name("forces.c"),
+    Path(kernels.__file__).with_name("joint.c"),
     Path(__file__).with_name("steps.c"),
     Path(__file__).with_name("hysteresis_steps.c"),
     Path(__file__).with_name("inside.c"),
@@ -159,7 +160,7 @@ def _library() -> tuple[str, dict[str, str]]:
         opening, *chunks = re.split(r"\n\n(?=/\*|static )", text)
         openings += opening.partition("*/")[2]
         for chunk in chunks:
-            name = re.search(r"^static \w+ (hb_\w+)\(", chunk, re.MULTILINE)
+            name = re.search(r"^static (?:inline )?\w+ (hb_\w+)\(", chunk, re.MULTILINE)
             if name is not None:
                 found[name[1]] = chunk
     return openings.strip(), found

@@ -37,6 +37,48 @@ static double hb_mechanism(double gain, double bias, int segments, int points,
     return shown[0] * x + shown[1] * w + shown[2] * force + shown[3] * p;
 }
 
+/* Modes of a structure, as a coordinate above: table is that of joint.c, shown the weights
+ * of q and v of all modes, of the force and of what drives them. Where it is settled, the
+ * springs hold the first sample: that of the joint with the forces, if there are some,
+ * and the stiffness of each mode. */
+static double hb_structure(int modes, int segments, int points, int ahead,
+                           const double *corners, double ramp, int parts, double h,
+                           const double *table, const double *shown,
+                           const double *stiffness, int settled, double spring,
+                           int count, const double *forces, double *motion, double *before,
+                           double *memory, double *history, double z)
+{
+    const int moves = history[0] > ahead;
+    hb_remember(points, history, z);
+    if (history[0] <= ahead) return 0;
+    double p = history[1 + ahead], ways[8];
+    if (!moves && settled) {
+        double alone = 0, held = 0;
+        for (int i = 0; i < modes; i++)
+            alone += table[18 * i + 16] * table[18 * i + 17] / stiffness[i] * p;
+        if (spring > 0)
+            held = spring *
+                   (alone - hb_balance(spring, alone * spring, count, forces, memory));
+        for (int i = 0; i < modes; i++)
+            motion[i] = (table[18 * i + 16] * p - table[18 * i + 17] * held) / stiffness[i];
+    }
+    for (int i = 0; i < segments && moves; i++) {
+        const double now = hb_weighted(points, corners + i * points, history + 1);
+        p = hb_weighted(points, corners + (i + 1) * points, history + 1);
+        const double slope = ramp * (p - now) / parts;
+        for (int s = 0; s < parts; s++) {
+            const double from = now + s * slope;
+            hb_joint_moved(modes, table, count, forces, memory, h, from, from + slope,
+                           motion, before, ways);
+        }
+    }
+    const double x = hb_at_joint(modes, table, motion);
+    const double w = hb_at_joint(modes, table, motion + modes);
+    double y = shown[2 * modes] * hb_sum_of_forces(count, forces, x, w, memory);
+    for (int i = 0; i < 2 * modes; i++) y += shown[i] * motion[i];
+    return fabs(x) < 1e100 ? y + shown[2 * modes + 1] * p : NAN;
+}
+
 /* Forces on a motion, fine times in an interval, behind a low-pass filter of width taps.
  * The interval ends one sample before the newest of those that are known. A velocity is
  * straight between samples; that of a position is between the middles of intervals.

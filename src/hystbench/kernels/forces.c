@@ -392,7 +392,7 @@ static double hb_alone(const double *step, double from, double to, double q, dou
 }
 
 /* v after the part, where its way is known: what it lacks of that alone tells the force. */
-static double hb_after(const double *step, double from, double to, double q, double v,
+static inline double hb_after(const double *step, double from, double to, double q, double v,
                        double way)
 {
     const double held = (hb_alone(step, from, to, q, v) - way) / (step[2] + step[3]);
@@ -400,7 +400,7 @@ static double hb_after(const double *step, double from, double to, double q, dou
 }
 
 /* The way of a part h of an interval from q and v, and v after it. */
-static double hb_over(int count, const double *forces, const double *memory,
+static inline double hb_over(int count, const double *forces, const double *memory,
                       const double *step, double h, double from, double to, double q,
                       double v, double *after)
 {
@@ -416,7 +416,7 @@ static double hb_over(int count, const double *forces, const double *memory,
  * for an eighth of it: where the motion turns back within a part, a force's mean over
  * the way is not its mean over the time, so that the part is taken in eighths.
  * Returns how many pieces it was taken in, and the way of each. */
-static int hb_moved(int count, const double *forces, double *memory,
+static inline int hb_moved(int count, const double *forces, double *memory,
                     const double *step, double h, double from, double to, double *q,
                     double *v, double ways[8])
 {
@@ -438,7 +438,7 @@ static int hb_moved(int count, const double *forces, double *memory,
 
 /* Where springs hold a force p, next to where the linear one alone does; NaN where they
  * nowhere do. memory is all zero: friction holds nothing there yet. */
-static double hb_balance(double stiffness, double p, int count, const double *forces,
+static inline double hb_balance(double stiffness, double p, int count, const double *forces,
                          const double *memory)
 {
     const double q = p / stiffness;

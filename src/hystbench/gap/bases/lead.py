@@ -15,6 +15,7 @@ import numpy as np
 from hystbench.blocks.held import Hold
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.store import Store
+from hystbench.blocks.structure import Structure
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.bases.orders import LEAD
@@ -153,6 +154,8 @@ def _free_motion(model: Model, record: Record, most: float) -> FloatArray:
     for block in model.chain:
         if isinstance(block, TransferFunction):
             order += len(block.denominator) - 1
+        elif isinstance(block, Structure):
+            order += 2 * len(block.stiffness)
         elif isinstance(block, Mechanism):
             order += 2
         elif isinstance(block, Store):

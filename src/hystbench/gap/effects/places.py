@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from hystbench.blocks.forced import ForcedDynamics
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import LinearBlock
-from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.state_space import StateSpace
 from hystbench.blocks.store import Store
 from hystbench.gap.simulation.simulation import Simulation
@@ -37,7 +37,7 @@ def drives_a_machine(simulation: Simulation) -> bool:
     What limits the input there is the drive's.
     """
     first = next((x for x in simulation.chain if not isinstance(x, Gain)), None)
-    return isinstance(first, Mechanism | Store)
+    return isinstance(first, ForcedDynamics | Store)
 
 
 def has_dynamics(simulation: Simulation) -> bool:

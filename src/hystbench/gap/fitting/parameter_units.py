@@ -6,10 +6,11 @@ import re
 from collections.abc import Sequence
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.force import Force
+from hystbench.blocks.force import Dynamics, Force
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.store import Store
+from hystbench.blocks.structure import Structure
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.thresholds import ABOUT
 
@@ -49,10 +50,10 @@ def unit_at(
     if isinstance(host, Impedance):
         order, way = ORDERS[host.input], of_input
         units["U"] = of_output if inside else of_input
-    elif isinstance(host, Mechanism) and host.output in ORDERS:
+    elif isinstance(host, Mechanism | Structure) and host.output in ORDERS:
         order, way = ORDERS[host.output], of_output
         # A gain of one that a fit has re-tuned is one still.
-        if abs(host.gain - 1.0) > ABOUT:
+        if abs(getattr(host, "gain", 1.0) - 1.0) > ABOUT:
             units["U"] = f"gain*{of_input}"
     elif isinstance(host, Store):
         order, way = (0, of_output) if host.output == "level" else (1, of_input)
@@ -114,7 +115,7 @@ def _turn(state: ModelState) -> int:
 
 
 def _has_both(block: Block) -> bool:
-    if isinstance(block, Mechanism | Impedance | Store):
+    if isinstance(block, Dynamics | Store):
         return True
     units = [about.unit for about in block.parameters().values()]
     return block.hysteretic or not block.seen or "Y/U" in units

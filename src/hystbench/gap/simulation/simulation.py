@@ -19,6 +19,7 @@ from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.stiffness_hardening import StiffnessHardening
 from hystbench.blocks.store import Store
+from hystbench.blocks.structure import Structure
 from hystbench.blocks.superposed import Superposed
 from hystbench.blocks.wrapping import Wrappable, Wrapped, WrappingBlock
 from hystbench.gap.simulation.memory import may_have_hysteresis
@@ -332,7 +333,7 @@ def _begun_once(block: Block) -> Block:
 
 
 LIMITED = "band-limited"
-NOT_LINEAR = (Mechanism, Store, StiffnessHardening)
+NOT_LINEAR = (Mechanism, Structure, Store, StiffnessHardening)
 LONG_STEP = 0.3
 """Radians of a mode in a step, by which a ten-thousandth of its phase is missed."""
 PIECES, LONG_PIECES = 2, 0.25

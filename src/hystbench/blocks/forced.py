@@ -1,0 +1,154 @@
+"""Dynamics that a force sets in motion: the steps in which they are integrated."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hystbench.blocks.attached import OthersOnRecords, Signals
+from hystbench.blocks.curve import held_lines
+from hystbench.blocks.force import Driven, Dynamics, Force, Motion
+from hystbench.blocks.parameter import choice
+from hystbench.blocks.starts import STARTS, path_from
+from hystbench.record import FloatArray
+
+PHASE = 0.05
+"""Largest angle, in radians, by which the linear part turns in one step.
+
+Steps miss a thousandth of the motion of a mode that hardens threefold.
+"""
+MOST = 40
+"""Steps of an interval, at most: the linear part is exact however fast it is."""
+CONTACT = 10
+"""Steps of an interval that a stiff contact may ask for: it is stable without."""
+
+
+@dataclass(frozen=True)
+class Lines:
+    """What drives near motions: straight lines, one record behind another."""
+
+    values: FloatArray
+    """Corners of the lines, shape (motions, count)."""
+    before: FloatArray
+    """What was for ever before each record, shape (motions, records)."""
+    ends: NDArray[np.int64]
+    """Where each record ends."""
+    begins: NDArray[np.int64]
+    shown: list[slice]
+    """Corners at the samples of each record."""
+    step: float
+    """Seconds from one corner to the next."""
+    parts: int
+    """Equal parts in which a line is integrated."""
+    ramp: float
+    """One for straight lines, zero for a staircase."""
+
+    @property
+    def count(self) -> int:
+        """Corners of all records."""
+        return int(self.values.shape[1])
+
+
+class ForcedDynamics(Dynamics):
+    """A block whose coordinates are driven by its input and meet forces.
+
+    The linear part is exact over a step, in which the forces count with their mean over
+    the way. A band-limited input is taken as straight lines on a grid twice as fine.
+    """
+
+    start: str = choice("state before the first sample", STARTS, "rest")
+
+    @abstractmethod
+    def rates(self, contact: float) -> tuple[float, float]:
+        """Give how fast it swings in rad/s: alone, and in a contact of a stiffness."""
+
+    @abstractmethod
+    def _moved(
+        self, every: Sequence[Driven], drives: Sequence[Signals], dt: float
+    ) -> list[list[Motion]]:
+        """Move near motions through records of one interval, none of them empty."""
+
+    def motions(
+        self,
+        signals: Signals,
+        dts: Sequence[float],
+        forces: tuple[Force, ...],
+        others: OthersOnRecords,
+        pieces: float = 1.0,
+    ) -> list[list[Motion]]:
+        """Compute how the coordinate moves, and how others with numbers near do.
+
+        Each step of those is the tangent of this one's: right for small differences.
+        Records of one sampling interval take one call of the kernel.
+        """
+        every = (Driven(self, forces, pieces), *(other for other, _ in others))
+        given = (signals, *(own for _, own in others))
+        alike: dict[tuple[float, int], list[int]] = {}
+        for k, (z, dt) in enumerate(zip(signals, dts, strict=True)):
+            alike.setdefault((dt, min(len(z), 3)), []).append(k)
+        found: list[dict[int, Motion]] = [{} for _ in every]
+        for (dt, length), places in alike.items():
+            drives = [[own[k] for k in places] for own in given]
+            moved = (
+                self._moved(every, drives, dt)
+                if length
+                else [[Motion(*[z] * 5) for z in own] for own in drives]
+            )
+            for own, moves in zip(found, moved, strict=True):
+                own.update(zip(places, moves, strict=True))
+        return [[own[k] for k in range(len(signals))] for own in found]
+
+    def lines(self, first: Driven, drives: Sequence[Signals], dt: float) -> Lines:
+        """Give what drives near motions, the first of which says in how many steps."""
+        holding = self.holding
+        quick = holding == "band-limited" and first.forces and first.pieces < 1
+        if quick and self.parts(dt, first.forces, first.pieces) == 1:
+            holding = "linear"  # finer lines would be shorter than a step
+        values: list[FloatArray] = []
+        before: list[list[float]] = []
+        for own in drives:
+            same = all(x is z for x, z in zip(own, drives[0], strict=True))
+            if values and same:
+                values.append(values[0])
+                before.append(before[0])
+                continue
+            begun = [path_from(z, self.start) for z in own]
+            held = [held_lines(path, holding) for path, _ in begun]
+            values.append(np.concatenate([corners for corners, _ in held]))
+            before.append([rested for _, rested in begun])
+            if len(values) == 1:
+                lengths, fine = [len(corners) for corners, _ in held], held[0][1]
+        ends = np.cumsum(lengths, dtype=np.int64)
+        shown = [
+            slice(end - (len(z) - 1) * fine - 1, end, fine)
+            for z, end in zip(drives[0], ends.tolist(), strict=True)
+        ]
+        step = dt / fine
+        return Lines(
+            np.array(values),
+            np.array(before),
+            ends,
+            ends - np.array(lengths),
+            shown,
+            step,
+            self.parts(step, first.forces, first.pieces),
+            float(holding != "zero-order"),
+        )
+
+    def parts(self, dt: float, forces: tuple[Force, ...], pieces: float = 1.0) -> int:
+        """Steps of an interval: one without forces, as the linear part is exact.
+
+        With forces they are short for the linear part, as far as it swings no
+        faster than half the sampling rate, and for a contact.
+        """
+        if not forces:
+            return 1
+        linear, stiff = self.rates(max(item.stiffest for item in forces))
+        swings = min(max(linear, *(item.swings for item in forces)), pi / dt)
+        smooth, met = (ceil(pieces * dt * rate / PHASE) for rate in (swings, stiff))
+        return max(1, min(smooth, MOST), min(met, CONTACT))

@@ -1,0 +1,250 @@
+"""Block ``structure``: modes of a structure, and forces at one place of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from hystbench import kernels
+from hystbench.blocks.attached import Signals
+from hystbench.blocks.force import Driven, Force, Motion, exported, rows
+from hystbench.blocks.forced import ForcedDynamics
+from hystbench.blocks.mechanism import step_weights
+from hystbench.blocks.parameter import TINY, choice, number, numbers
+from hystbench.blocks.starts import PASTS
+from hystbench.blocks.step import Sampling, Step, lines_of
+from hystbench.errors import InputError
+from hystbench.record import FloatArray
+
+OUTPUTS = ("position", "velocity", "acceleration")
+_SHAPE = "Q^0.5 U^-0.5 s^-1"
+
+
+def _of_each(unit: str, meaning: str, **about: Any) -> Any:
+    return numbers(unit, meaning, as_many_as="stiffness", **about)
+
+
+class Structure(ForcedDynamics, name="structure", place="base"):
+    """Modes q_i of unit mass, and forces F at one place x, the joint, that they move.
+
+    ``q_i'' + c_i q_i' + k_i q_i = drive_i z - joint_i F(x, x')`` with ``x = sum of
+    joint_i q_i``: the modes feel each other by the forces alone, which follow in the
+    chain. The output is ``sum of modal_constant_i / drive_i (q_i + blend_i q_i')``, or
+    a derivative of it, and ``direct z`` [1]_.
+
+    ``drive_i`` and ``joint_i`` are the shape of a mode, scaled for a unit mass, where
+    the input acts and where the forces act. ``modal_constant_i`` is ``drive_i`` times
+    the shape at the sensor. A mode that does not move the joint has a ``joint_i`` of
+    zero. Without any ``joint`` the block is linear, and no force can act inside.
+
+    A force takes from all modes together what it does at the joint, so a passive one
+    never gives energy. It is integrated as a ``mechanism`` is.
+
+    References
+    ----------
+    .. [1] D. J. Ewins, Modal Testing: Theory, Practice and Application, 2nd ed.,
+       Research Studies Press, 2000, chapter 2.
+    """
+
+    reference = "Ewins, Modal Testing (2000)"
+
+    stiffness: tuple[float, ...] = numbers(
+        "1/s^2", "k of each mode, the square of its natural frequency in rad/s", TINY
+    )
+    damping: tuple[float, ...] = _of_each("1/s", "c of each mode", low=0.0)
+    modal_constant: tuple[float, ...] = _of_each(
+        "Q/(U s^2)", "shape of each mode at the drive times that at the sensor"
+    )
+    drive: tuple[float, ...] = _of_each(
+        _SHAPE, "shape of each mode at the drive", low=TINY
+    )
+    joint: tuple[float, ...] = _of_each(
+        _SHAPE, "shape of each mode at the joint", optional=True
+    )
+    blend: tuple[float, ...] = _of_each(
+        "s or 1/s",
+        "share of each mode's velocity in the output; of its acceleration, where the "
+        "output is the velocity",
+        optional=True,
+    )
+    direct: float = number("Y/U", "what passes at once", default=0.0)
+    output: str = choice("what the output is", OUTPUTS, "position")
+
+    def check(self) -> None:
+        """Refuse a joint that no mode moves."""
+        if self.joint and not any(self.joint):
+            raise InputError("joint: all zero; expected one mode or more that moves it")
+
+    def check_meets_forces(self) -> None:
+        """Refuse forces where no joint is given."""
+        if not self.joint:
+            raise InputError(
+                "structure: joint: expected a number of each mode, for the force there"
+            )
+
+    @property
+    def at_joint(self) -> FloatArray:
+        """Shape of each mode at the joint; zeros without one."""
+        return np.array(self.joint or (0.0,) * len(self.stiffness))
+
+    @property
+    def receptance(self) -> float:
+        """How far a unit of force moves the joint at rest."""
+        return float(np.sum(self.at_joint**2 / np.array(self.stiffness)))
+
+    def given(self, motion: Motion) -> FloatArray:
+        """Give the output of a motion, which may have run away."""
+        assert motion.shown is not None  # noqa: S101  (for the type checker)
+        return motion.shown
+
+    def rates(self, contact: float) -> tuple[float, float]:
+        """Give how fast the fastest mode of the joint swings, alone and in contact."""
+        joint = self.at_joint
+        fastest = np.max(np.array(self.stiffness)[joint != 0.0], initial=0.0)
+        return sqrt(fastest), sqrt(fastest + contact * float(joint @ joint))
+
+    def _moved(
+        self, every: Sequence[Driven], drives: Sequence[Signals], dt: float
+    ) -> list[list[Motion]]:
+        """Move near motions through records, which have three samples or as many.
+
+        What moves alike moves once: most numbers of an output move nothing.
+        """
+        hosts: list[Any] = [each.host for each in every]
+        moves = [
+            (host.moving, each.forces, *map(id, own))
+            for host, each, own in zip(hosts, every, drives, strict=True)
+        ]
+        first = {key: k for k, key in reversed([*enumerate(moves)])}
+        places = sorted(first.values())
+        number = {moves[k]: i for i, k in enumerate(places)}
+        moved = [hosts[k] for k in places]
+        laws = np.array([rows(every[k].forces) for k in places])
+        driven = self.lines(every[0], [drives[k] for k in places], dt)
+        count = len(self.stiffness)
+        motion = np.zeros((len(moved), driven.count, 2 * count))
+        force = np.zeros((len(moved), driven.count))
+        if self.start != "rest":
+            for k, host in enumerate(moved):
+                motion[k, driven.begins, :count] = [
+                    host._balance(z, laws[k]) for z in driven.before[k].tolist()
+                ]
+        kernels.call(
+            "hb_structure",
+            driven.count,
+            len(driven.ends),
+            driven.ends.ctypes.data,
+            count,
+            len(moved) - 1,
+            driven.parts,
+            driven.step,
+            driven.ramp,
+            _tables(moved, driven.step / driven.parts),
+            laws.shape[1],
+            laws,
+            np.empty(laws.shape[:2]),
+            driven.values,
+            motion,
+            force,
+        )
+        found = []
+        for host, key in zip(hosts, moves, strict=True):
+            k = number[key]
+            parts = (
+                (motion[k, at], force[k, at], driven.values[k, at])
+                for at in driven.shown
+            )
+            found.append([host._motion(*part) for part in parts])
+        return found
+
+    @property
+    def moving(self) -> tuple[Any, ...]:
+        """What its modes depend on; the output has more numbers."""
+        return self.stiffness, self.damping, self.drive, self.joint
+
+    @property
+    def modes(self) -> tuple[tuple[float, float, float], ...]:
+        """Mass, damping and stiffness of each."""
+        every = zip(self.damping, self.stiffness, strict=True)
+        return tuple((1.0, damping, stiffness) for damping, stiffness in every)
+
+    def _motion(self, modes: FloatArray, force: FloatArray, z: FloatArray) -> Motion:
+        """Give the motion of the joint and the output from that of the modes."""
+        joint, weights = self.at_joint, self._shown()
+        q, v = np.hsplit(modes, 2)
+        with np.errstate(over="ignore", invalid="ignore"):  # it may have run away
+            a = np.outer(z, self.drive) - np.outer(force, joint)
+            a -= v * self.damping + q * self.stiffness
+            shown = modes @ weights[:-2] + weights[-2] * force + weights[-1] * z
+            return Motion(q @ joint, v @ joint, a @ joint, force, shown)
+
+    def _shown(self) -> FloatArray:
+        """Weights in the output of q and q' of all modes, of F and of what drives."""
+        count = len(self.stiffness)
+        drive, joint = np.array(self.drive), self.at_joint
+        sensor = np.array(self.modal_constant) / drive
+        blend = np.array(self.blend or (0.0,) * count)
+        position, velocity = np.zeros((2, count, 2 * count + 2))
+        position[:, :count], velocity[:, count:-2] = np.eye(count), np.eye(count)
+        acceleration = np.column_stack(
+            [-np.diag(self.stiffness), -np.diag(self.damping), -joint, drive]
+        )
+        derivatives = (position, velocity, acceleration)
+        order = OUTPUTS.index(self.output)
+        # Beside an acceleration a share of the velocity, as a mechanism has it.
+        other = derivatives[order + 1 if order < 2 else 1]
+        weights = sensor @ derivatives[order] + (sensor * blend) @ other
+        weights[-1] += self.direct
+        return np.asarray(weights)
+
+    def _balance(self, z: float, laws: FloatArray) -> FloatArray:
+        """Find where the springs hold what drives it, next to where modes alone do."""
+        drive, joint = np.array(self.drive), self.at_joint
+        stiffness = np.array(self.stiffness)
+        if not len(laws):
+            return np.asarray(z * drive / stiffness)
+        alone = z * float(np.sum(joint * drive / stiffness))
+        x, memory = np.zeros(1), np.zeros(len(laws))
+        spring = 1.0 / self.receptance
+        kernels.call("hb_settle", spring, alone * spring, len(laws), laws, memory, x)
+        force = (alone - float(x[0])) * spring
+        return np.asarray((z * drive - force * joint) / stiffness)
+
+    def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
+        """Move the modes over the interval that has passed."""
+        lines = lines_of(self.holding, sampling)
+        line = sampling.dt / lines.segments
+        parts = self.parts(line, forces)
+        inside, memory = exported(forces)
+        count = len(self.stiffness)
+        constants = {
+            "modes": count,
+            **lines.constants,
+            "parts": parts,
+            "h": line / parts,
+            "table": _tables([self], line / parts).ravel(),
+            "shown": self._shown(),
+            "stiffness": np.array(self.stiffness),
+            "settled": int(self.start != "rest"),
+            "spring": 1.0 / self.receptance if forces else 0.0,
+            **inside,
+        }
+        states = {
+            "motion": 2 * count,
+            "before": 2 * count,
+            "memory": memory,
+            **lines.states,
+        }
+        past = PASTS.get(self.start, "")
+        return Step("structure", constants, states, past=past, **lines.told)
+
+
+def _tables(hosts: Sequence[Structure], dt: float) -> FloatArray:
+    """Give the kernel's table of each: of every mode its step, drive and joint."""
+    modes = tuple(mode for host in hosts for mode in host.modes)
+    steps = step_weights(modes, dt).reshape(len(hosts), -1, 16)
+    shapes = np.array([[host.drive, host.at_joint] for host in hosts]).swapaxes(1, 2)
+    return np.ascontiguousarray(np.concatenate([steps, shapes], axis=2))

@@ -1,0 +1,202 @@
+"""Modes with forces at one joint, beside a mechanism and masses that an ODE moves."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.linalg import eigh
+
+from hystbench.blocks import registry
+from hystbench.blocks.attached import attached, through_near
+from hystbench.blocks.mechanism import OUTPUTS, Mechanism
+from hystbench.blocks.structure import Structure
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.errors import InputError
+from tests.blocks.examples import EXAMPLES
+
+#: Two masses between walls, driven and seen at the first; a law acts between the two.
+MASSES = np.diag([1.0, 0.5])
+SPRINGS = np.array([[300.0, -100.0], [-100.0, 180.0]])
+RATIO = 2e-3
+DRIVE, JOINT, SENSOR = np.array([1.0, 0.0]), np.array([1.0, -1.0]), np.array([1.0, 0.0])
+SQUARES, SHAPES = eigh(SPRINGS, MASSES)
+
+
+def listed(values):
+    return tuple(float(x) for x in values)
+
+
+def two_masses(**about):
+    """Write them by their modes, each damped by RATIO times its stiffness."""
+    return Structure(
+        stiffness=listed(SQUARES),
+        damping=listed(RATIO * SQUARES),
+        modal_constant=listed((DRIVE @ SHAPES) * (SENSOR @ SHAPES)),
+        # The sign of a mode is that with which the drive moves it.
+        drive=listed(np.abs(DRIVE @ SHAPES)),
+        joint=listed(JOINT @ SHAPES * np.sign(DRIVE @ SHAPES)),
+        blend=(0.0, 0.0),
+        **about,
+    )
+
+
+def force(name, **values):
+    return registry()[name].from_mapping(values or EXAMPLES[name])
+
+
+def output(chain, u, dt):
+    (step,) = attached(chain)
+    return step.simulate(np.asarray(u, dtype=float), None, dt)
+
+
+def given(t):
+    return 40 * np.sin(11 * t) + 25 * np.sin(23 * t)
+
+
+def solved(t, law):
+    """Move the masses by an integrator that controls its error."""
+
+    def moves(at, state):
+        x, v = state[:2], state[2:]
+        held = SPRINGS @ x + RATIO * SPRINGS @ v + JOINT * law(JOINT @ x, JOINT @ v)
+        return [*v, *((DRIVE * given(at) - held) / np.diag(MASSES))]
+
+    exact = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-12}
+    x, _, v, _ = solve_ivp(moves, (t[0], t[-1]), [0.0] * 4, t_eval=t, **exact).y
+    return np.array([x, v])
+
+
+LAWS = {
+    "stiffness": ({"cubic": 900.0}, lambda q, v: 900.0 * q**3),
+    "drag": ({"coefficient": 2.0}, lambda q, v: 2.0 * v * abs(v)),
+}
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_half_the_step_makes_a_quarter_of_the_error(name):
+    values, law = LAWS[name]
+    values = {"quadratic": 0.0, **values} if name == "stiffness" else values
+    errors = []
+    for count in (1000, 2000, 4000):  # one step each
+        t = np.linspace(0, 2, count + 1)
+        found = [
+            output([two_masses(output=kind), force(name, **values)], given(t), t[1])
+            for kind in OUTPUTS[:2]
+        ]
+        wanted = solved(t, law)
+        off = np.abs(np.array(found) - wanted).max(axis=1)
+        errors.append(off / np.ptp(wanted, axis=1))
+    assert np.max(errors[-1]) < 2e-3
+    ratios = np.array(errors[:-1]) / np.array(errors[1:])
+    assert (ratios > 3.3).all()
+    assert (ratios < 4.7).all()
+
+
+@pytest.mark.parametrize("start", ["rest", "settled", "moving", "repeating"])
+@pytest.mark.parametrize("kind", OUTPUTS[:3])
+def test_one_mode_is_a_mechanism(kind, start):
+    about = {"output": kind, "start": start, "hold": "band-limited"}
+    machine = Mechanism(mass=2.0, damping=3.0, stiffness=200.0, blend=0.01, **about)
+    shape = 2.0**-0.5
+    mode = Structure(
+        stiffness=(100.0,),
+        damping=(1.5,),
+        modal_constant=(0.5,),
+        drive=(shape,),
+        joint=(shape,),
+        blend=(0.01,),
+        **about,
+    )
+    t = 0.01 * np.arange(500)
+    for name in ("friction-force", "hysteretic-force"):
+        law = force(name)
+        wanted = output([machine, law], 1 + given(t) / 40, 0.01)
+        found = output([mode, law], 1 + given(t) / 40, 0.01)
+        np.testing.assert_allclose(found, wanted, atol=1e-11 * np.ptp(wanted))
+
+
+@pytest.mark.parametrize("kind", OUTPUTS[:3])
+def test_without_a_force_it_is_the_sum_of_its_modes(kind):
+    block = replace(Structure.from_mapping(EXAMPLES["structure"]), output=kind)
+    u = np.random.default_rng(3).standard_normal(400)
+    found = block.simulate(u, u, 1e-4)
+    power = [1.0] + [0.0] * OUTPUTS.index(kind)
+    other = [1.0, 0.0, 0.0] if kind == "velocity" else [1.0, 0.0]
+    wanted = block.direct * u
+    every = zip(
+        block.stiffness, block.damping, block.modal_constant, block.blend, strict=True
+    )
+    for k, c, size, blend in every:
+        up = np.polyadd(power, blend * np.array(other))
+        mode = TransferFunction(numerator=listed(size * up), denominator=(1.0, c, k))
+        wanted = wanted + replace(mode, hold="linear").simulate(u, u, 1e-4)
+    np.testing.assert_allclose(found, wanted, atol=1e-9 * np.ptp(wanted))
+
+
+def test_a_joint_that_is_held_joins_the_masses():
+    """Friction that nothing moves leaves one mode: of both masses on both walls."""
+    mass, spring = MASSES.sum(), SPRINGS.sum()
+    t = np.linspace(0, 3, 3001)
+    held = force("friction-force", coulomb=1e6, presliding_distance=1e-3)
+    found = output([two_masses(), held], given(t), t[1])
+    joined = Mechanism(mass=mass, damping=RATIO * spring, stiffness=spring)
+    wanted = output([joined], given(t), t[1])
+    np.testing.assert_allclose(found, wanted, atol=1e-5 * np.ptp(wanted))
+
+
+def test_a_passive_force_only_takes_energy():
+    """Let go from where a first value held them, the masses come to rest."""
+    u = np.zeros(20_000)
+    u[0] = 60.0
+    block = two_masses(start="settled", hold="zero-order")
+    friction = force("friction-force", coulomb=0.3, presliding_distance=1e-4)
+    assert np.abs(output([block, friction], u, 1e-3)[-2000:]).max() < 0.01
+    quiet = replace(block, damping=(0.0, 0.0))
+    moved = output([quiet, friction], u, 1e-3)
+    # One mode alone holds the joint still, so that is all that is left.
+    early, late = (np.ptp(moved[part]) for part in (slice(0, 4000), slice(-4000, None)))
+    assert late < early
+
+
+def test_numbers_near_give_derivatives():
+    t = 0.004 * np.arange(500)
+    chain = [
+        two_masses(hold="band-limited"),
+        force("stiffness", quadratic=0.0, cubic=900.0),
+    ]
+    size = 1e-6
+
+    def changed(name, k, by):
+        numbers = list(getattr(chain[0], name))
+        numbers[k] += by
+        return attached([replace(chain[0], **{name: tuple(numbers)}), chain[1]])
+
+    names = ("stiffness", "damping", "modal_constant", "drive", "joint", "blend")
+    every = [(name, k) for name in names for k in (0, 1)]
+    others = [changed(*item, size) for item in every]
+    found = through_near([attached(chain), *others], (given(t),), (0.004,))
+    for item, (other,) in zip(every, found[1:], strict=True):
+        up, down = (
+            through_near([changed(*item, by)], (given(t),), (0.004,))[0][0]
+            for by in (size, -size)
+        )
+        wanted = (up - down) / (2 * size)
+        off = np.linalg.norm((other - found[0][0]) / size - wanted)
+        assert off < 2e-4 * np.linalg.norm(wanted) + 1e-12, item
+
+
+def test_a_joint_that_nothing_moves_is_refused():
+    block = two_masses()
+    with pytest.raises(InputError, match="joint: all zero; expected one mode or more"):
+        replace(block, joint=(0.0, 0.0))
+
+
+def test_no_force_acts_where_no_joint_is_given():
+    block = replace(two_masses(), joint=())
+    t = 0.002 * np.arange(500)
+    np.testing.assert_array_equal(
+        output([block], given(t), t[1]), output([two_masses()], given(t), t[1])
+    )
+    with pytest.raises(InputError, match="structure: joint: expected a number of each"):
+        attached([block, force("friction-force")])
