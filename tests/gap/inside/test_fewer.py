@@ -14,8 +14,9 @@ from hystbench.gap.effects.law import Law
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.inside.average_force import evened
 from hystbench.gap.inside.fewer import OnAll, on_fewer
-from hystbench.gap.inside.insert_law import evened, with_law
+from hystbench.gap.inside.insert_law import with_law
 from hystbench.gap.records.coarser import ENOUGH
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import PAYS, SCALE

@@ -23,6 +23,7 @@ from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
+from hystbench.gap.inside.average_force import evened
 from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.choose import chosen
 from hystbench.gap.inside.combine_forces import (
@@ -30,9 +31,9 @@ from hystbench.gap.inside.combine_forces import (
     with_one_fewer,
 )
 from hystbench.gap.inside.fitted_numbers import re_tuning
+from hystbench.gap.inside.given_hosts import is_seen_moving
 from hystbench.gap.inside.insert_law import (
     Times,
-    evened,
     how_it_moves,
     laws_for,
     with_law,
@@ -49,7 +50,7 @@ from hystbench.gap.inside.one_coordinate import (
     one_coordinate,
     same_as,
 )
-from hystbench.gap.inside.possible_hosts import hosts, is_seen_moving
+from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.records.free_mass import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over

@@ -1,16 +1,12 @@
-"""A transfer function as one mode that is a mechanism, and the others beside it."""
+"""Modes of a transfer function, each as a mechanism."""
 
 import numpy as np
 import pytest
 
-from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.modes import frequency_of, modes, one_by_one, taken_out
-from hystbench.gap.records.scored_samples import ScoredSamples
-from hystbench.model import Model
-from hystbench.record import Channel, Record
+from hystbench.gap.inside.modes import mode_of, one_by_one, poles_of
+from hystbench.record import Channel
 
 DT = 0.005
 TIME = np.arange(4000) * DT
@@ -40,12 +36,14 @@ def moves(mode, f):
 def test_both_parts_together_are_the_whole(output, direct):
     up = np.polyadd(direct * BOTH, [2.0, 30.0, 400.0, 9000.0])
     whole = TransferFunction(numerator=tuple(up), denominator=tuple(BOTH))
-    split = list(taken_out(whole, output))
-    assert [frequency_of(one.mode) for one in split] == pytest.approx([2.0, 5.0])
+    poles, residues = poles_of(whole)
+    places = [k for k in np.argsort(np.abs(poles)) if poles[k].imag > 0]
+    split = [mode_of(whole, poles[k], residues[k], output) for k in places]
+    rates = [np.sqrt(mode.stiffness / mode.mass) for mode, _ in split]
+    assert rates == pytest.approx([4 * np.pi, 10 * np.pi])
     f = np.linspace(0.1, 20, 300)
-    for one in split:
-        both = moves(one.mode, f) + response(one.rest, f)
-        np.testing.assert_allclose(both, response(whole, f), rtol=1e-9)
+    both = sum(moves(mode, f) - through for mode, through in split) + direct
+    np.testing.assert_allclose(both, response(whole, f), rtol=1e-9)
 
 
 @pytest.mark.parametrize("real", [[], [1.0, 7.0]])
@@ -59,38 +57,3 @@ def test_other_modes_one_by_one_are_the_same_sum(real):
     f = np.linspace(0.1, 20, 300)
     whole = sum(response(part, f) for part in parts)
     np.testing.assert_allclose(whole, response(others, f), rtol=1e-9)
-
-
-def test_one_mode_is_not_split():
-    alone = TransferFunction(numerator=(1.0,), denominator=tuple(LOW))
-    rest = Record("rest", DT, TIME, 0 * TIME, FORCE, MOTION, "measured")
-    start = ModelState((alone,), (rest,), ScoredSamples.of((rest,)), hold="linear")
-    assert list(modes(start, "position")) == []
-
-
-def test_only_the_mode_that_differs_from_level_to_level_is_given():
-    u = np.random.default_rng(2).standard_normal(len(TIME))
-    whole = TransferFunction(
-        numerator=tuple(np.polyadd(HIGH, LOW)), denominator=tuple(BOTH), hold="linear"
-    )
-    records = []
-    for name, damping in (("low", 0.5), ("high", 1.5)):
-        y = sum(
-            Mechanism(
-                mass=1.0, damping=c, stiffness=k, hold="linear", output="position"
-            ).simulate(u, u, DT)
-            for _, c, k in ((1.0, damping, LOW[2]), HIGH)
-        )
-        records.append(Record(name, DT, u, y, FORCE, MOTION, "measured"))
-    records = tuple(records)
-    start = ModelState((whole,), records, ScoredSamples.of(records), hold="linear")
-    (first,) = modes(start, "position")
-    assert np.sqrt(first.chain[0].stiffness / first.chain[0].mass) < 20
-    model = Model("whole", FORCE, MOTION, first.chain)
-    y = model.simulate(u, DT)
-    np.testing.assert_allclose(y, whole.simulate(u, u, DT), atol=1e-9 * np.ptp(y))
-    (free,) = modes(start, "position", others_too=True)
-    numbers = [(x.block, x.parameter, x.element) for x in free.free[4:]]
-    assert (1, "denominator", 2) in numbers
-    assert (1, "denominator", 0) not in numbers  # the leading one is the scale
-    np.testing.assert_allclose(free.residual, first.residual, atol=1e-9 * np.ptp(y))

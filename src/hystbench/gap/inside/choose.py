@@ -11,9 +11,16 @@ import numpy as np
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.further_modes import for_a_further
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
-from hystbench.gap.thresholds import PAYS, SCALE, UNNAMED_SHARE
+from hystbench.gap.thresholds import CERTAIN, FURTHER, PAYS, SCALE, UNNAMED_SHARE
+
+
+def for_a_further(taken: float, share: float) -> float:
+    """Give what a further effect must lower the score by.
+
+    One that takes less of the gap than may stay unnamed has to be beyond doubt.
+    """
+    return FURTHER if taken > share else CERTAIN
 
 
 def charged(

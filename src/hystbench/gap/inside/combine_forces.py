@@ -21,14 +21,15 @@ from hystbench.gap.fitting.least_squares import (
 )
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.average_force import evened
 from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.insert_law import (
     Offer,
-    evened,
     of_stores,
     with_changed,
     with_law,
 )
+from hystbench.gap.inside.joint import joints
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
 from hystbench.record import FloatArray
@@ -165,9 +166,9 @@ def _one_more(
     begun: list[Fitted] = []
     for before in carried:
         short = beginnings.cut(before.state)  # its tangents serve all effects
-        for name, own in offer(before).items():
+        for at, name, own in _offered(before, offer):
             if name not in before.effects:
-                begun += starts(before, short, name, own, beginnings)
+                begun += starts(at, short, name, own, beginnings)
     if not begun:
         return []
     if stores:
@@ -181,6 +182,20 @@ def _one_more(
     for item in best_first[:3]:
         say(f"inside: {' + '.join(item.effects)}: gain {alone - item.score:.1f}")
     return best_first
+
+
+def _offered(
+    before: Fitted, offer: Offer
+) -> Iterator[tuple[Fitted, str, Sequence[Law | Changed]]]:
+    """Give what may be put into a hypothesis, a force wherever the joint may be."""
+    for name, laws in offer(before).items():
+        yield before, name, laws
+    for state in joints(before.state):
+        at = replace(before, state=state)
+        for name, laws in offer(at).items():
+            inside = [law for law in laws if getattr(law, "place", "") == "inside"]
+            if inside:
+                yield at, name, inside
 
 
 def may_gain(item: Fitted, score: Score) -> bool:

@@ -12,6 +12,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.mechanism import Mechanism, free_starts
 from hystbench.blocks.starts import plainest_start, possible_starts
+from hystbench.blocks.structure import Structure
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.least_squares import Fitted, fitted, judged
 from hystbench.gap.fitting.score import Score
@@ -63,6 +64,8 @@ def starting(chain: Sequence[Block], start: str) -> tuple[Block, ...]:
     def may(block: Block) -> bool:
         if isinstance(block, Mechanism):
             return block.stiffness > 0.0 or start in free_starts(block.output)
+        if isinstance(block, Structure):
+            return True
         return isinstance(block, LinearBlock) and (
             start != "rest" or isinstance(block, TransferFunction)
         )

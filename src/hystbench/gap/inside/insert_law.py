@@ -9,25 +9,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hystbench.blocks.attached_mass import AttachedMass
-from hystbench.blocks.base import Block
-from hystbench.blocks.force import Force, against
-from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.gap.effects import among
 from hystbench.gap.effects.law import Changed, Filled, Law, Moved, Passed
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added, Free, ModelState
+from hystbench.gap.inside.average_force import relieved, spring_of
+from hystbench.gap.inside.host_places import host_of
+from hystbench.gap.inside.joint import has_no_joint, shapes_of
 from hystbench.record import Record
-
-REMAINS = 0.05
-"""Of a spring or a damper, at least, where a force begins that does its work."""
-
-LINEAR = NUMBERS[:-1]
-"""Numbers of the linear part of a mechanism."""
 
 Laws = Mapping[str, Sequence[Law | Changed]]
 """What may be put into a host, by effect."""
@@ -81,6 +74,8 @@ def laws_for(
             name: tuple(law for law in laws if not isinstance(law.block, LinearBlock))
             for name, laws in around.items()
         }
+    elif has_no_joint(host.state.chain[host_of(host.state)]):
+        own = {name: iter(()) for name in known}
     else:
         moved = how_it_moves(host.state, turns)
         own = {name: effect.in_mechanism(moved) for name, effect in known.items()}
@@ -101,6 +96,7 @@ def how_it_moves(state: ModelState, turns: str) -> Moved:
     """Look how far, how fast and by what force a host moves on its records."""
     place = host_of(state)
     host: Any = state.chain[place]
+    spring = spring_of(host)
     linear = tuple(x for x in state.chain[place:] if isinstance(x, AttachedMass))
     reach = speed = force = 0.0
     for record, z in zip(state.records, state.simulation.driving(place), strict=True):
@@ -111,14 +107,14 @@ def how_it_moves(state: ModelState, turns: str) -> Moved:
         driving = record.y if host.name == "impedance" else z
         force = max(force, float(np.max(np.abs(driving - np.mean(driving)))))
     tiny = 1.0 / HUGE
-    anywhere = isinstance(host, Mechanism) and host.stiffness == 0.0
+    anywhere = isinstance(host, Mechanism) and spring == 0.0
     return Moved(
         max(reach, tiny),
         max(speed, tiny),
         max(force, tiny),
         turns,
         anywhere,
-        host.stiffness,
+        spring,
     )
 
 
@@ -146,13 +142,14 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
     """
     base: list[Any] = list(state.chain)
     place = 0 if law.place == "before" else len(base)
+    shapes = 0
     if law.place == "inside":
         host = host_of(state)
+        shapes = shapes_of(state, host)
         place = host + 1
         if law.stands_for:
-            left = (1.0 - law.stands_for) * base[host].stiffness
-            spring = _if_free(state, host, "stiffness", left)
-            base[host] = replace(base[host], stiffness=spring)
+            less = law.stands_for * spring_of(base[host])
+            base = list(relieved(state, host, less).chain)
     chain = (*base[:place], law.block, *base[place:])
 
     state = state.rearranged(chain, {k: k + (k >= place) for k in range(len(base))})
@@ -161,7 +158,8 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
         low, high = law.ranges.get(name, (-np.inf, np.inf))
         free.append(Free(place, name, low=low, high=high))
     values: dict[str, Any] = {name: getattr(law.block, name) for name in law.free}
-    item = Added(effect, law.place, law.form, (place,), values, float(len(law.free)))
+    charge = float(len(law.free) + shapes)
+    item = Added(effect, law.place, law.form, (place,), values, charge)
     return replace(state, free=tuple(free), added=(*state.added, item))
 
 
@@ -190,117 +188,3 @@ def with_changed(state: ModelState, effect: str, changed: Changed) -> ModelState
     return replace(
         state, chain=tuple(chain), free=(*free, *more), added=(*state.added, item)
     )
-
-
-def evened(state: ModelState) -> ModelState:
-    """Take out of a mass's spring and damper what a force put in last does on average.
-
-    Along the way that the host goes without the force: the spring and the damper that
-    are nearest to the force there, in least squares (statistical linearization [1]_).
-    So the mode that the force is put into stays where it was. A host that is known
-    stays as it is.
-
-    References
-    ----------
-    .. [1] J. B. Roberts, P. D. Spanos, Random Vibration and Statistical Linearization,
-       Wiley, 1990.
-    """
-    (place,) = state.added[-1].blocks
-    law, chain = state.chain[place], list(state.chain)
-    number = host_of(state)
-    host = chain[number]
-    if not isinstance(host, Mechanism):
-        return state
-    if place < number:
-        known = any(np.isfinite(x.low) for x in state.free if x.block == number)
-        # A gain does what a mass, a damper and a spring do together.
-        known = known or not _any_is_free(state, number, "gain", "mass")
-        return state if known else _as_strong(state, place)
-    loose = _any_is_free(state, number, "stiffness", "damping")
-    if not (isinstance(law, Force) and loose):
-        return state
-    own = chain[number + 1 :]
-    others = tuple(x for x in own if isinstance(x, Force) and x is not law)
-    square, product = np.zeros((3, 3)), np.zeros(3)
-    for record, z in zip(state.records, state.simulation.driving(number), strict=True):
-        way = host.motion(z, record.dt, others)
-        q, v = (np.ascontiguousarray(x) for x in (way.position, way.velocity))
-        place_counts = q if host.stiffness else np.zeros(len(q))
-        columns = np.column_stack([place_counts, v, np.ones(len(q))])
-        alike = 1.0 / max(float(np.sum(v**2)), 1.0 / HUGE)  # as records are weighed
-        square += alike * columns.T @ columns
-        product += alike * columns.T @ against((law,), q, v, record.dt)
-    sizes = np.sqrt(np.maximum(np.diag(square), 1.0 / HUGE))
-    if not (np.all(np.isfinite(square)) and np.all(np.isfinite(product))):
-        return state
-    scaled = square / np.outer(sizes, sizes)
-    spring, damper, _ = np.linalg.lstsq(scaled, product / sizes, rcond=1e-9)[0] / sizes
-    if max(abs(spring), abs(damper)) > HUGE:
-        return state  # the host all but runs away
-    stiffness = max(host.stiffness - spring, REMAINS * host.stiffness)
-    damping = max(host.damping - damper, REMAINS * host.damping)
-    chain[number] = replace(
-        host,
-        stiffness=_if_free(state, number, "stiffness", stiffness),
-        damping=_if_free(state, number, "damping", damping),
-    )
-    return state.with_chain(tuple(chain))
-
-
-def _as_strong(state: ModelState, place: int) -> ModelState:
-    """Let a mass, and what is beside it, be driven as strongly as without the curve."""
-    pairs = zip(state.simulation.at(place), state.simulation.at(place + 1), strict=True)
-    powers = np.array([[np.var(one), np.var(other)] for one, other in pairs])
-    before, behind = np.sum(powers / np.maximum(powers[:, :1], 1.0 / HUGE), axis=0)
-    times = float(np.sqrt(behind / before)) if before > 0 else 1.0
-    if not (np.isfinite(times) and times > 0):
-        return state
-    chain = list(state.chain)
-    for k, block in enumerate(chain):
-        if isinstance(block, Mechanism):
-            chain[k] = replace(block, gain=block.gain / times)
-        elif isinstance(block, OtherModes):
-            up = tuple(x / times for x in block.numerator)
-            chain[k] = replace(block, numerator=up)
-    return state.with_chain(tuple(chain))
-
-
-def _unknown(state: ModelState, place: int) -> dict[str, Free]:
-    """Give the numbers of a block that may be anything, as nobody knows them."""
-    own = (free for free in state.free if free.block == place)
-    return {free.parameter: free for free in own if free.given is None}
-
-
-def _any_is_free(state: ModelState, place: int, *names: str) -> bool:
-    """Tell whether some number of a block may be anything."""
-    return not _unknown(state, place).keys().isdisjoint(names)
-
-
-def _if_free(state: ModelState, place: int, name: str, value: float) -> float:
-    """Give a number of a block a value in its range; as it is if it is known."""
-    free = _unknown(state, place).get(name)
-    if free is None:
-        return float(getattr(state.chain[place], name))
-    return float(np.clip(value, free.low, free.high))
-
-
-def host_of(state: ModelState) -> int:
-    """Give the place of what forces are put inside of: the last host of the chain."""
-    return host_places(state.chain)[-1]
-
-
-def own_numbers(state: ModelState, place: int) -> tuple[Free, ...]:
-    """Give the numbers that a host has itself as free ones.
-
-    What drives a mechanism has none of its own: it would be one of mass, damping and
-    stiffness together.
-    """
-    block = state.chain[place]
-    names = NUMBERS if isinstance(block, Impedance) else LINEAR
-    return tuple(Free(place, name) for name in names if getattr(block, name) != 0.0)
-
-
-def host_places(chain: Sequence[Block]) -> list[int]:
-    """Give the places of the blocks of a chain that forces may be put inside of."""
-    hosts = (Mechanism, Impedance)
-    return [k for k, block in enumerate(chain) if isinstance(block, hosts)]

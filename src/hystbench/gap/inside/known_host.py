@@ -17,7 +17,8 @@ from hystbench.gap.inside.combine_forces import (
     singles,
     together,
 )
-from hystbench.gap.inside.insert_law import LINEAR, Offer, host_of, own_numbers
+from hystbench.gap.inside.host_places import LINEAR, host_of, own_numbers
+from hystbench.gap.inside.insert_law import Offer
 from hystbench.gap.progress import Say, silent
 
 

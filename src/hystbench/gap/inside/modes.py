@@ -1,93 +1,25 @@
-"""Modes of a transfer function: one of them as a mechanism, the others beside it."""
+"""Modes of a transfer function: each as a mechanism, or several as a ratio again."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
-from typing import NamedTuple
-
 import numpy as np
 
-from hystbench.blocks.base import Block
-from hystbench.blocks.gain import Gain
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.errors import InputError
-from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.thresholds import MOST
+from hystbench.gap.fitting.state import Free
 from hystbench.record import ComplexArray
 
-NUMBERS = ("mass", "damping", "stiffness", "blend")
-"""Of a mode."""
 NONE = 1e-3
 """Share of a mode in the output that is none of the motion that is asked for."""
 APART = 1e-6
 """Share of its size by which a pole must be away from all others."""
 
 
-def modes(
-    start: ModelState, output: str, others_too: bool = False
-) -> Iterator[ModelState]:
-    """Give a linear model with one of its modes as a mechanism.
-
-    The model does what it did. The modes come in the order in which they deserve a
-    force inside: first the one whose own numbers, were they free in every record,
-    would take most of the residual away, and none that would take less than half of
-    that. A mode that is linear has the same numbers at every level.
-
-    Parameters
-    ----------
-    start : ModelState
-        Its chain is a transfer function of two oscillating modes or more, of which no
-        two poles coincide, and gains; of any other nothing is given.
-    output : {"position", "velocity", "acceleration"}
-    others_too : bool
-        Whether the numbers of the other modes are free as well, and each of them is a
-        block of its own: a base that was fitted with the gap in it has all modes wrong.
-
-    Yields
-    ------
-    ModelState
-        The numbers of the mode are free.
-    """
-    block, *behind = start.chain
-    if not isinstance(block, TransferFunction):
-        return
-    if not all(isinstance(item, Gain) for item in behind):
-        return
-    poles, _ = poles_of(block)
+def coincide(poles: ComplexArray) -> bool:
+    """Tell whether two poles are one."""
     away = np.abs(poles[:, None] - poles) + np.diag(np.abs(poles))
-    if np.sum(poles.imag > 0) < 2 or np.any(away < APART * np.abs(poles)):
-        return
-    free = tuple(Free(0, name) for name in NUMBERS)
-    split = [
-        replace(start, chain=(one.mode, one.rest, *behind), free=free).settled()
-        for one in taken_out(block, output)
-        if one.rest is not None
-    ]
-    shares = np.array([explained_by_levels(state) for state in split])
-    for k in np.argsort(-shares, kind="stable"):
-        if shares[k] >= MOST * shares.max():
-            yield with_others_free(split[k]) if others_too else split[k]
-
-
-def frequency_of(mode: Block) -> float:
-    """Give the natural frequency of a mechanism in Hz."""
-    assert isinstance(mode, Mechanism)  # noqa: S101  (for the type checker)
-    return float(np.sqrt(mode.stiffness / mode.mass) / (2 * np.pi))
-
-
-def with_others_free(state: ModelState) -> ModelState:
-    """Write the other modes beside a mechanism as a block each, all numbers free."""
-    mode, others, *behind = state.chain
-    assert isinstance(others, OtherModes)  # noqa: S101  (for the type checker)
-    each = one_by_one(others)
-    free = [
-        item for place, block in enumerate(each, 1) for item in numbers_of(block, place)
-    ]
-    chain = (mode, *each, *behind)
-    return replace(state, chain=chain, free=(*state.free, *free)).settled()
+    return bool(np.any(away < APART * np.abs(poles)))
 
 
 def numbers_of(block: OtherModes, place: int) -> list[Free]:
@@ -117,46 +49,6 @@ def one_by_one(others: OtherModes) -> list[OtherModes]:
     parts = [sum_of(others, poles[k], residues[k], 0.0) for k in groups[:-1]]
     last = groups[-1]
     return [*parts, sum_of(others, poles[last], residues[last], direct)]
-
-
-class ModeTakenOut(NamedTuple):
-    """A mode that was taken out of a transfer function."""
-
-    mode: Mechanism
-    rest: OtherModes | None
-    """All other poles; None without any."""
-    direct: float
-    """What passes at once beside the mode."""
-    through: float
-    """What passes the mode at once."""
-
-
-def taken_out(block: TransferFunction, output: str) -> Iterator[ModeTakenOut]:
-    """Take each oscillating mode out of a transfer function in turn, by frequency.
-
-    With the residues R of a pair of poles p the mode is
-    ``2 (Re R (s - Re p) - Im R Im p) / (s^2 + c s + k)``: a motion of the coordinate
-    and a share of the next derivative.
-
-    Left out are those that are none of the motion, and those beside which the rest is
-    so little damped that rounding its numbers makes it unstable.
-    """
-    poles, residues = poles_of(block)
-    for k in np.argsort(np.abs(poles)):
-        if poles[k].imag <= 0:
-            continue
-        one = mode_of(block, poles[k], residues[k], output)
-        if one is None:
-            continue
-        mode, through = one
-        direct, rest = direct_of(block) - through, None
-        others = ~np.isin(poles, (poles[k], poles[k].conj()))
-        if np.any(others):
-            try:
-                rest = sum_of(block, poles[others], residues[others], direct)
-            except InputError:
-                continue
-        yield ModeTakenOut(mode, rest, direct, through)
 
 
 def direct_of(block: TransferFunction) -> float:
@@ -226,16 +118,3 @@ def sum_of(
         start=block.start,
         hold=block.hold,
     )
-
-
-def explained_by_levels(state: ModelState) -> float:
-    """Mean share of a record that other numbers of the mode in it would explain."""
-    shares = []
-    for part in state.sample.slices:
-        rest, columns = state.residual[part], state.tangents[part]
-        power = float(np.sum(rest**2))
-        if power > 0:
-            sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-            basis = np.linalg.qr(columns / sizes)[0]
-            shares.append(float(np.sum((basis.T @ rest) ** 2)) / power)
-    return float(np.mean(shares)) if shares else 0.0

@@ -26,12 +26,8 @@ from hystbench.gap.inside.choose import as_rounds, charged, chosen, not_taken, w
 from hystbench.gap.inside.combine_forces import may_gain, singles, together
 from hystbench.gap.inside.fewer import OnAll, on_fewer
 from hystbench.gap.inside.fitted_numbers import more_for_numbers, re_tuning
-from hystbench.gap.inside.further_modes import (
-    further_words,
-    in_further_modes,
-    with_modes,
-)
-from hystbench.gap.inside.insert_law import Times, host_places, laws_for
+from hystbench.gap.inside.host_places import host_places
+from hystbench.gap.inside.insert_law import Times, laws_for
 from hystbench.gap.inside.known_host import with_pairs_beside_free
 from hystbench.gap.inside.one_coordinate import Host, Kind
 from hystbench.gap.inside.possible_hosts import hosts
@@ -78,7 +74,7 @@ def named_inside(
     """Find effects inside the dynamics; None where no force pays.
 
     In place of the base stands a linear model of one coordinate, or the base itself
-    with one of its modes as a mechanism (:func:`hosts`), and forces are put inside.
+    as a structure of its modes (:func:`hosts`), and forces are put inside.
 
     Parameters
     ----------
@@ -189,8 +185,6 @@ def named_inside(
         if identified and fewer is start and not may_gain(best, score):
             return without_forces(base, start, host, found, floor_rms)
         return None
-    wider, modes = in_further_modes(best, offer, score, say, share)
-    found, best = [wider if x is best else x for x in found], wider
     if fewer is not start:
         on_all = OnAll.of(start, score_of_all, alone, identified)
         way = (found[0], *way_to(best, found))
@@ -200,12 +194,11 @@ def named_inside(
         alone = found[0].state if identified else on_all.state(alone)
     re_tuned = found[0].state
     state = in_short_steps(replace(best.state, offered=start.offered), score_of_all)
-    alone = with_modes(replace(alone, offered=start.offered), modes).settled()
+    alone = replace(alone, offered=start.offered)
     before, after = lefts((start, alone), floor_rms, base.output.unit)
     sentence = (
-        f"{host.words}{further_words(alone)}, and effects act inside it (without them "
-        f"it leaves {after} rms of the fit records above the noise floor, the base "
-        f"{before})"
+        f"{host.words}, and effects act inside it (without them it leaves {after} rms "
+        f"of the fit records above the noise floor, the base {before})"
     )
     if host.counts:
         square = floor_rms**2

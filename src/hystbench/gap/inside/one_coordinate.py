@@ -29,7 +29,7 @@ ZEROS = ("bias", "offset", "delay_s", "blend")
 """Numbers that are counted from a zero: a share of them says nothing."""
 
 
-Kind = Literal["stores", "coordinate", "loose mass", "two masses", "given", "mode"]
+Kind = Literal["stores", "coordinate", "loose mass", "two masses", "given", "structure"]
 """What a host is made of."""
 
 

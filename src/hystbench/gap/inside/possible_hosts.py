@@ -8,7 +8,6 @@ in place of a base that does something else, which is then said.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
@@ -24,15 +23,15 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.store import Store
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.orders import HIGHEST
-from hystbench.gap.fitting.least_squares import Fitted, fitted, fitted_to_the_end
+from hystbench.gap.fitting.least_squares import Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.inside.insert_law import host_places, own_numbers
-from hystbench.gap.inside.modes import frequency_of, modes
+from hystbench.gap.inside.given_hosts import as_given, held_about, is_seen_moving
+from hystbench.gap.inside.host_places import host_places, own_numbers
+from hystbench.gap.inside.joint import structure
 from hystbench.gap.inside.one_coordinate import (
     BEGUN,
     MOTIONS,
-    ZEROS,
     Host,
     Kind,
     best_host,
@@ -42,11 +41,8 @@ from hystbench.gap.inside.one_coordinate import (
 )
 from hystbench.gap.inside.stores import store_hosts
 from hystbench.gap.inside.timing import in_front, with_free_timing
-from hystbench.gap.thresholds import ABOUT, FURTHER, PARAMETER, PAYS
+from hystbench.gap.thresholds import PARAMETER, PAYS
 from hystbench.quantities import Quantities
-
-TRIED = 2
-"""Modes of a base in which forces are tried, those that need it most."""
 
 
 def hosts(
@@ -111,8 +107,10 @@ def hosts(
                     yield from _in_time(best, score)
             if wanted("loose mass"):
                 yield from _loose(best.state, score, words)
-            if wanted("two masses"):
-                yield from _of_two(best, further_modes_of(start), score)
+            # Two masses that both swing are a structure that is driven at its joint.
+            further = further_modes_of(start)
+            if wanted("two masses") and len(further) < 2:
+                yield from _of_two(best, further, score)
     if not identified and all(isinstance(block, Store) for block in start.chain):
         words = "the base is stores already"
         yield Host(start, fitted(start, score), words, kind="stores")
@@ -126,69 +124,21 @@ def hosts(
             )
             same = same_as(start, quantities, score.floor)
         if same is not None:
-            own = same, _about(same), score, words, start.free, exact
-            yield from _as_given("given", *own)
+            own = same, held_about(same), score, words, start.free, exact
+            yield from as_given("given", *own)
     moved = quantities.causality in ("force to motion", "unknown")
-    if not moved or not wanted("mode"):
+    if not (moved and wanted("structure")):
         return
     known = quantities.output in MOTIONS
-    split = modes(start, quantities.output if known else "position", identified)
-    seen = (mode for mode in split if is_seen_moving(mode))
-    for mode in itertools.islice(seen, TRIED):
-        at = f"{frequency_of(mode.chain[0]):.3g} Hz"
-        words = f"the base's mode at {at} is a mechanism of its own"
-        if identified:
-            best = fitted(mode, score)
-            yield Host(best.state, best, words, kind="mode")
-        else:
-            own = mode, mode, score, words, start.free, exact
-            yield from _as_given("mode", *own)
-
-
-def _as_given(
-    kind: Kind,
-    state: ModelState,
-    about: ModelState,
-    score: Score,
-    words: str,
-    free: tuple[Free, ...],
-    exact: bool,
-) -> Iterator[Host]:
-    """Give a host that does what a given base does, then the same fitted to records.
-
-    The numbers of a given base are known, unless it says that some are free. That known
-    ones are wrong all the same has to pay as a further effect does. Numbers that the
-    base states only roughly are so in the host too: ``about`` holds them by their
-    tolerances. A mode is no number of a base, and its damping is seldom known.
-    """
-    if free:
-        known = all(item.given is not None for item in free)
-        own = fitted_to_the_end(about, score) if known else fitted(state, score)
-        yield Host(state, own, words, kind=kind)
-        return
-    held = replace(state, free=())
-    as_they_are = f"{words}, its numbers as they are"
-    yield Host(held, fitted(held, score), as_they_are, kind=kind)
-    if not exact:
-        words = f"{words}, its numbers fitted to the records"
-        held_by = about is not state
-        own = fitted_to_the_end(about, score) if held_by else fitted(state, score)
-        yield Host(state, own, words, charge=FURTHER, kind=kind)
-
-
-def _about(state: ModelState) -> ModelState:
-    """Give a host whose numbers are held by what they may be off.
-
-    Those that are counted from a zero are as they are.
-    """
-
-    def about(free: Free) -> Free:
-        value, stated = state.value(free), free.given is not None
-        if stated or free.parameter in ZEROS or value == 0.0:
-            return free
-        return free._replace(tolerance=ABOUT * abs(value), given=value)
-
-    return replace(state, free=tuple(map(about, state.free)))
+    output = quantities.output if known else "position"
+    modes = structure(start, output, identified)
+    words = "the modes of the base move one joint"
+    if modes is not None and identified:
+        best = fitted(modes, score)
+        yield Host(best.state, best, words, kind="structure")
+    elif modes is not None:
+        own = modes, modes, score, words, start.free, exact
+        yield from as_given("structure", *own)
 
 
 def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
@@ -271,20 +221,6 @@ def own_mechanism(start: ModelState) -> ModelState | None:
         return start
     (place,) = places
     return replace(start, free=own_numbers(start, place))
-
-
-def is_seen_moving(state: ModelState) -> bool:
-    """Tell whether a host's motion is slow enough for its records to show it.
-
-    Of a mass whose poles both lie beyond the highest frequency of the samples only the
-    static gain is seen. A force inside is then a static curve, which a chain has.
-    """
-    block = state.chain[0]
-    if not isinstance(block, Mechanism):
-        return True
-    poles = np.roots([block.mass, block.damping, block.stiffness])
-    step = min(record.dt for record in state.records)
-    return bool(np.min(np.abs(poles)) < np.pi / step)
 
 
 def of_many_modes(start: ModelState) -> bool:

@@ -1,0 +1,158 @@
+"""Forces at one place of a structure, which several of its modes move: the joint.
+
+No linear record tells how far each mode moves it. So the shapes of the modes there are
+fitted together with the first force, begun with one mode alone or with two, and are
+charged as its numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.force import Force
+from hystbench.blocks.gain import Gain
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.other_modes import OtherModes
+from hystbench.blocks.structure import Structure
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.inside.host_places import MODES, SHAPES
+from hystbench.gap.inside.modes import (
+    APART,
+    coincide,
+    direct_of,
+    mode_of,
+    numbers_of,
+    one_by_one,
+    poles_of,
+    sum_of,
+)
+
+LITTLE = 1e-3
+"""Share of its shape at the drive with which a mode begins that hardly moves the joint:
+from zero no fit could tell which way it does."""
+
+
+def structure(
+    start: ModelState, output: str, others_too: bool = False
+) -> ModelState | None:
+    """Give a linear model as a structure; None if it has fewer than two modes.
+
+    The model does what it did. Each mode moves its drive and its sensor alike, as where
+    both are at one place; where the joint is is not known.
+
+    Parameters
+    ----------
+    start : ModelState
+        Its chain is a transfer function, of which no two poles coincide, and gains; of
+        any other there is none.
+    output : {"position", "velocity", "acceleration"}
+    others_too : bool
+        Whether the numbers of what is left, real poles, are free as well.
+    """
+    block, *behind = start.chain
+    if not isinstance(block, TransferFunction):
+        return None
+    if not all(isinstance(item, Gain) for item in behind):
+        return None
+    poles, residues = poles_of(block)
+    if coincide(poles):
+        return None
+    peaks = np.abs(residues / np.where(poles.real, poles.real, 1.0))
+    modes: list[Mechanism] = []
+    direct, taken = direct_of(block), np.zeros(len(poles), dtype=bool)
+    for k in np.argsort(np.abs(poles)):
+        if poles[k].imag <= 0 or peaks[k] <= APART * peaks.max():
+            continue
+        one = mode_of(block, poles[k], residues[k], output)
+        if one is None:
+            continue
+        modes.append(one[0])
+        direct -= one[1]
+        taken |= np.isin(poles, (poles[k], poles[k].conj()))
+    if len(modes) < 2:
+        return None
+    rest: list[OtherModes] = []
+    if not np.all(taken):
+        others = sum_of(block, poles[~taken], residues[~taken], direct)
+        rest, direct = [*one_by_one(others)] if others_too else [others], 0.0
+    own = _written(modes, block, direct)
+    free = [Free(0, name, k) for name in MODES for k in range(len(modes))]
+    free += [Free(0, "direct")] if direct else []
+    if others_too:
+        free += [x for k, item in enumerate(rest, 1) for x in numbers_of(item, k)]
+    chain = (own, *rest, *behind)
+    return replace(start, chain=chain, free=tuple(free)).settled()
+
+
+def _written(
+    modes: Sequence[Mechanism], block: TransferFunction, direct: float
+) -> Structure:
+    """Write modes as one block; a mode of mass m has a shape of 1 / sqrt(m)."""
+    about = np.array(
+        [[x.stiffness / x.mass, x.damping / x.mass, x.gain / x.mass] for x in modes]
+    )
+    stiffness, damping, constant = (tuple(column.tolist()) for column in about.T)
+    shape = tuple(float(x.mass**-0.5) for x in modes)
+    return Structure(
+        stiffness=stiffness,
+        damping=damping,
+        modal_constant=constant,
+        drive=shape,
+        blend=tuple(x.blend for x in modes),
+        direct=direct,
+        output=modes[0].output,
+        start=block.start,
+        hold=block.hold,
+    )
+
+
+def joints(state: ModelState) -> Iterator[ModelState]:
+    """Give a structure with its joint at all the places that a fit begins with.
+
+    The shapes of all modes but one are free then: that one sets how a force is
+    measured. Nothing is given of any other host, and of a structure that has a joint.
+    """
+    place = next((k for k, x in enumerate(state.chain) if has_no_joint(x)), None)
+    if place is None:
+        return
+    host = state.chain[place]
+    assert isinstance(host, Structure)  # noqa: S101  (for the type checker)
+    count, drive = len(host.stiffness), np.array(host.drive)
+    alone = [{k: 1.0} for k in range(count)]
+    pairs = [
+        {a: 1.0, b: sign}
+        for a, b in combinations(range(count), 2)
+        for sign in (1.0, -1.0)
+    ]
+    for moved in (*alone, *pairs):
+        shares = np.full(count, LITTLE)
+        shares[list(moved)] = list(moved.values())
+        first = next(iter(moved))
+        chain = list(state.chain)
+        chain[place] = replace(host, joint=tuple((shares * drive).tolist()))
+        others = (k for k in range(count) if k != first)
+        shapes = (Free(place, name, k) for k in others for name in SHAPES)
+        free = (*state.free, *shapes)
+        yield replace(state.with_chain(tuple(chain)), free=free)
+
+
+def has_no_joint(block: Block) -> bool:
+    """Tell whether a block is a structure whose joint is not known."""
+    return isinstance(block, Structure) and not block.joint
+
+
+def shapes_of(state: ModelState, place: int) -> int:
+    """Count the shapes that come with the first force in a structure at a place.
+
+    None if there is a force already, which they came with.
+    """
+    behind = state.chain[place + 1 :]
+    if behind and isinstance(behind[0], Force):
+        return 0
+    return sum(x.block == place and x.parameter in SHAPES for x in state.free)
