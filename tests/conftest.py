@@ -8,6 +8,8 @@ import os
 import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout
+from copy import deepcopy
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -47,9 +49,14 @@ def _no_cache_of_the_users(tmp_path_factory):
         yield
 
 
-def own_config() -> dict[str, Any]:
-    """Read the project's config."""
+@cache
+def _own_config() -> dict[str, Any]:
     return yaml.safe_load((ROOT / "config.yaml").read_text(encoding="utf-8"))
+
+
+def own_config() -> dict[str, Any]:
+    """Give the project's config, which a test may change; it is read once."""
+    return deepcopy(_own_config())
 
 
 def table(path: Path) -> list[dict[str, str]]:
