@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import gc
 import io
 import os
 import subprocess
@@ -39,6 +40,17 @@ settings.load_profile("hystbench")
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the workflows: each takes long, and two workers end together."""
     items.sort(key=lambda item: "pipeline" not in item.path.parts)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """Make the thousands of tests without a search for garbage: all of it is kept."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.fixture(scope="session", autouse=True)
