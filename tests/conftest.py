@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import csv
+import gc
 import io
 import os
 import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout
+from copy import deepcopy
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +42,17 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: "pipeline" not in item.path.parts)
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """Make the thousands of tests without a search for garbage: all of it is kept."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _no_cache_of_the_users(tmp_path_factory):
     """Keep outputs of functions that tests call out of the user's own cache."""
@@ -47,9 +61,14 @@ def _no_cache_of_the_users(tmp_path_factory):
         yield
 
 
-def own_config() -> dict[str, Any]:
-    """Read the project's config."""
+@cache
+def _own_config() -> dict[str, Any]:
     return yaml.safe_load((ROOT / "config.yaml").read_text(encoding="utf-8"))
+
+
+def own_config() -> dict[str, Any]:
+    """Give the project's config, which a test may change; it is read once."""
+    return deepcopy(_own_config())
 
 
 def table(path: Path) -> list[dict[str, str]]:

@@ -34,7 +34,7 @@ def lag(tmp_path_factory):
 
 def tenth(u, gain=3.0):
     y, state = [], 0.0
-    for value in u:
+    for value in u.tolist():
         state += 0.1 * (gain * value - state)
         y.append(state)
     return np.array(y)

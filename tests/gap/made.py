@@ -74,7 +74,7 @@ def play_sum(u, thresholds, weights, state=0.0):
     y = np.zeros(len(u))
     for threshold, weight in zip(thresholds, weights, strict=True):
         value = state
-        for k, now in enumerate(u):
+        for k, now in enumerate(u.tolist()):
             value = max(now - threshold, min(now + threshold, value))
             y[k] += weight * value
     return y
@@ -111,7 +111,7 @@ def write_folder(folder, records, **about):
 def play(u, half_width):
     """One play operator, by its definition."""
     now, out = 0.0, np.empty(len(u))
-    for k, value in enumerate(u):
+    for k, value in enumerate(u.tolist()):
         now = out[k] = min(max(now, value - half_width), value + half_width)
     return out
 

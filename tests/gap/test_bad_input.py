@@ -17,6 +17,7 @@ from hystbench.model import load_model
 from hystbench.written import ENTRIES, TEMPORARY
 from tests.gap.closing import close_gap
 from tests.gap.made import record, write_folder
+from tests.gap.searched import among
 
 ABOUT = {
     "name": "rig",
@@ -26,6 +27,8 @@ ABOUT = {
 }
 USES = {"one": "fit", "two": "fit", "three": "hold-out"}
 COUNT = 800
+LATE = ("drive-lag", "sensor-lag", "input-delay")
+"""What is tried where no test is about others: the lag that is put in, and its like."""
 
 
 def tables():
@@ -44,7 +47,15 @@ def tables():
 def rig(tmp_path):
     """Write a dataset and a base, run the workflow on them."""
 
-    def run(records=None, about=None, uses=None, model=None, report=False, real=None):
+    def run(
+        records=None,
+        about=None,
+        uses=None,
+        model=None,
+        report=False,
+        real=None,
+        likely=LATE,
+    ):
         folder = tmp_path / "rig"
         folder.mkdir()
         for name, table in (records or tables()).items():
@@ -78,6 +89,7 @@ def rig(tmp_path):
             tmp_path / "out",
             place=str(place),
             report=report,
+            vocabulary=among(*likely),
         )
 
     run.out = tmp_path / "out"
@@ -121,7 +133,7 @@ def test_what_is_right_is_written_whole(rig):
 
 def test_an_effect_for_which_records_are_too_short_declines_by_name(rig):
     short = {name: table[:200] for name, table in tables().items()}
-    rig(records=short)
+    rig(records=short, likely=("sensor-lag", "creep"))
     content = json.loads((rig.out / "gap.json").read_text())
     declined = {x["name"]: x["declined"] for x in content["ranking"] if "declined" in x}
     assert "too short" in declined["creep"]
@@ -169,7 +181,8 @@ def test_a_drive_that_saturates_is_named_once_the_dataset_says_that_it_is_real(r
         table[:, 2] = np.round(12 * driven / step) * step
     refused(rig, "one.csv", "clipped", "'stands_still: [output]'", records=records)
     shutil.rmtree(rig.out.parent / "rig")
-    decision = rig(records=records, real=["output"])
+    curves = ("drive-saturation", "saturation", "asymmetry", "dead-zone")
+    decision = rig(records=records, real=["output"], likely=curves)
     (effect,) = decision.content["effects"]
     assert effect["name"] == "drive-saturation"
     assert effect["parameters"]["limit"]["value"] == pytest.approx(limit, rel=0.02)
@@ -225,8 +238,8 @@ def test_a_channel_that_never_moves_in_one_record(rig, name, column):
 
 def respond(u, frequency_hz, damping):
     """A mode, step by step as its differential equation says."""
-    w, x, v, out = 2 * np.pi * frequency_hz, u[0], 0.0, []
-    for value in u:
+    w, x, v, out = 2 * np.pi * frequency_hz, float(u[0]), 0.0, []
+    for value in u.tolist():
         for _ in range(20):
             v += 5e-5 * (w * w * (value - x) - 2 * damping * w * v)
             x += 5e-5 * v

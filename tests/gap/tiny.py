@@ -9,11 +9,14 @@ import numpy as np
 
 from hystbench.dataset import load_dataset
 from hystbench.model import Model
+from tests.gap.searched import among
 
 DT = 2e-4
 SAMPLES = 1500
 LAG_S = 1.5e-3
 NOISE = 0.02
+LATE = among("drive-lag", "sensor-lag", "input-delay", "eddy-diffusion")
+"""What the lag may be taken for: tests of files and words need no other effect."""
 
 BASE = {
     "name": "tiny-base",

@@ -16,7 +16,7 @@ def loop(u, width=0.2):
     y = np.zeros(len(u))
     for r, w in ((width, 3.0), (2 * width, 2.0)):
         state = 0.0
-        for k, value in enumerate(u):
+        for k, value in enumerate(u.tolist()):
             state = min(max(state, value - r), value + r)
             y[k] += w * state
     return 4.0 * u + y

@@ -5,6 +5,7 @@ the blocks. Its true numbers are told: two poles, no zero.
 """
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -37,8 +38,10 @@ def forces():
     return fine * (np.array(LEVELS) / fine.std(axis=1))[:, None] * begun**2
 
 
-def moved(force, cubic):
-    """Positions of masses at rest at first, that such forces drive."""
+@cache
+def moved(cubic):
+    """Positions of masses at rest at first, that the forces drive."""
+    force = forces()
     speed = 2 * np.pi * HERTZ
     step = 2 * DT / FINE
     fine = np.column_stack([force, force[:, -1]])
@@ -63,7 +66,7 @@ def evidence(late=1.0, zeros=ZEROS, cubic=CUBIC):
     rng, force = np.random.default_rng(6), forces()
     at = np.arange(COUNT) * FINE - round(late * FINE)
     at = np.clip(at, 0, COUNT * FINE - 1)
-    u, y = force[:, at], moved(force, cubic)
+    u, y = force[:, at], moved(cubic)
     y = y + np.array(zeros)[:, None] + NOISE * rng.standard_normal(y.shape)
     channels = Channel("force", "N"), Channel("position", "mm")
     records = [

@@ -44,7 +44,7 @@ def plays(u):
     total = u.copy()
     for threshold, weight in ((0.05, 0.3), (0.2, -0.2), (0.45, 0.5)):
         w = 0.0
-        for k, z in enumerate(u):
+        for k, z in enumerate(u.tolist()):
             w = min(max(w, z - threshold), z + threshold)
             total[k] += weight * w
     return total

@@ -23,7 +23,7 @@ def grains(u, dt):
     "Sixty relays: a step of the sum is a sixtieth of it."
     up = np.linspace(-0.6, 1.0, 60)
     on = np.zeros((len(u), 60), dtype=bool)
-    for k, now in enumerate(u):
+    for k, now in enumerate(u.tolist()):
         on[k] = (now > up) | (on[k - 1] & (now > up - 0.4))
     return on.mean(axis=1)
 """

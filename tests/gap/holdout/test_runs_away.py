@@ -36,9 +36,10 @@ def spring(u, soft):
     x, v, w, fine = 0.0, 0.0, 2 * np.pi * FREQUENCY, 40
     out = np.empty(len(u))
     h = DT / fine
-    for k, now in enumerate(u):
+    given = u.tolist()
+    for k, now in enumerate(given):
         out[k] = (1 - SHARE) * now + SHARE * x
-        then = u[min(k + 1, len(u) - 1)]
+        then = given[min(k + 1, len(u) - 1)]
         for j in range(fine):
             z = now + (then - now) * j / fine
             v += h * (w * w * (z - x - soft * x**3) - 2 * DAMPING * w * v)

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from hystbench.gap.asked import Asked
 from hystbench.gap.holdout.outcome import (
     first_figure,
     withdrawal,
@@ -19,7 +20,7 @@ from hystbench.model import Model, load_model
 from hystbench.schema import check_against_schema
 from tests.gap.closing import close_gap
 from tests.gap.made import record
-from tests.gap.tiny import BASE, write_tiny
+from tests.gap.tiny import BASE, LATE, write_tiny
 
 
 def content(before=1.0, after=0.5, verdict="named", names=("creep",), **gap):
@@ -106,7 +107,8 @@ def misled(tmp_path_factory):
     table[:, 2] += 0.02 * np.random.default_rng(1).standard_normal(len(table))
     np.savetxt(file, table, "%.9g", ",", header="time_s,current_A,displacement_um")
     file.write_text(file.read_text().removeprefix("# "))
-    close_gap(load_evidence(data), load_model(base), folder / "out", report=False)
+    evidence, out = load_evidence(data), folder / "out"
+    close_gap(evidence, load_model(base), out, report=False, vocabulary=LATE)
     return folder, data, base, json.loads((folder / "out" / "gap.json").read_text())
 
 
@@ -134,7 +136,8 @@ def test_the_page_says_so_first(misled):
 def test_jobs_take_back_what_one_process_does(misled, tmp_path):
     """The job that decides knows no hold-out record: it wrote the name."""
     folder, data, base, _ = misled
-    decide_in(tmp_path, load_evidence(data, "fit"), load_model(base))
+    asked = Asked(vocabulary=LATE)
+    decide_in(tmp_path, load_evidence(data, "fit"), load_model(base), asked)
     decided = json.loads((tmp_path / DECISION).read_text())
     assert (decided["verdict"], len(decided["effects"])) == ("named", 1)
     assert not (tmp_path / "model.yaml").exists()

@@ -1,5 +1,7 @@
 """Forces that remember the way, of devices written without a block."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -26,9 +28,10 @@ def moved(u, held, spring, fine=40):
     ``held`` is the change of that force, of it and the velocity.
     """
     q, v, force, out = 0.0, 0.0, 0.0, []
-    for push in np.repeat(u, fine):
+    for push in np.repeat(u, fine).tolist():
         out.append(q)
-        v += DT / fine * (push - 1.5 * v - spring(q) - np.sum(force))
+        all_of_it = force.sum() if isinstance(force, np.ndarray) else force
+        v += DT / fine * (push - 1.5 * v - spring(q) - all_of_it)
         force += DT / fine * held(force, v)
         q += DT / fine * v
     return np.array(out[::fine])
@@ -78,7 +81,7 @@ def test_a_spring_that_loses_nothing_is_no_hysteretic_force():
     """With a beta of zero the law is elastic: then it is another effect."""
 
     def rubber(q):
-        return 60.0 * q + np.sign(q) * 40.0 / 3.0 * np.expm1(3.0 * abs(q))
+        return 60.0 * q + math.copysign(40.0 / 3.0 * math.expm1(3.0 * abs(q)), q)
 
     item = best(lambda force, v: 0.0, rubber, ["hysteretic-force"])
     assert item.effects == ()
@@ -88,7 +91,7 @@ def test_a_spring_that_softens_and_loses_nothing_is_none_either():
     """Bouc and Wen's loop with a sharing of one runs back along its way: a magnet."""
 
     def magnet(q):
-        return 40.0 * q + 3.0 * np.sign(q) * -np.expm1(-abs(q) / 0.1)
+        return 40.0 * q + math.copysign(3.0 * math.expm1(-abs(q) / 0.1), q)
 
     item = best(lambda force, v: 0.0, magnet, ["hysteretic-force"])
     assert item.effects == ()

@@ -141,11 +141,9 @@ def test_threes_are_tried_where_a_pair_pays_or_no_single_does(
     assert tried_levels == [2, 3][:levels]
 
 
-@pytest.mark.parametrize(("share", "chain"), [(0.01, False), (1e-6, True)])
-def test_where_no_more_is_left_than_may_stay_no_chain_is_tried(
-    share, chain, monkeypatch
-):
-    """Friction whose law has another form: it leaves far more than the noise."""
+@pytest.fixture(scope="module")
+def sliding():
+    """Records of friction whose law has another form, and a linear base of them."""
     t = 0.005 * np.arange(600)
     given = []
     for size in (2.0, 5.0):
@@ -155,7 +153,16 @@ def test_where_no_more_is_left_than_may_stay_no_chain_is_tried(
         channels = Channel("way", "mm"), Channel("force", "N")
         given.append(Record(f"{size}", 0.005, x, y, *channels, "measured", "fit"))
     kinds = Quantities("position", "force")
-    base, _ = load_base("linear", Evidence("made", tuple(given), (), quantities=kinds))
+    evidence = Evidence("made", tuple(given), (), quantities=kinds)
+    return evidence, load_base("linear", evidence)[0]
+
+
+@pytest.mark.parametrize(("share", "chain"), [(0.01, False), (1e-6, True)])
+def test_where_no_more_is_left_than_may_stay_no_chain_is_tried(
+    share, chain, sliding, monkeypatch
+):
+    """The friction leaves far more than the noise."""
+    evidence, base = sliding
     calls = []
 
     def counted(*args, **kwargs):
@@ -165,12 +172,12 @@ def test_where_no_more_is_left_than_may_stay_no_chain_is_tried(
     monkeypatch.setattr(search_module, "add_effects", counted)
     found = search(
         "made",
-        tuple(given),
+        evidence.fit,
         base,
         declared=1e-4,
         unnamed_share=share,
         vocabulary=among("friction"),
-        quantities=kinds,
+        quantities=evidence.quantities,
     )
     assert bool(calls) == chain
     assert found.content["fit"]["after"] > 1e-4
@@ -212,9 +219,9 @@ def test_forces_are_looked_for_again_without_the_starts_that_they_show(monkeypat
     base = IdentifiedModel("linear", *channels, (host,), ("mechanism.mass",))
     seen, look = spring_found_once(host, spring, "lead")
     monkeypatch.setattr(search_module, "named_inside", look)
-    kinds = Quantities("force", "position")
+    about = {"declared": 1e-3, "quantities": Quantities("force", "position")}
     with pytest.raises(FarEnoughError):
-        search("made", given, base, declared=1e-3, quantities=kinds)
+        search("made", given, base, **about, vocabulary=among("stiffness-hardening"))
     assert seen == [[0, 0], [0, 197]]
 
 
@@ -233,9 +240,9 @@ def test_forces_are_looked_for_again_without_the_offsets_of_records(monkeypatch)
     base = Model("made", *channels, (host,))
     seen, look = spring_found_once(host, spring, "y")
     monkeypatch.setattr(search_module, "named_inside", look)
-    kinds = Quantities("force", "position")
+    about = {"declared": 1e-3, "quantities": Quantities("force", "position")}
     with pytest.raises(FarEnoughError):
-        search("made", given, base, declared=1e-3, quantities=kinds)
+        search("made", given, base, **about, vocabulary=among("stiffness-hardening"))
     np.testing.assert_allclose(seen[0][1] - true[1], 3.0)
     for found, y in zip(seen[1], true, strict=True):
         np.testing.assert_allclose(found, y, atol=1e-6)

@@ -1,13 +1,13 @@
 """A servo that turns no faster than its pump lets it."""
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from hystbench.gap.asked import Asked
 from hystbench.record import Channel, Record
 from tests.gap.closing import closed_beside
 from tests.gap.made import evidence_of
 from tests.gap.searched import among
+from tests.gap.solved import motion
 
 DT, COUNT, NOISE = 0.1, 1500, 0.1
 RATE, LAG, PUMP = 3.2, 1.1, 0.12  # deg/s, s, s
@@ -25,11 +25,11 @@ def turned(order):
     def slope(t, state):
         angle, rate = state
         now = order[min(int(t / DT + 1e-9), COUNT - 1)]
-        return [rate, (np.clip((now - angle) / LAG, -RATE, RATE) - rate) / PUMP]
+        asked = min(max((now - angle) / LAG, -RATE), RATE)
+        return [rate, (asked - rate) / PUMP]
 
     time = np.arange(COUNT) * DT
-    given = {"method": "RK45", "rtol": 1e-6, "atol": 1e-8, "max_step": DT / 2}
-    return solve_ivp(slope, (0.0, time[-1]), [0.0, 0.0], t_eval=time, **given).y[0]
+    return motion(slope, [0.0, 0.0], time, DT / 2, rtol=1e-6, atol=1e-8)
 
 
 def orders():

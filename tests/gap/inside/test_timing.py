@@ -1,5 +1,7 @@
 """An input that was stamped late by part of a sample, beside effects that hide it."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -128,10 +130,10 @@ def test_a_tank_whose_input_was_stamped_late_still_shows_its_outlet():
         pump = np.repeat(u, fine)
         pump = np.concatenate([np.full(fine // 2, u[0]), pump])[: len(u) * fine]
         level, y = 5.0, np.empty(len(u))
-        for i, volts in enumerate(pump):
+        for i, volts in enumerate(pump.tolist()):
             if i % fine == 0:
                 y[i // fine] = level
-            level += 2.0 / fine * (0.16 * volts - 0.2 * np.sqrt(level))
+            level += 2.0 / fine * (0.16 * volts - 0.2 * math.sqrt(level))
         y += 2e-3 * np.std(y) * rng.standard_normal(len(y))
         made.append(Record(f"run-{k}", 2.0, u, y, *channels, "measured", "fit"))
     base, _ = load_base("linear", Evidence("tank", tuple(made), (), "zero-order"))

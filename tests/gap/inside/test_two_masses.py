@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.transfer_function import TransferFunction
@@ -13,6 +12,7 @@ from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 from tests.gap.inside_host import search
+from tests.gap.solved import motion
 
 MOTOR, LOAD, SHAFT, DAMPER, FRICTION = 0.01, 0.03, 60.0, 0.05, 0.25
 NOISE = 0.02
@@ -29,8 +29,7 @@ def turned(level):
         held = DAMPER * v + FRICTION * np.tanh(v / 0.3)
         return [(np.interp(t, TIME, u) - twist - held) / MOTOR, twist / LOAD, v - w]
 
-    span = (0.0, TIME[-1])
-    y = solve_ivp(moves, span, [0.0] * 3, "LSODA", TIME, rtol=1e-6, max_step=2e-3).y[0]
+    y = motion(moves, [0.0] * 3, TIME, TIME[1], rtol=1e-6, atol=1e-6)
     y = y + NOISE * np.random.default_rng(int(10 * level)).standard_normal(len(y))
     channels = Channel("torque", "N*m"), Channel("speed", "rad/s")
     return Record(f"level {level}", TIME[1], u, y, *channels, "measured", "fit")

@@ -69,6 +69,13 @@ def moving(compared):
 
 
 @pytest.fixture(scope="module")
+def slipping(oscillators):
+    """All views of the oscillator with a hysteretic spring."""
+    compared = records(oscillators["hysteresis"])
+    return locate(compared, noise_floor(compared))
+
+
+@pytest.fixture(scope="module")
 def hardening(oscillators):
     (mode,) = moving(records(oscillators["hardening"]))
     return mode
@@ -190,10 +197,8 @@ def test_levels_that_are_alike_are_one(oscillators):
     assert moving(records(signals)) == ()
 
 
-def test_the_view_is_as_gap_json_has_it(oscillators):
-    compared = records(oscillators["hysteresis"])
-    floor = noise_floor(compared)
-    (view,) = (item for item in locate(compared, floor) if item.view == "level")
+def test_the_view_is_as_gap_json_has_it(slipping):
+    (view,) = (item for item in slipping if item.view == "level")
     check_against_schema(view.to_mapping(), VIEW, "view")
     assert (view.start, view.end) == pytest.approx((LEVELS[0], LEVELS[-1]))
     assert view.p_value < 1e-6
@@ -212,9 +217,8 @@ def test_a_mode_that_stays_is_no_evidence(oscillators):
     assert beside_level(views, [("friction", "inside")]) == ""
 
 
-def test_named_effects_are_held_against_how_modes_move(oscillators):
-    compared = records(oscillators["hysteresis"])
-    views = locate(compared, noise_floor(compared))
+def test_named_effects_are_held_against_how_modes_move(slipping):
+    views = slipping
     told = beside_level(
         views, [("sensor-lag", "behind"), ("hysteretic-force", "inside")]
     )

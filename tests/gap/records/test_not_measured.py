@@ -16,6 +16,7 @@ from hystbench.gap.records.scored_samples import Compared, ScoredSamples
 from hystbench.model import load_model
 from tests.gap.closing import close_gap
 from tests.gap.made import record, sine
+from tests.gap.searched import among
 from tests.gap.tiny import LAG_S, write_tiny
 
 LOST = [0, 1, 700, 701, 702, 1500]
@@ -122,7 +123,14 @@ def test_a_gap_is_found_beside_records_with_holes(tmp_path):
             f"file: {name}.csv,", f"file: {name}.csv, missing: interpolate,"
         )
     (data / "dataset.yaml").write_text(about)
-    found = close_gap(load_evidence(data), load_model(base), tmp_path / "out")
+    # An effect of each place, and what the lag may be taken for.
+    likely = among(
+        *("drive-lag", "sensor-lag", "input-delay", "eddy-diffusion", "hysteresis"),
+        *("asymmetry", "creep", "drift", "mains-pickup", "calibration-error"),
+    )
+    found = close_gap(
+        load_evidence(data), load_model(base), tmp_path / "out", vocabulary=likely
+    )
     (effect,) = found.content["effects"]
     assert effect["name"] == "drive-lag"
     number = effect["parameters"]["time_constant_s"]

@@ -340,6 +340,7 @@ def read(path):
     reader = Reader()
     text = path.read_text(encoding="utf-8")
     reader.feed(text)
+    reader.source = text
     reader.said = re.sub(r"\s+", " ", " ".join(reader.text))
     return reader
 
@@ -389,9 +390,8 @@ def test_pictures_of_where_the_gap_is_have_their_words(page):
         assert f"{one.words}." in page.said
 
 
-@pytest.mark.usefixtures("unrendered")
-def test_the_model_is_drawn_as_blocks_where_its_effects_are_told(tmp_path):
-    text = write_report(write_folder(tmp_path)).read_text()
+def test_the_model_is_drawn_as_blocks_where_its_effects_are_told(page):
+    text = page.source
     (told,) = re.findall(
         r'alt="Block diagram: (.*?)"', text[text.index("<h2>Effects") :]
     )
@@ -403,10 +403,9 @@ def image(text):
     return base64.b64decode(text.partition("base64,")[2]).decode()
 
 
-def test_the_headline_has_before_and_after_as_a_picture(tmp_path):
+def test_the_headline_has_before_and_after_as_a_picture(page):
     """Of the hold-out record that the simulator misses most, and of all together."""
-    folder = write_folder(tmp_path, with_curves=False)
-    text = write_report(folder).read_text()
+    text = page.source
     head = text[text.index("<h1>") : text.index("<h2>")]
     glimpse, sizes = re.findall(r'<img src="(.*?)" alt="(.*?)">', head)
     # Both records ring alike: the one whose share of it is plain comes first.
