@@ -127,11 +127,10 @@ class Structure(ForcedDynamics, name="structure", place="base"):
         count = len(self.stiffness)
         motion = np.zeros((len(moved), driven.count, 2 * count))
         force = np.zeros((len(moved), driven.count))
-        if self.start != "rest":
-            for k, host in enumerate(moved):
-                motion[k, driven.begins, :count] = [
-                    host._balance(z, laws[k]) for z in driven.before[k].tolist()
-                ]
+        for k, host in enumerate(moved):
+            motion[k, driven.begins, :count] = [
+                host._balance(z, laws[k]) for z in driven.before[k].tolist()
+            ]
         kernels.call(
             "hb_structure",
             driven.count,
@@ -202,16 +201,21 @@ class Structure(ForcedDynamics, name="structure", place="base"):
 
     def _balance(self, z: float, laws: FloatArray) -> FloatArray:
         """Find where the springs hold what drives it, next to where modes alone do."""
-        drive, joint = np.array(self.drive), self.at_joint
-        stiffness = np.array(self.stiffness)
+        driven, held = self._rests()
         if not len(laws):
-            return np.asarray(z * drive / stiffness)
-        alone = z * float(np.sum(joint * drive / stiffness))
+            return np.asarray(z * driven)
+        alone, spring = z * float(self.at_joint @ driven), 1.0 / self.receptance
         x, memory = np.zeros(1), np.zeros(len(laws))
-        spring = 1.0 / self.receptance
         kernels.call("hb_settle", spring, alone * spring, len(laws), laws, memory, x)
-        force = (alone - float(x[0])) * spring
-        return np.asarray((z * drive - force * joint) / stiffness)
+        return np.asarray(z * driven - (alone - float(x[0])) * spring * held)
+
+    def _rests(self) -> FloatArray:
+        """Give q of all modes under a unit of what drives it, and of force.
+
+        Zeros where it begins at rest.
+        """
+        shapes = np.array([self.drive, self.at_joint])
+        return np.asarray(shapes / np.array(self.stiffness) * (self.start != "rest"))
 
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
         """Move the modes over the interval that has passed."""
@@ -227,9 +231,8 @@ class Structure(ForcedDynamics, name="structure", place="base"):
             "h": line / parts,
             "table": _tables([self], line / parts).ravel(),
             "shown": self._shown(),
-            "stiffness": np.array(self.stiffness),
-            "settled": int(self.start != "rest"),
-            "spring": 1.0 / self.receptance if forces else 0.0,
+            "rests": self._rests().ravel(),
+            "spring": 1.0 / self.receptance if forces and self.start != "rest" else 0.0,
             **inside,
         }
         states = {
@@ -243,8 +246,23 @@ class Structure(ForcedDynamics, name="structure", place="base"):
 
 
 def _tables(hosts: Sequence[Structure], dt: float) -> FloatArray:
-    """Give the kernel's table of each: of every mode its step, drive and joint."""
+    """Give the kernel's table of each structure, for a part of dt: see joint.c."""
     modes = tuple(mode for host in hosts for mode in host.modes)
-    steps = step_weights(modes, dt).reshape(len(hosts), -1, 16)
-    shapes = np.array([[host.drive, host.at_joint] for host in hosts]).swapaxes(1, 2)
-    return np.ascontiguousarray(np.concatenate([steps, shapes], axis=2))
+    drive, joint = np.array([[host.drive, host.at_joint] for host in hosts]).swapaxes(
+        0, 1
+    )
+    found = [joint]
+    for part in np.moveaxis(step_weights(modes, dt), 1, 0):
+        # Of q and v after it: of q, v, and of p at both ends.
+        steps = part.reshape(len(hosts), -1, 2, 4)
+        after = np.empty((len(hosts), 2, 5, steps.shape[1]))
+        after[:, :, :2] = steps[..., :2].transpose(0, 2, 3, 1)
+        after[:, :, 2:4] = (steps[..., 2:] * drive[:, :, None, None]).transpose(
+            0, 2, 3, 1
+        )
+        after[:, :, 4] = (steps[..., 2:].sum(axis=3) * joint[:, :, None]).swapaxes(1, 2)
+        way = after[:, 0] * joint[:, None]
+        way[:, 0] -= joint
+        found += [way[:, 2:].sum(axis=2), way[:, :2].reshape(len(hosts), -1)]
+        found.append(after.reshape(len(hosts), -1))
+    return np.ascontiguousarray(np.concatenate(found, axis=1))

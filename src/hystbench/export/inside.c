@@ -38,29 +38,28 @@ static double hb_mechanism(double gain, double bias, int segments, int points,
 }
 
 /* Modes of a structure, as a coordinate above: table is that of joint.c, shown the weights
- * of q and v of all modes, of the force and of what drives them. Where it is settled, the
- * springs hold the first sample: that of the joint with the forces, if there are some,
- * and the stiffness of each mode. */
+ * of q and v of all modes, of the force and of what drives them. rests: q of all modes
+ * where a unit of what drives them has stood, then where a unit of force has; zeros where
+ * it begins at rest. spring: of the joint, which holds the forces, or zero. */
 static double hb_structure(int modes, int segments, int points, int ahead,
                            const double *corners, double ramp, int parts, double h,
                            const double *table, const double *shown,
-                           const double *stiffness, int settled, double spring,
-                           int count, const double *forces, double *motion, double *before,
+                           const double *rests, double spring, int count,
+                           const double *forces, double *motion, double *before,
                            double *memory, double *history, double z)
 {
     const int moves = history[0] > ahead;
     hb_remember(points, history, z);
     if (history[0] <= ahead) return 0;
     double p = history[1 + ahead], ways[8];
-    if (!moves && settled) {
-        double alone = 0, held = 0;
-        for (int i = 0; i < modes; i++)
-            alone += table[18 * i + 16] * table[18 * i + 17] / stiffness[i] * p;
+    if (!moves) {
+        double held = 0;
+        const double alone = hb_at_joint(modes, table, rests) * p;
         if (spring > 0)
             held = spring *
                    (alone - hb_balance(spring, alone * spring, count, forces, memory));
         for (int i = 0; i < modes; i++)
-            motion[i] = (table[18 * i + 16] * p - table[18 * i + 17] * held) / stiffness[i];
+            motion[i] = rests[i] * p - rests[modes + i] * held;
     }
     for (int i = 0; i < segments && moves; i++) {
         const double now = hb_weighted(points, corners + i * points, history + 1);

@@ -1,74 +1,69 @@
 /* Modes of a structure, and forces at one place of it that they move, the joint:
  * q_i'' + c_i q_i' + k_i q_i = drive_i p - joint_i F(x, x'),  x the sum of joint_i q_i.
  *
- * Of each mode a table holds 18 numbers: those that move q and v over a part of an
- * interval and over an eighth of it, as for a coordinate, then drive and joint. Its
- * motion is q of all modes, then v of all. */
+ * A motion is q of all modes, then v of all. A table holds joint_i of all modes, then the
+ * numbers of a part of an interval, then those of an eighth of a part. These are: the way
+ * of the joint for a unit of p at the beginning, of p at the end and of a mean force;
+ * rows of a number for each mode, of its q and its v in the way of the joint; then five
+ * rows for q after the part and five for v: of q, v, p at the beginning, p at the end and
+ * a mean force. */
+
+/* Where the numbers of a part begin in a table, or those of an eighth of it. */
+static inline int hb_part(int modes, int eighth)
+{
+    return modes + (eighth ? 3 + 12 * modes : 0);
+}
 
 /* What the joint does where the modes do so much, q or v. */
 static inline double hb_at_joint(int modes, const double *table, const double *of)
 {
     double sum = 0;
-    for (int i = 0; i < modes; i++) sum += table[18 * i + 17] * of[i];
-    return sum;
-}
-
-/* By how much less the joint moves in a part for each unit of force. eighth: 0 or 8,
- * where the numbers of the part begin. */
-static inline double hb_joint_gives(int modes, const double *table, int eighth)
-{
-    double sum = 0;
-    for (int i = 0; i < modes; i++) {
-        const double *step = table + 18 * i + eighth;
-        const double joint = table[18 * i + 17];
-        sum += joint * joint * (step[2] + step[3]);
-    }
+    for (int i = 0; i < modes; i++) sum += table[i] * of[i];
     return sum;
 }
 
 /* The way of the joint over a part, if no force were there. */
-static inline double hb_joint_alone(int modes, const double *table, int eighth,
-                                    const double *motion, double from, double to)
+static inline double hb_joint_alone(int modes, const double *part, const double *motion,
+                                    double from, double to)
 {
-    double sum = 0;
-    for (int i = 0; i < modes; i++) {
-        const double *own = table + 18 * i;
-        const double drive = own[16];
-        sum += own[17] * hb_alone(own + eighth, drive * from, drive * to, motion[i],
-                                  motion[modes + i]);
-    }
+    double sum = part[0] * from + part[1] * to;
+    for (int i = 0; i < 2 * modes; i++) sum += part[3 + i] * motion[i];
     return sum;
 }
 
-/* Moves all modes over a part in which the joint goes its way: what it lacks of that
- * alone tells the force. */
-static inline void hb_modes_after(int modes, const double *table, int eighth,
-                                  double *motion, double from, double to, double way)
+/* Moves all modes over a part in which the joint is held by a mean force. */
+static inline void hb_modes_after(int modes, const double *part, double *restrict motion,
+                                  double from, double to, double held)
 {
-    const double alone = hb_joint_alone(modes, table, eighth, motion, from, to);
-    const double gives = hb_joint_gives(modes, table, eighth);
-    const double held = gives > 0 ? (alone - way) / gives : 0; /* 0: there is no joint */
-    for (int i = 0; i < modes; i++) {
-        const double *step = table + 18 * i + eighth;
-        const double drive = table[18 * i + 16], joint = table[18 * i + 17];
-        const double first = drive * from - joint * held, last = drive * to - joint * held;
-        const double q = motion[i], v = motion[modes + i];
-        motion[i] = step[0] * q + step[1] * v + step[2] * first + step[3] * last;
-        motion[modes + i] = step[4] * q + step[5] * v + step[6] * first + step[7] * last;
+    const double *restrict a = part + 3 + 2 * modes, *restrict b = a + 5 * modes;
+    double *restrict q = motion, *restrict v = motion + modes;
+    const int n = modes;
+    for (int i = 0; i < n; i++) {
+        const double x = q[i], w = v[i];
+        q[i] = a[i] * x + a[n + i] * w + a[2 * n + i] * from + a[3 * n + i] * to -
+               a[4 * n + i] * held;
+        v[i] = b[i] * x + b[n + i] * w + b[2 * n + i] * from + b[3 * n + i] * to -
+               b[4 * n + i] * held;
     }
 }
 
-/* Moves all modes over a part h of an interval, or an eighth of it; gives the way of the
- * joint. */
+/* The mean force that makes the joint go its way: there is none without a joint. */
+static inline double hb_held(const double *part, double alone, double way)
+{
+    return part[2] > 0 ? (alone - way) / part[2] : 0;
+}
+
+/* Moves all modes over a part h of an interval; gives the way of the joint. */
 static inline double hb_joint_over(int modes, const double *table, int eighth, int count,
                                    const double *forces, const double *memory, double h,
                                    double from, double to, double *motion)
 {
-    const double alone = hb_joint_alone(modes, table, eighth, motion, from, to);
-    const double gives = hb_joint_gives(modes, table, eighth);
+    const double *part = table + hb_part(modes, eighth);
+    const double alone = hb_joint_alone(modes, part, motion, from, to);
     const double x = hb_at_joint(modes, table, motion);
-    const double way = count ? hb_way_of(count, forces, memory, x, alone, gives, h) : alone;
-    hb_modes_after(modes, table, eighth, motion, from, to, way);
+    const double way =
+        count ? hb_way_of(count, forces, memory, x, alone, part[2], h) : alone;
+    hb_modes_after(modes, part, motion, from, to, hb_held(part, alone, way));
     return way;
 }
 
@@ -91,7 +86,7 @@ static inline int hb_joint_moved(int modes, const double *table, int count,
         const double now = from + i * (to - from) / fine;
         const double then = from + (i + 1) * (to - from) / fine;
         if (fine > 1)
-            ways[i] = hb_joint_over(modes, table, 8, count, forces, memory, h / fine, now,
+            ways[i] = hb_joint_over(modes, table, 1, count, forces, memory, h / fine, now,
                                     then, motion);
         const double v = hb_at_joint(modes, table, motion + modes);
         hb_move_memories(count, forces, v, ways[i], h / fine, memory);

@@ -15,16 +15,16 @@ struct structure {
 static void follow(int modes, int count, index_t near, struct structure *all, double h,
                    int pieces, const double *ways, double *motion, double *memory)
 {
-    const int eighth = pieces > 1 ? 8 : 0;
     for (int i = 0; i < pieces; i++) {
 #define AT(m, j) ((m)->from + (j) * ((m)->to - (m)->from) / pieces)
-#define ALONE(m, motion)                                                                \
-    hb_joint_alone(modes, (m)->table, eighth, motion, AT(m, i), AT(m, i + 1))
+#define NUMBERS(m) ((m)->table + hb_part(modes, pieces > 1))
+#define ALONE(m, motion) hb_joint_alone(modes, NUMBERS(m), motion, AT(m, i), AT(m, i + 1))
 #define MISS(m, motion, memory, alone, way)                                             \
     hb_miss(count, (m)->forces, memory, hb_at_joint(modes, (m)->table, motion), alone,   \
-            hb_joint_gives(modes, (m)->table, eighth), h / pieces, way)
-#define MOVE(m, motion, memory, way)                                                    \
-    hb_modes_after(modes, (m)->table, eighth, motion, AT(m, i), AT(m, i + 1), way);      \
+            NUMBERS(m)[2], h / pieces, way)
+#define MOVE(m, motion, memory, alone, way)                                             \
+    hb_modes_after(modes, NUMBERS(m), motion, AT(m, i), AT(m, i + 1),                      \
+                   hb_held(NUMBERS(m), alone, way));                                       \
     hb_move_memories(count, (m)->forces, hb_at_joint(modes, (m)->table, motion + modes), \
                      way, h / pieces, memory)
         const double way = ways[i], alone = ALONE(all, motion);
@@ -33,14 +33,16 @@ static void follow(int modes, int count, index_t near, struct structure *all, do
         const double grown = MISS(all, motion, memory, alone, way + bit) - missed;
         const double slope = bit > 0 ? grown / bit : 1;
         for (struct structure *m = all + 1; m <= all + near; m++) {
-            const double more = MISS(m, m->now, m->memory, ALONE(m, m->now), way) - missed;
-            const double own = way - more / slope;
-            MOVE(m, m->now, m->memory, own);
+            const double its = ALONE(m, m->now);
+            const double own =
+                way - (MISS(m, m->now, m->memory, its, way) - missed) / slope;
+            MOVE(m, m->now, m->memory, its, own);
         }
-        MOVE(all, motion, memory, way);
+        MOVE(all, motion, memory, alone, way);
 #undef MOVE
 #undef MISS
 #undef ALONE
+#undef NUMBERS
 #undef AT
     }
 }
@@ -103,7 +105,7 @@ EXPORT void hb_structure(index_t n, index_t records, const index_t *ends, index_
         for (index_t i = 0; i <= near; i++) {
             const index_t at = begin + n * i;
             all[i] = (struct structure){
-                table + 18 * modes * i, forces + 6 * count * i, p + at, memory + count * i,
+                table + (25 * modes + 6) * i, forces + 6 * count * i, p + at, memory + count * i,
                 motion + 2 * modes * at, out + at, now + 2 * modes * i};
         }
         for (index_t i = 0; i < count * (near + 1); i++) memory[i] = 0;
