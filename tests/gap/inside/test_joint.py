@@ -1,10 +1,13 @@
 """A force between two masses: at a joint that both modes move."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import eigh
 
+from hystbench.blocks.force import against
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.structure import Structure
 from hystbench.blocks.transfer_function import TransferFunction
@@ -100,3 +103,27 @@ def test_a_spring_that_hardens_between_two_masses_is_found_with_its_place(base):
     assert np.sqrt(np.mean(best.state.residual**2)) < 1.2 * NOISE
     # Its shapes are charged with the force: one number of it and two of the joint.
     assert best.state.freedom == len(best.state.added[0].values) + 2
+
+
+def test_a_given_structure_keeps_the_joint_that_it_states(base):
+    whole = structure(base, "position")
+    _, shapes = eigh(SPRINGS, MASSES)
+    joint = (BETWEEN @ shapes) * np.sign(shapes[0])
+    stated = replace(
+        whole.chain[0], joint=tuple(joint.tolist()), drive=tuple(np.abs(shapes[0]))
+    )
+    records = tuple(moved(level) for level in (1.0, 2.0))
+    sample = ScoredSamples.of(records)
+    chain = (stated, *whole.chain[1:])
+    given = ModelState(chain, records, sample, hold="linear").settled()
+    score = Score.plain(sample, NOISE**2)
+    as_it_is, *_ = hosts(given, Quantities("force", "position"), False, score)
+    found = search(as_it_is.fitted, score, offered=["stiffness-hardening", "friction"])
+    best = min(found, key=lambda item: item.score)
+    assert best.effects == ("stiffness-hardening",)
+    assert best.state.chain[0] == stated
+    # Where the joint is stated, so is how a force is measured.
+    law = best.state.chain[best.state.added[0].blocks[0]]
+    q = np.array([0.03, 0.06])
+    assert against((law,), q, 0 * q, DT) == pytest.approx(CUBE * q**3, rel=0.05)
+    assert np.sqrt(np.mean(best.state.residual**2)) < 1.2 * NOISE
