@@ -145,18 +145,17 @@ def test_a_joint_that_is_held_joins_the_masses():
     np.testing.assert_allclose(found, wanted, atol=1e-5 * np.ptp(wanted))
 
 
-def test_a_passive_force_only_takes_energy():
-    """Let go from where a first value held them, the masses come to rest."""
+def test_a_passive_force_takes_energy():
+    """Undamped masses, let go from where a force held them, swing less and less."""
     u = np.zeros(20_000)
     u[0] = 60.0
     block = two_masses(start="settled", hold="zero-order")
-    friction = force("friction-force", coulomb=0.3, presliding_distance=1e-4)
-    assert np.abs(output([block, friction], u, 1e-3)[-2000:]).max() < 0.01
     quiet = replace(block, damping=(0.0, 0.0))
-    moved = output([quiet, friction], u, 1e-3)
-    # One mode alone holds the joint still, so that is all that is left.
-    early, late = (np.ptp(moved[part]) for part in (slice(0, 4000), slice(-4000, None)))
-    assert late < early
+    friction = force("friction-force", coulomb=1.0, presliding_distance=1e-4)
+    free, held = output([quiet], u, 1e-3), output([quiet, friction], u, 1e-3)
+    spans = [np.ptp(x[-4000:]) / np.ptp(x[:4000]) for x in (free, held)]
+    assert spans[0] > 0.9
+    assert spans[1] < 0.75 * spans[0]
 
 
 def test_numbers_near_give_derivatives():

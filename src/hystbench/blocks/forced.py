@@ -29,7 +29,7 @@ CONTACT = 10
 
 
 @dataclass(frozen=True)
-class Lines:
+class DriveLines:
     """What drives near motions: straight lines, one record behind another."""
 
     values: FloatArray
@@ -103,7 +103,7 @@ class ForcedDynamics(Dynamics):
                 own.update(zip(places, moves, strict=True))
         return [[own[k] for k in range(len(signals))] for own in found]
 
-    def lines(self, first: Driven, drives: Sequence[Signals], dt: float) -> Lines:
+    def lines(self, first: Driven, drives: Sequence[Signals], dt: float) -> DriveLines:
         """Give what drives near motions, the first of which says in how many steps."""
         holding = self.holding
         quick = holding == "band-limited" and first.forces and first.pieces < 1
@@ -129,7 +129,7 @@ class ForcedDynamics(Dynamics):
             for z, end in zip(drives[0], ends.tolist(), strict=True)
         ]
         step = dt / fine
-        return Lines(
+        return DriveLines(
             np.array(values),
             np.array(before),
             ends,

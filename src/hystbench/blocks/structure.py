@@ -19,6 +19,8 @@ from hystbench.blocks.step import Sampling, Step, lines_of
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
+SHAPES = ("drive", "joint")
+"""Shapes of modes that no linear record tells: where it is driven, where forces act."""
 OUTPUTS = ("position", "velocity", "acceleration")
 _SHAPE = "Q^0.5 U^-0.5 s^-1"
 
@@ -40,7 +42,7 @@ class Structure(ForcedDynamics, name="structure", place="base"):
     the shape at the sensor. A mode that does not move the joint has a ``joint_i`` of
     zero. Without any ``joint`` the block is linear, and no force can act inside.
 
-    A force takes from all modes together what it does at the joint, so a passive one
+    The work of a force at the joint is the energy that all modes lose, so a passive one
     never gives energy. It is integrated as a ``mechanism`` is.
 
     References
@@ -202,7 +204,7 @@ class Structure(ForcedDynamics, name="structure", place="base"):
     def _balance(self, z: float, laws: FloatArray) -> FloatArray:
         """Find where the springs hold what drives it, next to where modes alone do."""
         driven, held = self._rests()
-        if not len(laws):
+        if not len(laws) or self.start == "rest":
             return np.asarray(z * driven)
         alone, spring = z * float(self.at_joint @ driven), 1.0 / self.receptance
         x, memory = np.zeros(1), np.zeros(len(laws))

@@ -7,12 +7,17 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import eigh
 
+from hystbench.blocks.drag import Drag
 from hystbench.blocks.force import against
 from hystbench.blocks.gain import Gain
+from hystbench.blocks.stiffness import Stiffness
 from hystbench.blocks.structure import Structure
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.effects.law import Law
+from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.insert_law import with_law
 from hystbench.gap.inside.joint import joints, structure
 from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.records.scored_samples import ScoredSamples
@@ -71,6 +76,41 @@ def test_a_base_as_a_structure_does_what_it_did(base):
         whole.residual, base.residual, atol=1e-9 * np.ptp(base.measured)
     )
     assert structure(base.with_chain((Gain(value=1.0),)), "position") is None
+
+
+@pytest.mark.parametrize("output", ["position", "velocity", "acceleration"])
+def test_so_does_one_with_a_real_pole_and_what_passes_at_once(base, output):
+    block = base.chain[0]
+    down = np.polymul(block.denominator, [1.0, 9.0])
+    up = np.polyadd(0.01 * down, np.polymul(block.numerator, [2.0, 30.0]))
+    more = replace(
+        block, numerator=tuple(up.tolist()), denominator=tuple(down.tolist())
+    )
+    start = base.with_chain((more, *base.chain[1:]))
+    start = replace(start, correction=None).settled()
+    whole = structure(start, output, others_too=True)
+    assert [x.name for x in whole.chain] == ["structure", "other-modes", "gain"]
+    np.testing.assert_allclose(
+        whole.residual, start.residual, atol=1e-8 * np.ptp(start.residual)
+    )
+
+
+def test_the_shapes_go_with_the_force_that_they_came_with(base):
+    whole = structure(base, "position")
+    begun = next(joints(whole))
+    spring = Law("cube", Stiffness(quadratic=0.0, cubic=1.0), ("cubic",))
+    damper = Law("drag", Drag(coefficient=1.0), ("coefficient",))
+    one = with_law(begun, "stiffness-hardening", spring)
+    assert one.freedom == 1 + 2
+    bare = without_effect(one, 0)
+    assert bare.chain[0] == whole.chain[0]
+    assert bare.free == whole.free
+    two = with_law(one, "drag", damper)
+    assert two.freedom == 1 + 2 + 1
+    for number in (0, 1):  # they stay with the other one
+        left = without_effect(two, number)
+        assert left.freedom == 1 + 2
+        assert left.chain[0] == begun.chain[0]
 
 
 def test_the_joint_is_begun_in_each_mode_and_in_both(base):

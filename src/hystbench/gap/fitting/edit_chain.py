@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.blocks.base import Block
+from hystbench.blocks.force import Force
 from hystbench.blocks.held import held_until_smooth
+from hystbench.blocks.structure import SHAPES, Structure
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.variant import Values, Variant
@@ -82,7 +84,21 @@ def without_effect(state: ModelState, number: int) -> ModelState:
             chain.append(gone.replaced)
     smooths = gone.smooths
     taken = held_until_smooth(chain, "zero-order") if smooths else tuple(chain)
-    return replace(state, added=rest).rearranged(taken, moved)
+    left = replace(state, added=rest).rearranged(taken, moved)
+    return _without_joint(left, gone.blocks[0] - 1) if gone.blocks[0] else left
+
+
+def _without_joint(state: ModelState, place: int) -> ModelState:
+    """Let the shapes of a joint go where no force is left behind its host."""
+    host, behind = state.chain[place], state.chain[place + 1 :]
+    shapes = [x for x in state.free if x.block == place and x.parameter in SHAPES]
+    acts = any(isinstance(block, Force) for block in behind[:1])
+    if acts or not (isinstance(host, Structure) and shapes):
+        return state
+    bare = replace(host, joint=())
+    chain = (*state.chain[:place], bare, *behind)
+    free = tuple(x for x in state.free if x not in shapes)
+    return replace(state, chain=chain, free=free)
 
 
 def _with_old_numbers(

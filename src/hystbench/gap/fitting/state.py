@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
+from hystbench.blocks.structure import SHAPES
 from hystbench.blocks.transfer_function import stable
 from hystbench.errors import InputError
 from hystbench.gap.effects.variant import Beside, Refused, Values
@@ -129,8 +130,9 @@ class ModelState:
 
     @property
     def freedom(self) -> float:
-        """Parameters that are charged."""
-        return sum(item.charge for item in self.added)
+        """Parameters that are charged: those of effects, and shapes at a joint."""
+        shapes = sum(free.parameter in SHAPES for free in self.free)
+        return sum(item.charge for item in self.added) + shapes
 
     @property
     def has_shape(self) -> bool:

@@ -1,4 +1,4 @@
-"""What forces can be put inside of, in a chain, and which numbers it has."""
+"""Hosts in a chain: the blocks that forces can be put inside of, and their numbers."""
 
 from __future__ import annotations
 
@@ -14,8 +14,6 @@ LINEAR = NUMBERS[:-1]
 """Numbers of the linear part of a mechanism."""
 MODES = ("stiffness", "damping", "modal_constant", "blend")
 """Numbers of each mode of a structure."""
-SHAPES = ("drive", "joint")
-"""Its shape where it is driven and where a force acts: no linear record tells them."""
 
 
 def host_of(state: ModelState) -> int:

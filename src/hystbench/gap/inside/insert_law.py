@@ -19,7 +19,7 @@ from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.average_force import relieved, spring_of
 from hystbench.gap.inside.host_places import host_of
-from hystbench.gap.inside.joint import has_no_joint, shapes_of
+from hystbench.gap.inside.joint import has_no_joint
 from hystbench.record import Record
 
 Laws = Mapping[str, Sequence[Law | Changed]]
@@ -142,10 +142,8 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
     """
     base: list[Any] = list(state.chain)
     place = 0 if law.place == "before" else len(base)
-    shapes = 0
     if law.place == "inside":
         host = host_of(state)
-        shapes = shapes_of(state, host)
         place = host + 1
         if law.stands_for:
             less = law.stands_for * spring_of(base[host])
@@ -158,8 +156,7 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
         low, high = law.ranges.get(name, (-np.inf, np.inf))
         free.append(Free(place, name, low=low, high=high))
     values: dict[str, Any] = {name: getattr(law.block, name) for name in law.free}
-    charge = float(len(law.free) + shapes)
-    item = Added(effect, law.place, law.form, (place,), values, charge)
+    item = Added(effect, law.place, law.form, (place,), values, float(len(law.free)))
     return replace(state, free=tuple(free), added=(*state.added, item))
 
 

@@ -2,7 +2,7 @@
 
 No linear record tells how far each mode moves it. So the shapes of the modes there are
 fitted together with the first force, begun with one mode alone or with two, and are
-charged as its numbers.
+charged as numbers are.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from itertools import combinations
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.force import Force
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
-from hystbench.blocks.structure import Structure
+from hystbench.blocks.structure import SHAPES, Structure
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.errors import InputError
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.inside.host_places import MODES, SHAPES
+from hystbench.gap.inside.host_places import MODES
 from hystbench.gap.inside.modes import (
     APART,
     coincide,
@@ -65,7 +65,7 @@ def structure(
         return None
     peaks = np.abs(residues / np.where(poles.real, poles.real, 1.0))
     modes: list[Mechanism] = []
-    direct, taken = direct_of(block), np.zeros(len(poles), dtype=bool)
+    through, taken = 0.0, np.zeros(len(poles), dtype=bool)
     for k in np.argsort(np.abs(poles)):
         if poles[k].imag <= 0 or peaks[k] <= APART * peaks.max():
             continue
@@ -73,14 +73,21 @@ def structure(
         if one is None:
             continue
         modes.append(one[0])
-        direct -= one[1]
+        through += one[1]
         taken |= np.isin(poles, (poles[k], poles[k].conj()))
     if len(modes) < 2:
         return None
+    whole = direct_of(block)
+    direct = whole - through
+    if abs(direct) <= APART * (abs(whole) + abs(through)):
+        direct = 0.0  # that is rounding
     rest: list[OtherModes] = []
     if not np.all(taken):
-        others = sum_of(block, poles[~taken], residues[~taken], direct)
-        rest, direct = [*one_by_one(others)] if others_too else [others], 0.0
+        try:
+            others = sum_of(block, poles[~taken], residues[~taken], direct)
+            rest, direct = [*one_by_one(others)] if others_too else [others], 0.0
+        except InputError:
+            return None  # so little damped that rounding makes it unstable
     own = _written(modes, block, direct)
     free = [Free(0, name, k) for name in MODES for k in range(len(modes))]
     free += [Free(0, "direct")] if direct else []
@@ -145,14 +152,3 @@ def joints(state: ModelState) -> Iterator[ModelState]:
 def has_no_joint(block: Block) -> bool:
     """Tell whether a block is a structure whose joint is not known."""
     return isinstance(block, Structure) and not block.joint
-
-
-def shapes_of(state: ModelState, place: int) -> int:
-    """Count the shapes that come with the first force in a structure at a place.
-
-    None if there is a force already, which they came with.
-    """
-    behind = state.chain[place + 1 :]
-    if behind and isinstance(behind[0], Force):
-        return 0
-    return sum(x.block == place and x.parameter in SHAPES for x in state.free)

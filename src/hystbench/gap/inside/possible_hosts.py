@@ -108,15 +108,14 @@ def hosts(
             if wanted("loose mass"):
                 yield from _loose(best.state, score, words)
             # Two masses that both swing are a structure that is driven at its joint.
-            further = further_modes_of(start)
-            if wanted("two masses") and len(further) < 2:
-                yield from _of_two(best, further, score)
+            if wanted("two masses") and _as_structure(start, quantities) is None:
+                yield from _of_two(best, further_modes_of(start), score)
     if not identified and all(isinstance(block, Store) for block in start.chain):
         words = "the base is stores already"
         yield Host(start, fitted(start, score), words, kind="stores")
         return
     if not identified and wanted("given"):
-        words = "the base holds a mechanism"
+        words = "the base holds what forces act in"
         same = own_mechanism(start)
         if same is None:
             words = (
@@ -126,12 +125,9 @@ def hosts(
         if same is not None:
             own = same, held_about(same), score, words, start.free, exact
             yield from as_given("given", *own)
-    moved = quantities.causality in ("force to motion", "unknown")
-    if not (moved and wanted("structure")):
-        return
-    known = quantities.output in MOTIONS
-    output = quantities.output if known else "position"
-    modes = structure(start, output, identified)
+    modes = None
+    if wanted("structure"):
+        modes = _as_structure(start, quantities, identified)
     words = "the modes of the base move one joint"
     if modes is not None and identified:
         best = fitted(modes, score)
@@ -139,6 +135,16 @@ def hosts(
     elif modes is not None:
         own = modes, modes, score, words, start.free, exact
         yield from as_given("structure", *own)
+
+
+def _as_structure(
+    start: ModelState, quantities: Quantities, others_too: bool = False
+) -> ModelState | None:
+    """Give a base as a structure where a force makes a motion."""
+    if quantities.causality not in ("force to motion", "unknown"):
+        return None
+    known = quantities.output in MOTIONS
+    return structure(start, quantities.output if known else "position", others_too)
 
 
 def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
