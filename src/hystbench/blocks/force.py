@@ -1,4 +1,4 @@
-"""Forces that act inside a ``mechanism``: what each of their blocks says."""
+"""Forces that act inside dynamics: what each of their blocks says."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Motion(NamedTuple):
 
 
 class Dynamics(HeldBlock):
-    """A block with a coordinate, which meets forces: a mechanism or an impedance."""
+    """A block whose motion meets forces: a mechanism, a structure or an impedance."""
 
     def check_meets_forces(self) -> None:
         """Raise InputError if no force can act inside."""
@@ -114,7 +114,7 @@ class Dynamics(HeldBlock):
 
 
 class Force(AttachedBlock, place="inside"):
-    """A force against the motion of the mechanism before it in the chain.
+    """A force against the motion of the dynamics before it in the chain.
 
     It depends on the position q and the velocity q', and may remember a distance.
     """
@@ -218,7 +218,7 @@ def against(
 
 @dataclass(frozen=True)
 class Driven:
-    """A mechanism or an impedance together with the forces inside it."""
+    """Dynamics together with the forces inside them."""
 
     host: Dynamics
     forces: tuple[Force, ...] = ()

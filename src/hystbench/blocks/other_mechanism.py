@@ -7,10 +7,9 @@ from hystbench.blocks.superposed import BesideBlock
 class OtherMechanism(Mechanism, BesideBlock, name="other-mechanism", place="inside"):
     """A mechanism with the input of the one before it, added to its output.
 
-    A structure has a joint that moves in several of its modes: each of them is a
-    mechanism, and the forces that follow it in the chain act against its own motion.
-    Modes are coupled only by what drives them: a force that depends on the sum of their
-    motions is told apart mode by mode, as in a nonlinear modal model [1]_.
+    The forces that follow it in the chain act against its own motion, as in a nonlinear
+    modal model [1]_: modes are coupled only by what drives them. A force that depends
+    on the sum of their motions acts inside a ``structure``.
 
     References
     ----------

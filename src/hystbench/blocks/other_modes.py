@@ -1,14 +1,14 @@
-"""Block ``other-modes``: what else a force moves beside a mechanism."""
+"""Block ``other-modes``: what else a force moves beside a mechanism or structure."""
 
 from hystbench.blocks.superposed import BesideBlock
 from hystbench.blocks.transfer_function import TransferFunction
 
 
 class OtherModes(TransferFunction, BesideBlock, name="other-modes", place="inside"):
-    """Linear response to what drives the mechanism before it, added to its output.
+    """Linear response to what drives the block before it, added to its output.
 
-    A structure of several modes is a ``mechanism`` for one of them, in which forces
-    may act, and the transfer function of all others here (modal superposition [1]_).
+    Modes in which forces may act are a ``mechanism`` or a ``structure``, and all others
+    are a transfer function here (modal superposition [1]_).
 
     References
     ----------

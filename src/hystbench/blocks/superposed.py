@@ -1,4 +1,4 @@
-"""Blocks beside a mechanism: they have its input and are added to its output."""
+"""Blocks beside dynamics with forces: they have its input, and add to its output."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ _KEPT: OrderedDict[tuple[int, float, Simulated], _Response] = OrderedDict()
 
 
 class BesideBlock(AttachedBlock, place="inside"):
-    """A block with the input of the mechanism before it, added to its output.
+    """A block with the input of the dynamics before it, added to their output.
 
-    In the chain it stands behind the mechanism's forces.
+    In the chain it stands behind the forces inside them.
     """
 
     hosts = "mechanism, structure or a force inside one"
 
     def attach(self, before: Any) -> Superposed:
-        """Add the response to the output of the mechanism before."""
+        """Add the response to the output of what stands before."""
         host = before.host if isinstance(before, Driven) else before
         if not isinstance(host, ForcedDynamics | Superposed):
             raise InputError(

@@ -29,7 +29,7 @@ def as_given(
     The numbers of a given base are known, unless it says that some are free. That known
     ones are wrong all the same has to pay as a further effect does. Numbers that the
     base states only roughly are so in the host too: ``about`` holds them by their
-    tolerances. A mode is no number of a base, and its damping is seldom known.
+    tolerances. Modes are no numbers of a base, and their damping is seldom known.
     """
     if free:
         known = all(item.given is not None for item in free)
