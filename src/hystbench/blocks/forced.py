@@ -109,20 +109,24 @@ class ForcedDynamics(Dynamics):
         quick = holding == "band-limited" and first.forces and first.pieces < 1
         if quick and self.parts(dt, first.forces, first.pieces) == 1:
             holding = "linear"  # finer lines would be shorter than a step
-        values: list[FloatArray] = []
-        before: list[list[float]] = []
-        for own in drives:
-            same = all(x is z for x, z in zip(own, drives[0], strict=True))
-            if values and same:
+
+        def begun(own: Signals) -> tuple[list[FloatArray], list[float], int]:
+            paths = [path_from(z, self.start) for z in own]
+            held = [held_lines(path, holding) for path, _ in paths]
+            corners = [lines for lines, _ in held]
+            return corners, [rested for _, rested in paths], held[0][1]
+
+        corners, rested, fine = begun(drives[0])
+        values, before = [np.concatenate(corners)], [rested]
+        for own in drives[1:]:
+            if all(x is z for x, z in zip(own, drives[0], strict=True)):
                 values.append(values[0])
-                before.append(before[0])
-                continue
-            begun = [path_from(z, self.start) for z in own]
-            held = [held_lines(path, holding) for path, _ in begun]
-            values.append(np.concatenate([corners for corners, _ in held]))
-            before.append([rested for _, rested in begun])
-            if len(values) == 1:
-                lengths, fine = [len(corners) for corners, _ in held], held[0][1]
+                before.append(rested)
+            else:
+                others, its, _ = begun(own)
+                values.append(np.concatenate(others))
+                before.append(its)
+        lengths = np.array([len(x) for x in corners])
         ends = np.cumsum(lengths, dtype=np.int64)
         shown = [
             slice(end - (len(z) - 1) * fine - 1, end, fine)
@@ -133,7 +137,7 @@ class ForcedDynamics(Dynamics):
             np.array(values),
             np.array(before),
             ends,
-            ends - np.array(lengths),
+            ends - lengths,
             shown,
             step,
             self.parts(step, first.forces, first.pieces),

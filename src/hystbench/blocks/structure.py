@@ -120,9 +120,12 @@ class Structure(ForcedDynamics, name="structure", place="base"):
             (host.moving, each.forces, *map(id, own))
             for host, each, own in zip(hosts, every, drives, strict=True)
         ]
-        first = {key: k for k, key in reversed([*enumerate(moves)])}
-        places = sorted(first.values())
-        number = {moves[k]: i for i, k in enumerate(places)}
+        places: list[int] = []
+        number: dict[Any, int] = {}
+        for k, key in enumerate(moves):
+            if key not in number:
+                number[key] = len(places)
+                places.append(k)
         moved = [hosts[k] for k in places]
         laws = np.array([rows(every[k].forces) for k in places])
         driven = self.lines(every[0], [drives[k] for k in places], dt)
@@ -177,10 +180,10 @@ class Structure(ForcedDynamics, name="structure", place="base"):
         joint, weights = self.at_joint, self._shown()
         q, v = np.hsplit(modes, 2)
         with np.errstate(over="ignore", invalid="ignore"):  # it may have run away
-            a = np.outer(z, self.drive) - np.outer(force, joint)
-            a -= v * self.damping + q * self.stiffness
+            driven = z * float(joint @ self.drive) - force * float(joint @ joint)
+            curved = driven - v @ (joint * self.damping) - q @ (joint * self.stiffness)
             shown = modes @ weights[:-2] + weights[-2] * force + weights[-1] * z
-            return Motion(q @ joint, v @ joint, a @ joint, force, shown)
+            return Motion(q @ joint, v @ joint, curved, force, shown)
 
     def _shown(self) -> FloatArray:
         """Weights in the output of q and q' of all modes, of F and of what drives."""

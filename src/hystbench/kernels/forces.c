@@ -392,8 +392,8 @@ static double hb_alone(const double *step, double from, double to, double q, dou
 }
 
 /* v after the part, where its way is known: what it lacks of that alone tells the force. */
-static inline double hb_after(const double *step, double from, double to, double q, double v,
-                       double way)
+static inline double hb_after(const double *step, double from, double to, double q,
+                              double v, double way)
 {
     const double held = (hb_alone(step, from, to, q, v) - way) / (step[2] + step[3]);
     return step[4] * q + step[5] * v + step[6] * (from - held) + step[7] * (to - held);
@@ -401,8 +401,8 @@ static inline double hb_after(const double *step, double from, double to, double
 
 /* The way of a part h of an interval from q and v, and v after it. */
 static inline double hb_over(int count, const double *forces, const double *memory,
-                      const double *step, double h, double from, double to, double q,
-                      double v, double *after)
+                             const double *step, double h, double from, double to,
+                             double q, double v, double *after)
 {
     const double gives = step[2] + step[3];
     const double alone = hb_alone(step, from, to, q, v);
@@ -417,8 +417,8 @@ static inline double hb_over(int count, const double *forces, const double *memo
  * the way is not its mean over the time, so that the part is taken in eighths.
  * Returns how many pieces it was taken in, and the way of each. */
 static inline int hb_moved(int count, const double *forces, double *memory,
-                    const double *step, double h, double from, double to, double *q,
-                    double *v, double ways[8])
+                           const double *step, double h, double from, double to,
+                           double *q, double *v, double ways[8])
 {
     double after;
     ways[0] = hb_over(count, forces, memory, step, h, from, to, *q, *v, &after);
@@ -438,8 +438,8 @@ static inline int hb_moved(int count, const double *forces, double *memory,
 
 /* Where springs hold a force p, next to where the linear one alone does; NaN where they
  * nowhere do. memory is all zero: friction holds nothing there yet. */
-static inline double hb_balance(double stiffness, double p, int count, const double *forces,
-                         const double *memory)
+static inline double hb_balance(double stiffness, double p, int count,
+                                const double *forces, const double *memory)
 {
     const double q = p / stiffness;
     return q + hb_way_of(count, forces, memory, q, 0, 1 / stiffness, 0);

@@ -23,8 +23,8 @@ static void follow(int modes, int count, index_t near, struct structure *all, do
     hb_miss(count, (m)->forces, memory, hb_at_joint(modes, (m)->table, motion), alone,   \
             NUMBERS(m)[2], h / pieces, way)
 #define MOVE(m, motion, memory, alone, way)                                             \
-    hb_modes_after(modes, NUMBERS(m), motion, AT(m, i), AT(m, i + 1),                      \
-                   hb_held(NUMBERS(m), alone, way));                                       \
+    hb_modes_after(modes, NUMBERS(m), motion, AT(m, i), AT(m, i + 1),                   \
+                   hb_held(NUMBERS(m), alone, way));                                    \
     hb_move_memories(count, (m)->forces, hb_at_joint(modes, (m)->table, motion + modes), \
                      way, h / pieces, memory)
         const double way = ways[i], alone = ALONE(all, motion);
@@ -105,8 +105,8 @@ EXPORT void hb_structure(index_t n, index_t records, const index_t *ends, index_
         for (index_t i = 0; i <= near; i++) {
             const index_t at = begin + n * i;
             all[i] = (struct structure){
-                table + (25 * modes + 6) * i, forces + 6 * count * i, p + at, memory + count * i,
-                motion + 2 * modes * at, out + at, now + 2 * modes * i};
+                table + (25 * modes + 6) * i, forces + 6 * count * i, p + at,
+                memory + count * i, motion + 2 * modes * at, out + at, now + 2 * modes * i};
         }
         for (index_t i = 0; i < count * (near + 1); i++) memory[i] = 0;
         move(ends[r] - begin, (int)modes, near, parts, dt, ramp, (int)count, all, before,

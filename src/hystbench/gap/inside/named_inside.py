@@ -194,7 +194,7 @@ def named_inside(
         alone = found[0].state if identified else on_all.state(alone)
     re_tuned = found[0].state
     state = in_short_steps(replace(best.state, offered=start.offered), score_of_all)
-    alone = replace(alone, offered=start.offered)
+    alone = replace(alone, offered=start.offered).settled()
     before, after = lefts((start, alone), floor_rms, base.output.unit)
     sentence = (
         f"{host.words}, and effects act inside it (without them it leaves {after} rms "

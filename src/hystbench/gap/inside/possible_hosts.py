@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
+from functools import cache
 from itertools import product
 from typing import Any
 
@@ -76,6 +77,14 @@ def hosts(
     def wanted(*some: Kind) -> bool:
         return not kinds or any(kind in kinds for kind in some)
 
+    @cache
+    def modes() -> ModelState | None:
+        """Give the base as a structure where a force makes a motion."""
+        if quantities.causality not in ("force to motion", "unknown"):
+            return None
+        known = quantities.output in MOTIONS
+        return structure(start, quantities.output if known else "position", identified)
+
     about = quantities, identified, score
     delay = start.chain[0]
     if identified and isinstance(delay, InputDelay):
@@ -108,7 +117,7 @@ def hosts(
             if wanted("loose mass"):
                 yield from _loose(best.state, score, words)
             # Two masses that both swing are a structure that is driven at its joint.
-            if wanted("two masses") and _as_structure(start, quantities) is None:
+            if wanted("two masses") and modes() is None:
                 yield from _of_two(best, further_modes_of(start), score)
     if not identified and all(isinstance(block, Store) for block in start.chain):
         words = "the base is stores already"
@@ -125,26 +134,14 @@ def hosts(
         if same is not None:
             own = same, held_about(same), score, words, start.free, exact
             yield from as_given("given", *own)
-    modes = None
-    if wanted("structure"):
-        modes = _as_structure(start, quantities, identified)
+    whole_base = modes() if wanted("structure") else None
     words = "the modes of the base move one joint"
-    if modes is not None and identified:
-        best = fitted(modes, score)
+    if whole_base is not None and identified:
+        best = fitted(whole_base, score)
         yield Host(best.state, best, words, kind="structure")
-    elif modes is not None:
-        own = modes, modes, score, words, start.free, exact
+    elif whole_base is not None:
+        own = whole_base, whole_base, score, words, start.free, exact
         yield from as_given("structure", *own)
-
-
-def _as_structure(
-    start: ModelState, quantities: Quantities, others_too: bool = False
-) -> ModelState | None:
-    """Give a base as a structure where a force makes a motion."""
-    if quantities.causality not in ("force to motion", "unknown"):
-        return None
-    known = quantities.output in MOTIONS
-    return structure(start, quantities.output if known else "position", others_too)
 
 
 def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
