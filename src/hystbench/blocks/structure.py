@@ -136,6 +136,9 @@ class Structure(ForcedDynamics, name="structure", place="base"):
             motion[k, driven.begins, :count] = [
                 host._balance(z, laws[k]) for z in driven.before[k].tolist()
             ]
+        tables = _tables(moved, driven.step / driven.parts)
+        beside = np.zeros((tables.shape[1], kernels.padded(len(moved) - 1)))
+        beside[:, : len(moved) - 1] = tables[1:].T
         kernels.call(
             "hb_structure",
             driven.count,
@@ -146,10 +149,10 @@ class Structure(ForcedDynamics, name="structure", place="base"):
             driven.parts,
             driven.step,
             driven.ramp,
-            _tables(moved, driven.step / driven.parts),
+            tables[0],
+            beside,
             laws.shape[1],
             laws,
-            np.empty(laws.shape[:2]),
             driven.values,
             motion,
             force,

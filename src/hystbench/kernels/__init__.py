@@ -49,7 +49,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_mechanism": (None, "iiaiiffaiaaaaaa"),
     "hb_forces": (None, "ifiaaaaa"),
     "hb_settle": (None, "ffiaaa"),
-    "hb_structure": (None, "iiaiiiffaiaaaaa"),
+    "hb_structure": (None, "iiaiiiffaaiaaaa"),
     "hb_store": (None, "iifffffaaaa"),
     "hb_store_near": (None, "iifffffaaaaiaaaaaaa"),
     "hb_preisach": (None, "iifaaaaa"),

@@ -3,113 +3,276 @@
 #include "joint.c"
 #include "lanes.h"
 
-/* One of several structures with numbers near each other. */
-struct structure {
-    const double *table, *forces, *p;
-    double *memory, *motion, *out, *now;
-    double from, to; /* what drives it over a part */
+/* Structures with numbers near the first one's. Of each array the numbers of all of them
+ * lie beside one another and fill whole registers: several are moved at a time. */
+struct nearby {
+    index_t near, wide;               /* how many they are, and what a row holds */
+    const double *table;              /* of joint.c, and its numbers of a part */
+    const double *forces;             /* rows of each, one structure behind another */
+    double *q, *memory;               /* q of all modes, then v; memory of all forces */
+    double *from, *to;                /* what drives them over a part */
+    double *alone, *x, *v, *way, *sum; /* of the joint */
+    const int *own_row;               /* forces that are not linearised, -1 behind */
 };
 
-/* Moves structures near the first over a part, of which the way in each piece is known,
- * as `follow` in mechanism.c does. motion and memory are those of the first before it. */
-static void follow(int modes, int count, index_t near, struct structure *all, double h,
-                   int pieces, const double *ways, double *motion, double *memory)
+#define EACH(k, all) for (index_t k = 0; k < (all)->wide; k += LANES)
+
+/* What a law depends on, beside the way or the velocity: the place, and its memory. */
+static int minds_place(int law) { return law <= 2 || law == 6; }
+static int minds_memory(int law)
 {
-    for (int i = 0; i < pieces; i++) {
-#define AT(m, j) ((m)->from + (j) * ((m)->to - (m)->from) / pieces)
-#define NUMBERS(m) ((m)->table + hb_part(modes, pieces > 1))
-#define ALONE(m, motion) hb_joint_alone(modes, NUMBERS(m), motion, AT(m, i), AT(m, i + 1))
-#define MISS(m, motion, memory, alone, way)                                             \
-    hb_miss(count, (m)->forces, memory, hb_at_joint(modes, (m)->table, motion), alone,   \
-            NUMBERS(m)[2], h / pieces, way)
-#define MOVE(m, motion, memory, alone, way)                                             \
-    hb_modes_after(modes, NUMBERS(m), motion, AT(m, i), AT(m, i + 1),                   \
-                   hb_held(NUMBERS(m), alone, way));                                    \
-    hb_move_memories(count, (m)->forces, hb_at_joint(modes, (m)->table, motion + modes), \
-                     way, h / pieces, memory)
-        const double way = ways[i], alone = ALONE(all, motion);
-        const double missed = MISS(all, motion, memory, alone, way);
-        const double bit = 1e-7 * (fabs(alone) + fabs(way));
-        const double grown = MISS(all, motion, memory, alone, way + bit) - missed;
-        const double slope = bit > 0 ? grown / bit : 1;
-        for (struct structure *m = all + 1; m <= all + near; m++) {
-            const double its = ALONE(m, m->now);
-            const double own =
-                way - (MISS(m, m->now, m->memory, its, way) - missed) / slope;
-            MOVE(m, m->now, m->memory, its, own);
+    return law == 3 || law == 5 || law == 7 || law == 9 || law == 11;
+}
+
+/* A force: its mean over a way in a time h; without a time itself, at a velocity. */
+static double force_at(const double *f, double x, double way, double h, const double *memory)
+{
+    return h > 0 ? hb_mean_force(f, x, way, h, memory) : hb_force(f, x, way, memory);
+}
+
+/* A small step towards zero: what is held at the end of its reach comes free of it. */
+static double inwards(double z, double beside)
+{
+    return z > 0 ? -1e-7 * (z + fabs(beside)) : 1e-7 * (fabs(z) + fabs(beside)) + 1e-300;
+}
+
+/* Forces at places x of near structures, by derivatives of those of the first at x0.
+ * ways: velocities, which differ; NULL for a way that all have. Where a force has numbers
+ * of its own, or an attached mass, it is computed. Gives the sum of the first and what a
+ * longer way does to it. */
+static double near_forces(int count, const double *forces, const double *memory, double x0,
+                          double way, double h, const struct nearby *all,
+                          const double *ways, double *longer)
+{
+    const index_t wide = all->wide;
+    double sum = 0, *sums = all->sum, by_place = 0, by_way = 0;
+    const double beside = h > 0 ? way : 0; /* else it is a velocity */
+    const double along = inwards(x0, beside), bit = inwards(way, way);
+    double each[count + 1], by_memory[count + 1];
+    for (int r = 0; r < count; r++) {
+        const double *f = forces + 6 * r;
+        const int law = (int)f[0];
+        each[r] = force_at(f, x0, way, h, memory + r);
+        sum += each[r];
+        by_way += (force_at(f, x0, way + bit, h, memory + r) - each[r]) / bit;
+        if (minds_place(law))
+            by_place += (force_at(f, x0 + along, way, h, memory + r) - each[r]) / along;
+        by_memory[r] = 0;
+        if (minds_memory(law)) {
+            const double step = inwards(memory[r], beside), other = memory[r] + step;
+            by_memory[r] = (force_at(f, x0, way, h, &other) - each[r]) / step;
         }
-        MOVE(all, motion, memory, alone, way);
-#undef MOVE
-#undef MISS
-#undef ALONE
-#undef NUMBERS
-#undef AT
+    }
+    *longer = by_way;
+    EACH(k, all) {
+        lanes found = sum + by_place * (load(all->x + k) - x0);
+        if (ways) found += by_way * (load(ways + k) - way);
+        for (int r = 0; r < count; r++)
+            found += by_memory[r] * (load(all->memory + r * wide + k) - memory[r]);
+        store(sums + k, found);
+    }
+    for (const int *own = all->own_row; *own >= 0; own++) {
+        const int i = *own / count, r = *own % count;
+        const double *f = all->forces + 6 * *own;
+        const double its[2] = {all->memory[r * wide + i],
+                               r + 1 < count ? all->memory[(r + 1) * wide + i] : 0};
+        sums[i] += force_at(f, x0, way, h, its) - each[r] -
+                   by_memory[r] * (its[0] - memory[r]);
+    }
+    return sum;
+}
+
+/* Moves the memories of near structures over a piece in which the first, whose memory is
+ * that before it, goes a way to a velocity. */
+static void near_memories(int count, const double *forces, double *memory, double way,
+                          double v, double h, const struct nearby *all, double *moved)
+{
+    const index_t wide = all->wide;
+    double *each = moved;
+    for (const int *own = all->own_row; *own >= 0; own++, each += 2) {
+        const int i = *own / count, r = *own % count;
+        const double *f = all->forces + 6 * *own;
+        const int numbers = (int)f[0] == 10 ? 2 : 1; /* an attached mass has a speed too */
+        for (int j = 0; j < numbers; j++) each[j] = all->memory[(r + j) * wide + i];
+        hb_move_memories(numbers, f, all->v[i], all->way[i], h, each);
+    }
+    for (int r = 0; r < count; r++) {
+        const double *f = forces + 6 * r, was = memory[r];
+        if (!minds_memory((int)f[0])) continue;
+        const double step = inwards(was, way), bit = inwards(way, way), faster = inwards(v, v);
+        const double is = hb_remembered(f, way, v, h, was);
+        const double by_memory = (hb_remembered(f, way, v, h, was + step) - is) / step;
+        const double by_way = (hb_remembered(f, way + bit, v, h, was) - is) / bit;
+        const double by_v =
+            (int)f[0] == 3 ? (hb_remembered(f, way, v + faster, h, was) - is) / faster : 0;
+        double *its = all->memory + r * wide;
+        EACH(k, all)
+            store(its + k, is + by_memory * (load(its + k) - was) +
+                               by_way * (load(all->way + k) - way) +
+                               by_v * (load(all->v + k) - v));
+    }
+    each = moved;
+    for (const int *own = all->own_row; *own >= 0; own++, each += 2) {
+        const int i = *own / count, r = *own % count;
+        const int numbers = (int)all->forces[6 * *own] == 10 ? 2 : 1;
+        for (int j = 0; j < numbers; j++) all->memory[(r + j) * wide + i] = each[j];
+    }
+    hb_move_memories(count, forces, v, way, h, memory);
+}
+
+/* What joints do where the modes of each structure do so much. */
+static void near_joints(int modes, const struct nearby *all, const double *of, double *found)
+{
+    EACH(k, all) {
+        lanes sum = {0};
+        for (int j = 0; j < modes; j++)
+            sum += load(all->table + j * all->wide + k) * load(of + j * all->wide + k);
+        store(found + k, sum);
     }
 }
 
-/* Shows where a structure is at a sample, and what force acts there. */
-static void show(int modes, int count, const struct structure *m, index_t k)
+/* Moves structures near the first over a part, of which the way in each piece is known.
+ * Theirs is that by which a step of Newton's method misses the least: so they stick,
+ * slide and turn where the first does, and differences of them are its derivatives.
+ * motion and memory are those of the first before it. */
+static void follow(int modes, int count, const double *table, const double *forces, double h,
+                   int pieces, const double *ways, double from, double to, double *motion,
+                   double *memory, struct nearby *all, double *moved)
 {
-    for (int i = 0; i < 2 * modes; i++) m->motion[2 * modes * k + i] = m->now[i];
-    m->out[k] = hb_sum_of_forces(count, m->forces, hb_at_joint(modes, m->table, m->now),
-                                 hb_at_joint(modes, m->table, m->now + modes), m->memory);
+    const index_t wide = all->wide, row = modes * wide;
+    const int at = hb_part(modes, pieces > 1);
+    const double *part = table + at, *parts = all->table + at * wide;
+    for (int i = 0; i < pieces; i++) {
+        const double begins = (double)i / pieces, ends = (double)(i + 1) / pieces;
+        const double now = from + begins * (to - from), then = from + ends * (to - from);
+        const double way = ways[i], alone = hb_joint_alone(modes, part, motion, now, then);
+        near_joints(modes, all, all->q, all->x);
+        double longer = 0;
+        const double x = hb_at_joint(modes, table, motion);
+        const double sum = near_forces(count, forces, memory, x, way, h / pieces, all, NULL,
+                                       &longer);
+        const double missed = way - alone + part[2] * sum, slope = 1 + part[2] * longer;
+        EACH(k, all) {
+            const lanes first = load(all->from + k), rise = load(all->to + k) - first;
+            const lanes begin = first + begins * rise, end = first + ends * rise;
+            lanes its = load(parts + k) * begin + load(parts + wide + k) * end;
+            for (int j = 0; j < 2 * modes; j++)
+                its += load(parts + (3 + j) * wide + k) * load(all->q + j * wide + k);
+            const lanes gives = load(parts + 2 * wide + k);
+            const lanes miss = way - its + gives * load(all->sum + k);
+            const lanes own = way - (miss - missed) / slope;
+            /* The mean force that makes the joint go its way; it moves nothing without. */
+            const lanes held = (its - own) / (gives + 1e-200);
+            store(all->way + k, own);
+            for (int j = 0; j < modes; j++) {
+                double *q = all->q + j * wide + k, *v = q + row;
+                const double *a = parts + (3 + 2 * modes + j) * wide + k, *b = a + 5 * row;
+                const lanes was = load(q), fast = load(v);
+                store(q, load(a) * was + load(a + row) * fast + load(a + 2 * row) * begin +
+                             load(a + 3 * row) * end - load(a + 4 * row) * held);
+                store(v, load(b) * was + load(b + row) * fast + load(b + 2 * row) * begin +
+                             load(b + 3 * row) * end - load(b + 4 * row) * held);
+            }
+        }
+        near_joints(modes, all, all->q + row, all->v);
+        hb_modes_after(modes, part, motion, now, then, hb_held(part, alone, way));
+        near_memories(count, forces, memory, way, hb_at_joint(modes, table, motion + modes),
+                      h / pieces, all, moved);
+    }
 }
 
-/* Moves near structures through a record, each from its first motion. */
-static void move(index_t n, int modes, index_t near, index_t parts, double dt, double ramp,
-                 int count, struct structure *all, double *before, double *memory)
+/* Moves a structure and those near it through a record, each from its first motion. */
+static void move(index_t n, int modes, index_t parts, double dt, double ramp, int count,
+                 const double *table, const double *forces, double *memory, const double *p,
+                 double *motion, double *out, index_t whole, struct nearby *all,
+                 double *before, double *moved)
 {
     const double h = dt / parts;
-    double ways[8];
-    for (index_t i = 0; i <= near; i++) {
-        for (int j = 0; j < 2 * modes; j++) all[i].now[j] = all[i].motion[j];
-        show(modes, count, all + i, 0);
+    const index_t near = all->near, wide = all->wide, size = 2 * modes;
+    double ways[8], longer, *remembered = before + size, now[size];
+    for (int j = 0; j < size; j++) {
+        now[j] = motion[j];
+        for (index_t i = 0; i < near; i++)
+            all->q[j * wide + i] = motion[size * whole * (i + 1) + j];
     }
-    index_t k = 0;
-    for (; k + 1 < n; k++) {
+    for (index_t k = 0;; k++) {
+        for (int j = 0; j < size; j++) motion[size * k + j] = now[j];
+        const double x = hb_at_joint(modes, table, now);
+        const double v = hb_at_joint(modes, table, now + modes);
+        if (near) {
+            near_joints(modes, all, all->q, all->x);
+            near_joints(modes, all, all->q + modes * wide, all->v);
+            out[k] = near_forces(count, forces, memory, x, v, 0, all, all->v, &longer);
+            for (index_t i = 0; i < near; i++) {
+                double *its = motion + size * (whole * (i + 1) + k);
+                for (int j = 0; j < size; j++) its[j] = all->q[j * wide + i];
+                out[whole * (i + 1) + k] = all->sum[i];
+            }
+        } else {
+            out[k] = hb_sum_of_forces(count, forces, x, v, memory);
+        }
+        if (k + 1 == n) return;
+        const double slope = ramp * (p[k + 1] - p[k]) / parts;
         int runs_away = 0;
         for (index_t s = 0; s < parts && !runs_away; s++) {
-            for (index_t i = 0; i <= near; i++) {
-                const double now = all[i].p[k], slope = ramp * (all[i].p[k + 1] - now) / parts;
-                all[i].from = now + s * slope, all[i].to = all[i].from + slope;
+            const double from = p[k] + s * slope, to = from + slope;
+            for (int i = 0; i < count; i++) remembered[i] = memory[i];
+            const int pieces = hb_joint_moved(modes, table, count, forces, memory, h, from,
+                                              to, now, before, ways);
+            for (index_t i = 0; i < near; i++) {
+                const double *its = p + whole * (i + 1) + k;
+                const double rise = ramp * (its[1] - its[0]) / parts;
+                all->from[i] = its[0] + s * rise, all->to[i] = all->from[i] + rise;
             }
-            for (int i = 0; i < count; i++) memory[i] = all->memory[i];
-            const int pieces =
-                hb_joint_moved(modes, all->table, count, all->forces, all->memory, h,
-                               all->from, all->to, all->now, before, ways);
             if (near)
-                follow(modes, count, near, all, h, pieces, ways, before, memory);
-            for (int i = 0; i < 2 * modes; i++) runs_away |= !(fabs(all->now[i]) < 1e100);
+                follow(modes, count, table, forces, h, pieces, ways, from, to, before,
+                       remembered, all, moved);
+            for (int j = 0; j < size; j++) runs_away |= !(fabs(now[j]) < 1e100);
         }
-        if (runs_away) break;
-        for (index_t i = 0; i <= near; i++) show(modes, count, all + i, k + 1);
+        if (!runs_away) continue;
+        for (index_t i = 0; i <= near; i++)
+            for (index_t j = k + 1; j < n; j++) {
+                for (int l = 0; l < size; l++) motion[size * (whole * i + j) + l] = NAN;
+                out[whole * i + j] = NAN;
+            }
+        return;
     }
-    for (index_t i = 0; i <= near; i++)
-        for (index_t j = k + 1; j < n; j++) {
-            for (int l = 0; l < 2 * modes; l++) all[i].motion[2 * modes * j + l] = NAN;
-            all[i].out[j] = NAN;
-        }
 }
 
 /* Motions of the modes at the samples, a row each, and the force F, from the motion in
  * the first row of each record. Records, parts, ramp, count and near are those of
- * hb_mechanism, and so is what is done over a part; table is that of joint.c. */
+ * hb_mechanism, and so is what is done over a part; table is that of joint.c, and tables
+ * that of the structures near the first, a row for each of its numbers, filled with
+ * zeros to a multiple of WIDTH. */
 EXPORT void hb_structure(index_t n, index_t records, const index_t *ends, index_t modes,
                          index_t near, index_t parts, double dt, double ramp,
-                         const double *table, index_t count, const double *forces,
-                         double *memory, const double *p, double *motion, double *out)
+                         const double *table, const double *tables, index_t count,
+                         const double *forces, const double *p, double *motion, double *out)
 {
-    struct structure all[near + 1];
-    double now[2 * modes * (near + 1)], before[2 * modes], remembered[count + 1];
-    for (index_t r = 0, begin = 0; r < records; begin = ends[r++]) {
-        for (index_t i = 0; i <= near; i++) {
-            const index_t at = begin + n * i;
-            all[i] = (struct structure){
-                table + (25 * modes + 6) * i, forces + 6 * count * i, p + at,
-                memory + count * i, motion + 2 * modes * at, out + at, now + 2 * modes * i};
+    const index_t size = 2 * modes;
+    double memory[count + 1], before[size + count + 1];
+    const index_t wide = (near + WIDTH - 1) / WIDTH * WIDTH;
+    double rows[(size + count + 7) * wide + 1], moved[2 * count * near + 1];
+    int own[count * near + 1], *last = own;
+    for (index_t i = 0; i < near; i++)
+        for (index_t r = 0; r < count; r++) {
+            const double *f = forces + 6 * r, *its = f + 6 * count * (i + 1);
+            int differs = (int)f[0] == 10;
+            for (int j = 0; j < 6; j++) differs |= f[j] != its[j];
+            if (differs) *last++ = (int)(count * i + r);
         }
-        for (index_t i = 0; i < count * (near + 1); i++) memory[i] = 0;
-        move(ends[r] - begin, (int)modes, near, parts, dt, ramp, (int)count, all, before,
-             remembered);
+    *last = -1;
+    double *at = rows;
+    for (index_t i = 0; i < (size + count + 7) * wide; i++) at[i] = 0;
+    struct nearby all = {near, wide, tables, forces + 6 * count, at, at + size * wide};
+    at += (size + count) * wide;
+    double **each[] = {&all.from, &all.to, &all.alone, &all.x, &all.v, &all.way, &all.sum};
+    for (int j = 0; j < 7; j++, at += wide) *each[j] = at;
+    all.own_row = own;
+    for (index_t r = 0, begin = 0; r < records; begin = ends[r++]) {
+        for (index_t i = 0; i < count; i++) memory[i] = 0;
+        for (index_t i = 0; i < count * wide; i++) all.memory[i] = 0;
+        move(ends[r] - begin, (int)modes, parts, dt, ramp, (int)count, table, forces, memory,
+             p + begin, motion + size * begin, out + begin, n, &all, before, moved);
     }
 }

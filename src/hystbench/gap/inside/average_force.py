@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.force import Force, against
+from hystbench.blocks.force import Dynamics, Force, against
+from hystbench.blocks.held import Hold
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.structure import Structure
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.host_places import host_of
+from hystbench.gap.simulation.shared import Same
+from hystbench.gap.simulation.simulation import Simulation
+from hystbench.record import FloatArray
 
 REMAINS = 0.05
 """Of a spring or a damper, at least, where a force begins that does its work."""
@@ -52,14 +57,14 @@ def evened(state: ModelState) -> ModelState:
     own = chain[number + 1 :]
     others = tuple(x for x in own if isinstance(x, Force) and x is not law)
     square, product = np.zeros((3, 3)), np.zeros(3)
-    for record, z in zip(state.records, state.simulation.driving(number), strict=True):
-        way = host.motion(z, record.dt, others)
-        q, v = (np.ascontiguousarray(x) for x in (way.position, way.velocity))
+    dts = [record.dt for record in state.records]
+    ways = _ways(state.chain[: number + 1], others, Same(state.records), state.hold)
+    for dt, (q, v) in zip(dts, ways, strict=True):
         place_counts = q if spring_of(host) else np.zeros(len(q))
         columns = np.column_stack([place_counts, v, np.ones(len(q))])
         alike = 1.0 / max(float(np.sum(v**2)), 1.0 / HUGE)  # as records are weighed
         square += alike * columns.T @ columns
-        product += alike * columns.T @ against((law,), q, v, record.dt)
+        product += alike * columns.T @ against((law,), q, v, dt)
     sizes = np.sqrt(np.maximum(np.diag(square), 1.0 / HUGE))
     if not (np.all(np.isfinite(square)) and np.all(np.isfinite(product))):
         return state
@@ -68,6 +73,26 @@ def evened(state: ModelState) -> ModelState:
     if max(abs(spring), abs(damper)) > HUGE:
         return state  # the host all but runs away
     return relieved(state, number, float(spring), float(damper))
+
+
+@lru_cache(maxsize=1)
+def _ways(
+    chain: tuple[Block, ...], others: tuple[Force, ...], given: Same, hold: Hold
+) -> list[tuple[FloatArray, FloatArray]]:
+    """Give q and v in each record of a host, the last of a chain: laws share them."""
+    (records,) = given.objects
+    *_, host = chain
+    number = len(chain) - 1
+    assert isinstance(host, Dynamics)  # noqa: S101  (for the type checker)
+    signals = Simulation(chain, records, hold, "quick").driving(number)
+    moves = (
+        host.motion(z, record.dt, others)
+        for record, z in zip(records, signals, strict=True)
+    )
+    return [
+        (np.ascontiguousarray(own.position), np.ascontiguousarray(own.velocity))
+        for own in moves
+    ]
 
 
 def spring_of(host: Block) -> float:
