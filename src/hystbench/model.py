@@ -19,6 +19,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.held import HOLDS, HeldBlock, Hold
 from hystbench.blocks.parameter import Value
 from hystbench.blocks.simulated_column import SimulatedColumn
+from hystbench.blocks.starts import begun_once
 from hystbench.errors import InputError, nearest, placed, refuse_unknown
 from hystbench.files import write_text
 from hystbench.model_content import Provenance, place_of, read_content
@@ -194,6 +195,10 @@ class Model:
             for block in self.chain
         )
         return replace(self, chain=chain)
+
+    def begun_once(self) -> Model:
+        """Return the model on a record that does not repeat: nothing ``repeating``."""
+        return replace(self, chain=tuple(map(begun_once, self.chain)))
 
     def parameter_names(self) -> tuple[str, ...]:
         """Return the names of all parameters in the chain's order."""

@@ -5,6 +5,7 @@ import json
 import re
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -72,6 +73,32 @@ def test_a_record_of_a_dataset(tmp_path, model, write_dataset, extra, option, ho
     (folder / "dataset.yaml").rename(folder / "other.yaml")
     again = run_hystbench(*arguments, "--dataset", folder / "other.yaml")
     assert again.returncode == 0, again.stderr
+
+
+@pytest.mark.parametrize(
+    ("periods", "start"), [("", "settled"), (", period_samples: 25", "repeating")]
+)
+def test_only_a_record_of_whole_periods_repeats(
+    tmp_path, model, write_dataset, periods, start
+):
+    """What a model file calls repeating is settled on any other record."""
+    lag = "time_constant_s: 0.02"
+    model.write_text(MODEL.replace(lag, f"{lag}, start: repeating"))
+    u = 1.0 + np.arange(50) % 25
+    yaml = about().replace("file: a.csv", f"file: a.csv{periods}")
+    folder = write_dataset({"a.csv": csv_text(TIME, u, u)}, yaml).parent
+    out = tmp_path / "out.csv"
+    result = run_hystbench("simulate", model, folder / "a.csv", "--out", out)
+    assert result.returncode == 0, result.stderr
+    *_, simulated = table(out)[1]
+    begins = load_model(model)
+    begins = replace(
+        begins, chain=(begins.chain[0], replace(begins.chain[1], start=start))
+    )
+    wanted = begins.with_hold("band-limited").simulate(u, 0.01)
+    np.testing.assert_allclose(simulated, wanted, rtol=1e-6)
+    other = begins.with_hold("band-limited").begun_once().simulate(u, 0.01)
+    assert np.allclose(simulated, other, rtol=1e-3) == (start == "settled")
 
 
 def test_archives_of_records_and_signals(tmp_path, model):

@@ -1,7 +1,8 @@
 """What was before the first sample of a record: the starts of linear dynamics."""
 
 from collections.abc import Sequence
-from typing import Literal
+from dataclasses import replace
+from typing import Any, Literal
 
 import numpy as np
 
@@ -15,6 +16,17 @@ CLEARLY = 1.01
 best."""
 PASTS = {"moving": TURNED, "repeating": REPEATED}
 """Starts that depend on samples to come, and what came before."""
+
+
+def begun_once(block: Any) -> Any:
+    """Give a block on a record that does not repeat: its first value has stood there.
+
+    A free mass has no place of balance, and rests.
+    """
+    if getattr(block, "start", "") != "repeating":
+        return block
+    free = getattr(block, "stiffness", None) == 0.0
+    return replace(block, start="rest" if free else "settled")
 
 
 def possible_starts(records: Sequence[Record]) -> tuple[Start, ...]:

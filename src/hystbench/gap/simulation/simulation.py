@@ -17,6 +17,7 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.starts import begun_once
 from hystbench.blocks.stiffness_hardening import StiffnessHardening
 from hystbench.blocks.store import Store
 from hystbench.blocks.structure import Structure
@@ -90,7 +91,7 @@ class Simulation:
         begun = steps = self._steps(blocks)
         repeating = any(getattr(block, "start", "") == "repeating" for block in blocks)
         if repeating and not all(record.repeats for record in self.records):
-            begun = self._steps([_begun_once(block) for block in blocks])
+            begun = self._steps([begun_once(block) for block in blocks])
         finely = self.steps == "fine" and self.hold == LIMITED
         dts = [record.dt for record in self.records]
         for step, first in zip(steps, begun, strict=True):
@@ -318,18 +319,6 @@ def _quick(block: Block) -> Block | _InLongSteps:
     if block.place == "drive" or not block.smooths:
         return block
     return replace(block, hold="linear") if block.holding == LIMITED else block
-
-
-def _begun_once(block: Block) -> Block:
-    """Give the block on a record that does not repeat: its first value has stood there.
-
-    A free mass has no place of balance, and rests.
-    """
-    if getattr(block, "start", "") != "repeating":
-        return block
-    free = isinstance(block, Mechanism) and block.stiffness == 0.0
-    begun: dict[str, Any] = {"start": "rest" if free else "settled"}
-    return replace(block, **begun)
 
 
 LIMITED = "band-limited"
