@@ -168,7 +168,7 @@ def _findings(
     both = list(zip(records, facts, strict=True))
     found = [each for pair in both for each in _still(dataset, *pair)]
     new = [item for item in facts if item.period and not item.declared]
-    if new:
+    if new and "noise_rms" not in dataset.about:
         told = ", ".join(f"{item.name} every {item.period} samples" for item in new)
         lines = [_entry(dataset, item.name, period_samples=item.period) for item in new]
         found.append(_finding("periods", told=told, paste=lines))

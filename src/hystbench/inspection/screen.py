@@ -181,7 +181,7 @@ def _effects(found: Check) -> dict[str, list[str]]:
         return {key: [] for key in ("seen", "alike", "hidden")}
     seen = _listed(f"{x.effect} {percent(x.seen_from)}" for x in found.revealed)
     pairs = _listed(
-        f"{x.effect} from {rival} {'ever' if share > 1 else percent(share)}"
+        f"{x.effect} from {rival} {'at any share' if share > 1 else percent(share)}"
         for x in found.revealed
         for rival, share in x.rivals[:1]
     )

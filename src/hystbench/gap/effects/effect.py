@@ -275,8 +275,8 @@ class InsideEffect(Effect):
             Always.
         """
         raise Declined(
-            "it acts inside the dynamics, where it is tried apart; to put it in, write "
-            "it in the model file"
+            "it acts inside the dynamics: 'hystbench gap' tries it there, not in the "
+            "chain; to put it in by hand, write it in the model file"
         )
 
 
