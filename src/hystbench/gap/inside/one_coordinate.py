@@ -114,8 +114,11 @@ def one_coordinate(
     if quantities.causality == "storage":
         return
     known = quantities.output in MOTIONS
-    for output in (quantities.output,) if known else MOTIONS:
-        yield from masses(records, output, hold)
+    outputs = (quantities.output,) if known else MOTIONS
+    yield from masses(records, outputs, hold)
+    for output in outputs:
+        if output != "acceleration":
+            yield from free_masses(records, output, hold)
 
 
 def impedance(records: tuple[Record, ...], moved: str, hold: Hold) -> ModelState:
@@ -130,27 +133,25 @@ def impedance(records: tuple[Record, ...], moved: str, hold: Hold) -> ModelState
 
 
 def masses(
-    records: tuple[Record, ...], output: str, hold: Hold
+    records: tuple[Record, ...], outputs: Sequence[str], hold: Hold
 ) -> Iterator[ModelState]:
-    """Give masses on springs, begun where a grid says, and a free mass.
+    """Give masses on springs, begun where a grid says, for each of some outputs.
 
     At each natural frequency and damping ratio the gain and an offset of the output are
     solved for.
     """
     span, step = span_and_step(records)
     grid = np.geomspace(2 * np.pi / span, 0.8 * np.pi / step, FREQUENCIES)
-    about: Any = {"output": output, "hold": hold}
     units = (
-        Mechanism(mass=1.0, damping=2 * ratio * w, stiffness=w**2, start=start, **about)
+        Mechanism(mass=1.0, damping=2 * ratio * w, stiffness=w**2, start=start)
         for start, w, ratio in itertools.product(_starts(records), grid, RATIOS)
     )
     ones = np.ones(len(ScoredSamples.of(records)))
     own = {0: ("mass", "damping", "stiffness"), 1: ("offset",)}
-    for _, unit, gain, offset in _solved_for(units, records, lambda _: ones)[:BEGUN]:
-        chain = (_times(unit, gain), Gain(value=1.0, offset=offset))
-        yield _state(chain, records, hold, own)
-    if output != "acceleration":
-        yield from free_masses(records, output, hold)
+    for best in _solved_for(units, records, outputs, hold, lambda _: ones):
+        for unit, gain, offset in best[:BEGUN]:
+            chain = (_times(unit, gain), Gain(value=1.0, offset=offset))
+            yield _state(chain, records, hold, own)
 
 
 def free_masses(
@@ -176,7 +177,8 @@ def free_masses(
     def pushed(unit: Mechanism) -> FloatArray:
         return sample.take([unit.driven(np.ones(len(r)), r.dt, ()) for r in records])
 
-    for _, unit, gain, bias in _solved_for(units, records, pushed)[:1]:
+    (best,) = _solved_for(units, records, (output,), hold, pushed)
+    for unit, gain, bias in best[:1]:
         block = replace(_times(unit, gain), bias=bias / abs(gain))
         yield _state((block,), records, hold, {0: ("mass", "damping", "bias")})
 
@@ -184,24 +186,35 @@ def free_masses(
 def _solved_for(
     units: Iterable[Mechanism],
     records: tuple[Record, ...],
+    outputs: Sequence[str],
+    hold: Hold,
     beside: Callable[[Mechanism], FloatArray],
-) -> list[tuple[float, Mechanism, float, float]]:
+) -> list[list[tuple[Mechanism, float, float]]]:
     """Find how many times each mechanism moves, and another signal beside it.
 
-    Each comes with the mean square that is left, its gain and that of the other signal;
-    the best first.
+    Of each output a list: the mechanism, its gain and that of the other signal, the
+    least mean square first. A staircase apart, the input moves in straight lines here:
+    near enough for a beginning.
     """
     sample = ScoredSamples.of(records)
     wanted = sample.take([record.y for record in records])
-    found = []
+    roughly: Any = {"hold": "linear" if hold == "band-limited" else hold}
+    found: list[list[tuple[float, Mechanism, float, float]]] = [[] for _ in outputs]
     for unit in units:
-        motion = sample.take([unit.driven(r.u, r.dt, ()) for r in records])
-        columns = np.column_stack([motion, beside(unit)])
-        gain, other = solved(columns, wanted).tolist()
-        rest = float(np.mean((wanted - columns @ [gain, other]) ** 2))
-        if gain != 0.0 and np.isfinite(rest):
-            found.append((rest, unit, gain, other))
-    return sorted(found, key=lambda item: item[0])
+        moved = [replace(unit, **roughly).motion(r.u, r.dt, ()) for r in records]
+        other = beside(unit)
+        for output, own in zip(outputs, found, strict=True):
+            seen: Any = {"output": output, "hold": hold}
+            one = replace(unit, **seen)
+            columns = np.column_stack([sample.take([*map(one.given, moved)]), other])
+            gain, more = solved(columns, wanted).tolist()
+            rest = float(np.mean((wanted - columns @ [gain, more]) ** 2))
+            if gain != 0.0 and np.isfinite(rest):
+                own.append((rest, one, gain, more))
+    return [
+        [(unit, gain, more) for _, unit, gain, more in sorted(own, key=lambda x: x[0])]
+        for own in found
+    ]
 
 
 def span_and_step(records: Sequence[Record]) -> tuple[float, float]:
