@@ -63,6 +63,16 @@ def test_a_device_may_have_been_switched_on_with_its_record():
     assert {item.operates for item in tried} == {"", "repeating"}
 
 
+@pytest.mark.parametrize("start", ["settled", "moving", "repeating"])
+def test_what_is_put_in_a_chain_begins_as_the_chain_does(start):
+    """A lag that began at rest would answer the first samples in its own way."""
+    lag = block("drive-lag", time_constant_s=0.05, start=start)
+    state = state_of((*BASE, lag), operated(0.0))
+    for name in ("sensor-lag", "creep", "resonance"):
+        tried = list(effects()[name].every_variant(state.simulation))
+        assert {item.operates for item in tried if item.is_linear} == {start}
+
+
 def test_on_a_record_that_does_not_repeat_its_first_value_has_stood_before():
     """What was found on whole periods is shown on a step that was held out."""
     chain = (block("sensor-lag", time_constant_s=TAU, start="repeating"),)

@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Literal, get_args
 
 from hystbench.blocks import block_class
 from hystbench.blocks.base import Block, Place
+from hystbench.blocks.forced import ForcedDynamics
 from hystbench.blocks.held import HeldBlock, held_until_smooth
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.wrapping import WrappingBlock
@@ -15,7 +16,7 @@ from hystbench.device_kinds import DEVICE_KINDS, DeviceKind, causes
 from hystbench.errors import refuse_unknown
 from hystbench.gap.effects.law import Changed, Filled, Law, Moved, Passed
 from hystbench.gap.effects.places import INSIDE, places_between_halves
-from hystbench.gap.effects.variant import Beside, Values, Variant, in_operation
+from hystbench.gap.effects.variant import Beside, Values, Variant, begun_from
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.view_kinds import ViewKind
 from hystbench.record import FloatArray
@@ -98,21 +99,27 @@ class Effect(ABC):
         """
 
     def every_variant(self, simulation: Simulation) -> Iterator[Variant]:
-        """Give the variants, and linear ones again from the start of what operates.
+        """Give the variants, linear ones from the start that the chain has.
 
-        A device that is switched on begins at rest, whatever its first input is. One
-        that operates about a point away from zero does not: what it remembers is as old
-        as its slowest lag.
+        Where the chain begins at rest, they are given again from the start of what
+        operates. A device that is switched on begins at rest, whatever its first input
+        is. One that operates about a point away from zero does not: what it remembers
+        is as old as its slowest lag.
 
         Raises
         ------
         Declined
             As :meth:`variants`.
         """
+        begun = start_of(simulation.chain)
         for variant in self.variants(simulation):
+            if variant.is_linear and begun != "rest":
+                yield begun_from(variant, begun)
+                continue
             yield variant
             if variant.is_linear and never_at_rest(simulation.at(variant.start)):
-                yield in_operation(variant, simulation)
+                whole = all(record.repeats for record in simulation.records)
+                yield begun_from(variant, "repeating" if whole else "settled")
 
     def inserted(
         self,
@@ -254,6 +261,12 @@ class Effect(ABC):
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
         """Give the block of a signal beside, from its amplitudes (records, k)."""
         raise NotImplementedError
+
+
+def start_of(chain: Sequence[Block]) -> str:
+    """Give how the first dynamics of a chain begin that do not begin at rest."""
+    dynamics = (x for x in chain if isinstance(x, LinearBlock | ForcedDynamics))
+    return next((x.start for x in dynamics if x.start != "rest"), "rest")
 
 
 def never_at_rest(signals: Sequence[FloatArray]) -> bool:

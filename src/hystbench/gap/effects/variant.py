@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.blocks.base import Block
-from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray
 
 Values = Mapping[str, float]
@@ -97,13 +96,8 @@ class Variant:
         return own if self.charge is None else self.charge
 
 
-def in_operation(variant: Variant, simulation: Simulation) -> Variant:
-    """Give a linear variant that has operated before its records began.
-
-    Whole periods of an input came before; else the first value has stood there.
-    """
-    whole = all(record.repeats for record in simulation.records)
-    start: Any = "repeating" if whole else "settled"
+def begun_from(variant: Variant, start: str) -> Variant:
+    """Give a linear variant whose block has a start other than at rest."""
     (place,) = variant.positions
 
     def build(given: Values) -> tuple[Block, ...]:

@@ -14,6 +14,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.gap.effects import among
+from hystbench.gap.effects.effect import start_of
 from hystbench.gap.effects.law import Changed, Filled, Law, Moved, Passed
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added, Free, ModelState
@@ -138,7 +139,7 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
 
     A force goes behind the host, a filter before all or behind all. What a force stands
     for goes out of the host's spring, if that may change. Of several hosts it is the
-    last one.
+    last one. A linear filter begins as the host does, unless that begins at rest.
     """
     base: list[Any] = list(state.chain)
     place = 0 if law.place == "before" else len(base)
@@ -148,7 +149,11 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
         if law.stands_for:
             less = law.stands_for * spring_of(base[host])
             base = list(relieved(state, host, less).chain)
-    chain = (*base[:place], law.block, *base[place:])
+    block: Any = law.block
+    begun = start_of(base)
+    if isinstance(block, LinearBlock) and begun != "rest":
+        block = replace(block, start=begun)
+    chain = (*base[:place], block, *base[place:])
 
     state = state.rearranged(chain, {k: k + (k >= place) for k in range(len(base))})
     free = list(state.free)
