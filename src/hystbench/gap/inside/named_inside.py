@@ -29,6 +29,7 @@ from hystbench.gap.inside.fitted_numbers import more_for_numbers, re_tuning
 from hystbench.gap.inside.host_places import host_places
 from hystbench.gap.inside.insert_law import Times, laws_for
 from hystbench.gap.inside.known_host import with_pairs_beside_free
+from hystbench.gap.inside.lags_of_base import LAGS, with_lags_of_base
 from hystbench.gap.inside.one_coordinate import Host, Kind
 from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.naming.add_effects import Named
@@ -180,6 +181,11 @@ def named_inside(
     best, alone = chosen(found, score.floor, share), host.alone
     found = with_others_as_late(best, found, offer, score)
     best = chosen(found, score.floor, share)
+    words = host.words
+    if identified and not LAGS.isdisjoint(best.effects):
+        found = with_lags_of_base(best, found, score)
+        best, alone = chosen(found, score.floor, share), found[0].state
+        words += ", with a lag"
     if not best.effects:
         say("inside: no force pays")
         if identified and fewer is start and not may_gain(best, score):
@@ -197,7 +203,7 @@ def named_inside(
     alone = replace(alone, offered=start.offered).settled()
     before, after = lefts((start, alone), floor_rms, base.output.unit)
     sentence = (
-        f"{host.words}, and effects act inside it (without them it leaves {after} rms "
+        f"{words}, and effects act inside it (without them it leaves {after} rms "
         f"of the fit records above the noise floor, the base {before})"
     )
     if host.counts:

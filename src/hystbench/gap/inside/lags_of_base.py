@@ -1,0 +1,58 @@
+"""Lags beside an identified host: poles of the base, and no effects."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from hystbench.gap.fitting.edit_chain import without_effect
+from hystbench.gap.fitting.least_squares import Fitted, fitted_to_the_end, judged
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.combine_forces import best_of_each
+
+LAGS = frozenset({"drive-lag", "sensor-lag"})
+
+
+def with_lags_of_base(
+    best: Fitted, found: Sequence[Fitted], score: Score
+) -> list[Fitted]:
+    """Give lags that were put beside an identified host to the host.
+
+    A linear model that is identified has the poles that its records ask for, and one
+    coordinate has two of them. What is of a higher order needs another one beside its
+    effects. That one was missing in no simulation.
+
+    Parameters
+    ----------
+    best : Fitted
+        Of those found.
+    found : sequence of Fitted
+        The host alone first.
+    score : Score
+
+    Returns
+    -------
+    list of Fitted
+        Those found as they were, where the best one has no lag. Else the host with the
+        lag: alone, with the effects of the best one, and with all but one of these; and
+        what was found without a lag. Of each set of effects the best.
+    """
+    if LAGS.isdisjoint(best.effects):
+        return list(found)
+    state = _as_host(best.state)
+    alone = state
+    while alone.added:
+        alone = without_effect(alone, 0)
+    fewer = [without_effect(state, k) for k in range(len(state.added))]
+    fits = [
+        fitted_to_the_end(x, score) for x in (alone, *fewer) if x.added or x is alone
+    ]
+    others = [item for item in found[1:] if LAGS.isdisjoint(item.effects)]
+    return best_of_each([*fits, Fitted(state, judged(state, score)), *others])
+
+
+def _as_host(state: ModelState) -> ModelState:
+    """Count the lags that were added among the blocks of the host."""
+    added = tuple(item for item in state.added if item.effect not in LAGS)
+    return replace(state, added=added)
