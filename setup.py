@@ -54,10 +54,10 @@ SOURCES = [
     "jiles_atherton.c",
     "largest.c",
     "lms.c",
-    "mechanism.c",
     "play.c",
     "preisach.c",
     "state_space.c",
+    "store.c",
     "structure.c",
     "volterra.c",
 ]

@@ -5,16 +5,19 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from math import ceil, pi
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hystbench import kernels
 from hystbench.blocks.attached import OthersOnRecords, Signals
 from hystbench.blocks.curve import held_lines
 from hystbench.blocks.force import Driven, Dynamics, Force, Motion
 from hystbench.blocks.parameter import choice
 from hystbench.blocks.starts import STARTS, path_from
+from hystbench.blocks.state_space import after_interval
 from hystbench.record import FloatArray
 
 PHASE = 0.05
@@ -53,6 +56,53 @@ class DriveLines:
         """Corners of all records."""
         return int(self.values.shape[1])
 
+    def move(
+        self,
+        drives: FloatArray,
+        tables: FloatArray,
+        laws: FloatArray,
+        motion: FloatArray,
+    ) -> FloatArray:
+        """Move modes that feel each other by the forces at one place alone.
+
+        Parameters
+        ----------
+        drives : ndarray, shape (motions, count)
+        tables : ndarray
+            Of :func:`tables_of`.
+        laws : ndarray, shape (motions, forces, 6)
+        motion : ndarray, shape (motions, count, 2 modes)
+            Positions and velocities; is filled from the first row of each record on.
+
+        Returns
+        -------
+        ndarray, shape (motions, count)
+            The sum of the forces.
+        """
+        near, numbers = len(tables) - 1, tables.shape[1]
+        beside = np.zeros((numbers, kernels.padded(near)))
+        beside[:, :near] = tables[1:].T
+        force = np.zeros(drives.shape)
+        kernels.call(
+            "hb_structure",
+            self.count,
+            len(self.ends),
+            self.ends.ctypes.data,
+            motion.shape[2] // 2,
+            near,
+            self.parts,
+            self.step,
+            self.ramp,
+            tables[0],
+            beside,
+            laws.shape[1],
+            laws,
+            drives,
+            motion,
+            force,
+        )
+        return force
+
 
 class ForcedDynamics(Dynamics):
     """A block whose coordinates are driven by its input and meet forces.
@@ -66,6 +116,11 @@ class ForcedDynamics(Dynamics):
     @abstractmethod
     def rates(self, contact: float) -> tuple[float, float]:
         """Give how fast it swings in rad/s: alone, and in a contact of a stiffness."""
+
+    @property
+    def swings(self) -> bool:
+        """Whether it swings by itself, or creeps back to where it rests."""
+        return True
 
     @abstractmethod
     def _moved(
@@ -147,12 +202,89 @@ class ForcedDynamics(Dynamics):
     def parts(self, dt: float, forces: tuple[Force, ...], pieces: float = 1.0) -> int:
         """Steps of an interval: one without forces, as the linear part is exact.
 
-        With forces they are short for the linear part, as far as it swings no
-        faster than half the sampling rate, and for a contact.
+        With forces they are short for the linear part and for a contact. A linear part
+        that swings faster than half the sampling rate, or does not swing and dies out
+        within an interval, follows what drives it: no step is shorter for that.
         """
         if not forces:
             return 1
-        linear, stiff = self.rates(max(item.stiffest for item in forces))
-        swings = min(max(linear, *(item.swings for item in forces)), pi / dt)
+        stiffest = max(item.stiffest for item in forces)
+        linear, stiff = self.rates(stiffest)
+        alone = linear if linear * dt <= (pi if self.swings else 1.0) else 1.0 / dt
+        others = max(item.swings for item in forces)
+        swings = max(alone, min(others, pi / dt))
+        stiff = stiff if stiffest > 0.0 else swings
         smooth, met = (ceil(pieces * dt * rate / PHASE) for rate in (swings, stiff))
         return max(1, min(smooth, MOST), min(met, CONTACT))
+
+
+@lru_cache(maxsize=256)
+def step_weights(
+    coordinates: tuple[tuple[float, float, float], ...], dt: float
+) -> FloatArray:
+    """Give weights of q, q' and of the driving force at both ends of a step.
+
+    Of masses on springs without forces inside. They are kept, as a fit simulates many
+    records with the same linear part.
+
+    Parameters
+    ----------
+    coordinates : tuple of (float, float, float)
+        Mass, damping and stiffness of each.
+    dt : float
+        The step in seconds.
+
+    Returns
+    -------
+    ndarray, shape (coordinates, 2, 2, 4)
+        Of a step, and of an eighth of it; not to be written to.
+    """
+    every = {each: k for k, each in enumerate(dict.fromkeys(coordinates))}
+    mass, damping, stiffness = np.array(list(every)).T
+    a, b = np.zeros((len(every), 2, 2)), np.zeros((len(every), 2))
+    a[:, 0, 1], a[:, 1, 0], a[:, 1, 1] = 1.0, -stiffness / mass, -damping / mass
+    b[:, 1] = 1.0 / mass
+    steps = np.array([dt, dt / 8])[:, None, None]
+    weights = after_interval(a * steps[..., None], b * steps)
+    weights[..., 2] -= weights[..., 3]
+    found = weights[:, [every[each] for each in coordinates]].swapaxes(0, 1)
+    found = np.ascontiguousarray(found)
+    found.setflags(write=False)
+    return found
+
+
+def tables_of(
+    modes: Sequence[tuple[tuple[float, float, float], ...]],
+    drive: FloatArray,
+    joint: FloatArray,
+    dt: float,
+) -> FloatArray:
+    """Give the tables of near motions for a part of dt: see kernels/joint.c.
+
+    Parameters
+    ----------
+    modes : sequence of tuple of (float, float, float)
+        Mass, damping and stiffness of all modes of each.
+    drive, joint : ndarray, shape (motions, modes)
+        How much of what drives them, and of the forces, each mode feels.
+    dt : float
+
+    Returns
+    -------
+    ndarray, shape (motions, 6 + 25 modes)
+    """
+    found = [joint]
+    every = tuple(mode for own in modes for mode in own)
+    for part in np.moveaxis(step_weights(every, dt), 1, 0):
+        # Of q and v after it: of q, v, and of p at both ends.
+        steps = part.reshape(len(modes), -1, 2, 4)
+        after = np.empty((len(modes), 2, 5, steps.shape[1]))
+        after[:, :, :2] = steps[..., :2].transpose(0, 2, 3, 1)
+        driven = steps[..., 2:] * drive[:, :, None, None]
+        after[:, :, 2:4] = driven.transpose(0, 2, 3, 1)
+        after[:, :, 4] = (steps[..., 2:].sum(axis=3) * joint[:, :, None]).swapaxes(1, 2)
+        way = after[:, 0] * joint[:, None]
+        way[:, 0] -= joint
+        found += [way[:, 2:].sum(axis=2), way[:, :2].reshape(len(modes), -1)]
+        found.append(after.reshape(len(modes), -1))
+    return np.ascontiguousarray(np.concatenate(found, axis=1))

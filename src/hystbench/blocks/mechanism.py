@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 from math import sqrt
 from typing import Any
 
@@ -12,10 +11,9 @@ import numpy as np
 from hystbench import kernels
 from hystbench.blocks.attached import Signals
 from hystbench.blocks.force import Driven, Force, Motion, exported, rows
-from hystbench.blocks.forced import ForcedDynamics
+from hystbench.blocks.forced import ForcedDynamics, step_weights, tables_of
 from hystbench.blocks.parameter import TINY, choice, number
 from hystbench.blocks.starts import PASTS
-from hystbench.blocks.state_space import after_interval
 from hystbench.blocks.step import Sampling, Step, lines_of
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -92,34 +90,19 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
         gain, bias, mass, damping, stiffness = np.array(
             [[x.gain, x.bias, x.mass, x.damping, x.stiffness] for x in hosts]
         ).T[..., None]
-        q, v, force = np.zeros((3, len(hosts), driven.count))
+        motion = np.zeros((len(hosts), driven.count, 2))
         p = gain * driven.values + bias
         for k, host in enumerate(hosts):
-            q[k, driven.begins], v[k, driven.begins] = (
-                host.start_position,
-                host.start_velocity,
-            )
+            motion[k, driven.begins] = host.start_position, host.start_velocity
             if self.start != "rest" and host.stiffness > 0.0:
                 rested = host.gain * driven.before[k] + host.bias
-                q[k, driven.begins] += [host._balance(z, numbers[k]) for z in rested]
-        kernels.call(
-            "hb_mechanism",
-            driven.count,
-            len(driven.ends),
-            driven.ends.ctypes.data,
-            len(every) - 1,
-            driven.parts,
-            driven.step,
-            driven.ramp,
-            step_weights(tuple(x.linear for x in hosts), driven.step / driven.parts),
-            numbers.shape[1],
-            numbers,
-            np.empty(numbers.shape[:2]),
-            p,
-            q,
-            v,
-            force,
-        )
+                balances = [host._balance(z, numbers[k]) for z in rested]
+                motion[k, driven.begins, 0] += balances
+        one = np.ones((len(hosts), 1))
+        modes = [(host.linear,) for host in hosts]
+        tables = tables_of(modes, one, one, driven.step / driven.parts)
+        force = driven.move(p, tables, numbers, motion)
+        q, v = np.ascontiguousarray(np.moveaxis(motion, 2, 0))
         with np.errstate(over="ignore", invalid="ignore"):  # it may have run away
             curved = (p - damping * v - stiffness * q - force) / mass
         return [
@@ -178,6 +161,11 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
         """
         return self._rate(self.stiffness), self._rate(self.stiffness + contact)
 
+    @property
+    def swings(self) -> bool:
+        """Whether it is damped by less than the critical damping."""
+        return self.damping**2 < 4.0 * self.mass * self.stiffness
+
     def _rate(self, stiffness: float) -> float:
         """Give the magnitude of the slower pole, in rad/s, for a stiffness."""
         natural, half = sqrt(stiffness / self.mass), 0.5 * self.damping / self.mass
@@ -198,38 +186,3 @@ def free_starts(output: str) -> tuple[str, ...]:
     only where the output does not show the place.
     """
     return ("rest", *PASTS) if output in ("velocity", "acceleration") else ("rest",)
-
-
-@lru_cache(maxsize=256)
-def step_weights(
-    coordinates: tuple[tuple[float, float, float], ...], dt: float
-) -> FloatArray:
-    """Give weights of q, q' and of the driving force at both ends of a step.
-
-    Of masses on springs without forces inside. They are kept, as a fit simulates many
-    records with the same linear part.
-
-    Parameters
-    ----------
-    coordinates : tuple of (float, float, float)
-        Mass, damping and stiffness of each.
-    dt : float
-        The step in seconds.
-
-    Returns
-    -------
-    ndarray, shape (coordinates, 2, 2, 4)
-        Of a step, and of an eighth of it; not to be written to.
-    """
-    every = {each: k for k, each in enumerate(dict.fromkeys(coordinates))}
-    mass, damping, stiffness = np.array(list(every)).T
-    a, b = np.zeros((len(every), 2, 2)), np.zeros((len(every), 2))
-    a[:, 0, 1], a[:, 1, 0], a[:, 1, 1] = 1.0, -stiffness / mass, -damping / mass
-    b[:, 1] = 1.0 / mass
-    steps = np.array([dt, dt / 8])[:, None, None]
-    weights = after_interval(a * steps[..., None], b * steps)
-    weights[..., 2] -= weights[..., 3]
-    found = weights[:, [every[each] for each in coordinates]].swapaxes(0, 1)
-    found = np.ascontiguousarray(found)
-    found.setflags(write=False)
-    return found

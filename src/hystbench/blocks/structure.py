@@ -11,8 +11,7 @@ import numpy as np
 from hystbench import kernels
 from hystbench.blocks.attached import Signals
 from hystbench.blocks.force import Driven, Force, Motion, exported, rows
-from hystbench.blocks.forced import ForcedDynamics
-from hystbench.blocks.mechanism import step_weights
+from hystbench.blocks.forced import ForcedDynamics, tables_of
 from hystbench.blocks.parameter import TINY, choice, number, numbers
 from hystbench.blocks.starts import PASTS
 from hystbench.blocks.step import Sampling, Step, lines_of
@@ -131,32 +130,12 @@ class Structure(ForcedDynamics, name="structure", place="base"):
         driven = self.lines(every[0], [drives[k] for k in places], dt)
         count = len(self.stiffness)
         motion = np.zeros((len(moved), driven.count, 2 * count))
-        force = np.zeros((len(moved), driven.count))
         for k, host in enumerate(moved):
             motion[k, driven.begins, :count] = [
                 host._balance(z, laws[k]) for z in driven.before[k].tolist()
             ]
         tables = _tables(moved, driven.step / driven.parts)
-        beside = np.zeros((tables.shape[1], kernels.padded(len(moved) - 1)))
-        beside[:, : len(moved) - 1] = tables[1:].T
-        kernels.call(
-            "hb_structure",
-            driven.count,
-            len(driven.ends),
-            driven.ends.ctypes.data,
-            count,
-            len(moved) - 1,
-            driven.parts,
-            driven.step,
-            driven.ramp,
-            tables[0],
-            beside,
-            laws.shape[1],
-            laws,
-            driven.values,
-            motion,
-            force,
-        )
+        force = driven.move(driven.values, tables, laws, motion)
         found = []
         for host, key in zip(hosts, moves, strict=True):
             k = number[key]
@@ -254,23 +233,6 @@ class Structure(ForcedDynamics, name="structure", place="base"):
 
 
 def _tables(hosts: Sequence[Structure], dt: float) -> FloatArray:
-    """Give the kernel's table of each structure, for a part of dt: see joint.c."""
-    modes = tuple(mode for host in hosts for mode in host.modes)
-    drive, joint = np.array([[host.drive, host.at_joint] for host in hosts]).swapaxes(
-        0, 1
-    )
-    found = [joint]
-    for part in np.moveaxis(step_weights(modes, dt), 1, 0):
-        # Of q and v after it: of q, v, and of p at both ends.
-        steps = part.reshape(len(hosts), -1, 2, 4)
-        after = np.empty((len(hosts), 2, 5, steps.shape[1]))
-        after[:, :, :2] = steps[..., :2].transpose(0, 2, 3, 1)
-        after[:, :, 2:4] = (steps[..., 2:] * drive[:, :, None, None]).transpose(
-            0, 2, 3, 1
-        )
-        after[:, :, 4] = (steps[..., 2:].sum(axis=3) * joint[:, :, None]).swapaxes(1, 2)
-        way = after[:, 0] * joint[:, None]
-        way[:, 0] -= joint
-        found += [way[:, 2:].sum(axis=2), way[:, :2].reshape(len(hosts), -1)]
-        found.append(after.reshape(len(hosts), -1))
-    return np.ascontiguousarray(np.concatenate(found, axis=1))
+    """Give the kernel's table of each structure, for a part of dt."""
+    drive, joint = np.array([[x.drive, x.at_joint] for x in hosts]).swapaxes(0, 1)
+    return tables_of([host.modes for host in hosts], drive, joint, dt)

@@ -46,7 +46,6 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_slew_limit": (None, "ifaa"),
     "hb_acting_field": (None, "ifffaa"),
     "hb_hardening": (SIZE, "ifffffaa"),
-    "hb_mechanism": (None, "iiaiiffaiaaaaaa"),
     "hb_forces": (None, "ifiaaaaa"),
     "hb_settle": (None, "ffiaaa"),
     "hb_structure": (None, "iiaiiiffaaiaaaa"),

@@ -1,7 +1,7 @@
 /* Forces against one coordinate: their laws, and the way of a step against them.
  *
  * A force is a row of six numbers: its law's number, and those of the law. It remembers
- * one number; an attached mass two, the second that of a row of zeros behind. mechanism.c
+ * one number; an attached mass two, the second that of a row of zeros behind. structure.c
  * includes this file, and `hystbench export` copies what a model needs of it into C99
  * that stands alone: so no type of its own, and nothing but mathematics.
  */

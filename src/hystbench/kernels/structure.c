@@ -1,4 +1,4 @@
-/* Modes of a structure with forces at one place of it. */
+/* Modes of a structure with forces at one place of it; one mode is a mechanism. */
 #include "forces.c"
 #include "joint.c"
 #include "lanes.h"
@@ -47,11 +47,14 @@ static double near_forces(int count, const double *forces, const double *memory,
     const index_t wide = all->wide;
     double sum = 0, *sums = all->sum, by_place = 0, by_way = 0;
     const double beside = h > 0 ? way : 0; /* else it is a velocity */
-    const double along = inwards(x0, beside), bit = inwards(way, way);
+    const double along = inwards(x0, beside);
     double each[count + 1], by_memory[count + 1];
     for (int r = 0; r < count; r++) {
         const double *f = forces + 6 * r;
         const int law = (int)f[0];
+        /* A way is added to a place, or to what a force remembers of it. */
+        const double to = minds_place(law) ? x0 : minds_memory(law) ? memory[r] : 0;
+        const double bit = inwards(way, h > 0 ? to : 0);
         each[r] = force_at(f, x0, way, h, memory + r);
         sum += each[r];
         by_way += (force_at(f, x0, way + bit, h, memory + r) - each[r]) / bit;
@@ -99,7 +102,7 @@ static void near_memories(int count, const double *forces, double *memory, doubl
     for (int r = 0; r < count; r++) {
         const double *f = forces + 6 * r, was = memory[r];
         if (!minds_memory((int)f[0])) continue;
-        const double step = inwards(was, way), bit = inwards(way, way), faster = inwards(v, v);
+        const double step = inwards(was, way), bit = inwards(way, was), faster = inwards(v, v);
         const double is = hb_remembered(f, way, v, h, was);
         const double by_memory = (hb_remembered(f, way, v, h, was + step) - is) / step;
         const double by_way = (hb_remembered(f, way + bit, v, h, was) - is) / bit;
@@ -121,7 +124,7 @@ static void near_memories(int count, const double *forces, double *memory, doubl
 }
 
 /* What joints do where the modes of each structure do so much. */
-static void near_joints(int modes, const struct nearby *all, const double *of, double *found)
+INLINE void near_joints(int modes, const struct nearby *all, const double *of, double *found)
 {
     EACH(k, all) {
         lanes sum = {0};
@@ -135,7 +138,7 @@ static void near_joints(int modes, const struct nearby *all, const double *of, d
  * Theirs is that by which a step of Newton's method misses the least: so they stick,
  * slide and turn where the first does, and differences of them are its derivatives.
  * motion and memory are those of the first before it. */
-static void follow(int modes, int count, const double *table, const double *forces, double h,
+INLINE void follow(int modes, int count, const double *table, const double *forces, double h,
                    int pieces, const double *ways, double from, double to, double *motion,
                    double *memory, struct nearby *all, double *moved)
 {
@@ -182,7 +185,7 @@ static void follow(int modes, int count, const double *table, const double *forc
 }
 
 /* Moves a structure and those near it through a record, each from its first motion. */
-static void move(index_t n, int modes, index_t parts, double dt, double ramp, int count,
+INLINE void move(index_t n, int modes, index_t parts, double dt, double ramp, int count,
                  const double *table, const double *forces, double *memory, const double *p,
                  double *motion, double *out, index_t whole, struct nearby *all,
                  double *before, double *moved)
@@ -240,10 +243,15 @@ static void move(index_t n, int modes, index_t parts, double dt, double ramp, in
 }
 
 /* Motions of the modes at the samples, a row each, and the force F, from the motion in
- * the first row of each record. Records, parts, ramp, count and near are those of
- * hb_mechanism, and so is what is done over a part; table is that of joint.c, and tables
- * that of the structures near the first, a row for each of its numbers, filled with
- * zeros to a multiple of WIDTH. */
+ * the first row of each record. One record follows another: each ends where `ends` says,
+ * and begins without a memory. Over one of `parts` equal parts of an interval dt the
+ * forces count with their mean over the way, which does their exact work: so a passive
+ * force never gives energy, however stiff it is, and the method is of second order. p
+ * moves by the share ramp of a straight line in each interval (1: straight, 0: a
+ * staircase). table is that of joint.c, and tables that of `near` structures with numbers
+ * near these, a row for each of its numbers, filled with zeros to a multiple of WIDTH; of
+ * each array follow those of the near ones. Where a motion runs away the rest of its
+ * record is NaN. */
 EXPORT void hb_structure(index_t n, index_t records, const index_t *ends, index_t modes,
                          index_t near, index_t parts, double dt, double ramp,
                          const double *table, const double *tables, index_t count,
@@ -272,7 +280,33 @@ EXPORT void hb_structure(index_t n, index_t records, const index_t *ends, index_
     for (index_t r = 0, begin = 0; r < records; begin = ends[r++]) {
         for (index_t i = 0; i < count; i++) memory[i] = 0;
         for (index_t i = 0; i < count * wide; i++) all.memory[i] = 0;
-        move(ends[r] - begin, (int)modes, parts, dt, ramp, (int)count, table, forces, memory,
-             p + begin, motion + size * begin, out + begin, n, &all, before, moved);
+        /* One mode is common: where its loops are of one turn they cost nothing. */
+#define MOVE(modes)                                                                      \
+    move(ends[r] - begin, modes, parts, dt, ramp, (int)count, table, forces, memory,     \
+         p + begin, motion + size * begin, out + begin, n, &all, before, moved)
+        if (modes == 1)
+            MOVE(1);
+        else
+            MOVE((int)modes);
+#undef MOVE
     }
+}
+
+/* Forces against a given motion, sample by sample. */
+EXPORT void hb_forces(index_t n, double dt, index_t count, const double *forces,
+                      double *memory, const double *q, const double *v, double *out)
+{
+    const int all = (int)count;
+    for (index_t k = 0; k < n; k++) {
+        const double way = k ? q[k] - q[k - 1] : 0;
+        hb_move_memories(all, forces, v[k], way, k ? dt : 0, memory);
+        out[k] = hb_sum_of_forces(all, forces, q[k], v[k], memory);
+    }
+}
+
+/* Where springs hold a force p, of which the linear one has a stiffness; memory: zeros. */
+EXPORT void hb_settle(double stiffness, double p, index_t count, const double *forces,
+                      const double *memory, double *q)
+{
+    *q = hb_balance(stiffness, p, (int)count, forces, memory);
 }
