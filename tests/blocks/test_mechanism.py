@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from hystbench.blocks import registry
+from hystbench.blocks.force import Driven
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import OUTPUTS, Mechanism
 from hystbench.blocks.transfer_function import TransferFunction
@@ -560,3 +561,23 @@ def test_many_records_at_once_are_as_one_by_one(hold, start):
         np.testing.assert_array_equal(together[k], step.simulate(z, z, dt))
         alone = step.near_records((z,), (dt,), [(near[0][0], (z,))])
         np.testing.assert_array_equal(both[1][k], alone[1][0])
+
+
+@pytest.mark.parametrize(
+    "machine",
+    [
+        Mechanism(mass=1e-9, damping=3e-4, stiffness=5.0),  # creeps back in 60 us
+        Mechanism(mass=1e-9, damping=1e-6, stiffness=5.0),  # swings at 11 kHz
+    ],
+)
+def test_what_samples_do_not_show_takes_no_shorter_steps(machine):
+    """Nor does it miss more than a thousandth of the motion for that."""
+    dt = 5e-4
+    t = dt * np.arange(2000)
+    u = 2 * np.sin(40 * t) + 1.5 * np.sin(130 * t)
+    spring = registry()["stiffness"].from_mapping({"quadratic": 0.0, "cubic": 20.0})
+    assert machine.parts(dt, (spring,), 0.25) <= 5
+    fine, quick = (
+        Driven(machine, (spring,), pieces).simulate(u, u, dt) for pieces in (16, 0.25)
+    )
+    assert np.linalg.norm(quick - fine) < 1e-3 * np.linalg.norm(fine)
