@@ -114,8 +114,11 @@ class ForcedDynamics(Dynamics):
     start: str = choice("state before the first sample", STARTS, "rest")
 
     @abstractmethod
-    def rates(self, contact: float) -> tuple[float, float]:
-        """Give how fast it swings in rad/s: alone, and in a contact of a stiffness."""
+    def rates(self, contact: float, shown: float) -> tuple[float, float]:
+        """Give how fast it swings in rad/s: alone, and in a contact of a stiffness.
+
+        Alone, of several modes, the fastest that samples show: those up to a rate.
+        """
 
     @property
     def swings(self) -> bool:
@@ -209,7 +212,7 @@ class ForcedDynamics(Dynamics):
         if not forces:
             return 1
         stiffest = max(item.stiffest for item in forces)
-        linear, stiff = self.rates(stiffest)
+        linear, stiff = self.rates(stiffest, pi / dt)
         alone = linear if linear * dt <= (pi if self.swings else 1.0) else 1.0 / dt
         others = max(item.swings for item in forces)
         swings = max(alone, min(others, pi / dt))

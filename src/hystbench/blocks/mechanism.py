@@ -154,7 +154,7 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
         kernels.call("hb_settle", self.stiffness, p, len(numbers), numbers, memory, q)
         return float(q[0])
 
-    def rates(self, contact: float) -> tuple[float, float]:
+    def rates(self, contact: float, shown: float) -> tuple[float, float]:
         """Give how fast it swings, in rad/s: alone, and in a contact of a stiffness.
 
         Of what is damped the slow pole counts: what dies out faster is exact.

@@ -101,11 +101,16 @@ class Structure(ForcedDynamics, name="structure", place="base"):
         assert motion.shown is not None  # noqa: S101  (for the type checker)
         return motion.shown
 
-    def rates(self, contact: float) -> tuple[float, float]:
-        """Give how fast the fastest mode of the joint swings, alone and in contact."""
+    def rates(self, contact: float, shown: float) -> tuple[float, float]:
+        """Give how fast modes of the joint swing, alone and in contact.
+
+        Alone the fastest that samples show, or the fastest of all if they show none.
+        """
         joint = self.at_joint
-        fastest = np.max(np.array(self.stiffness)[joint != 0.0], initial=0.0)
-        return sqrt(fastest), sqrt(fastest + contact * float(joint @ joint))
+        every = np.sqrt(np.array(self.stiffness)[joint != 0.0])
+        fastest = float(np.max(every, initial=0.0))
+        alone = float(np.max(every[every <= shown], initial=0.0))
+        return alone or fastest, sqrt(fastest**2 + contact * float(joint @ joint))
 
     def _moved(
         self, every: Sequence[Driven], drives: Sequence[Signals], dt: float

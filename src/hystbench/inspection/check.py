@@ -168,10 +168,11 @@ def _findings(
     both = list(zip(records, facts, strict=True))
     found = [each for pair in both for each in _still(dataset, *pair)]
     new = [item for item in facts if item.period and not item.declared]
-    if new and "noise_rms" not in dataset.about:
+    if new:
         told = ", ".join(f"{item.name} every {item.period} samples" for item in new)
         lines = [_entry(dataset, item.name, period_samples=item.period) for item in new]
-        found.append(_finding("periods", told=told, paste=lines))
+        topic = "steady" if "noise_rms" in dataset.about else "periods"
+        found.append(_finding(topic, told=told, paste=lines))
     found += [_finding("no period", **vars(x)) for x in facts if not x.repeats]
     found += [each for item in facts for each in _holes(item)]
     found += [

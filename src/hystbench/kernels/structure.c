@@ -30,7 +30,22 @@ static double force_at(const double *f, double x, double way, double h, const do
     return h > 0 ? hb_mean_force(f, x, way, h, memory) : hb_force(f, x, way, memory);
 }
 
-/* A small step towards zero: what is held at the end of its reach comes free of it. */
+/* How far a law's place is from where it has none, beside zero. */
+static double place_of(const double *f)
+{
+    switch ((int)f[0]) {
+    case 1: /* sinh */
+        return fabs(f[2]);
+    case 2: /* stop */
+        return fabs(f[2]) + fabs(f[3]);
+    case 6: /* gravity: a radian */
+        return f[4] != 0 ? 1 / fabs(f[4]) : 0;
+    }
+    return 0;
+}
+
+/* A small step towards zero, by which derivatives are taken from one side: that on which
+ * a force at the end of its reach gives way. */
 static double inwards(double z, double beside)
 {
     return z > 0 ? -1e-7 * (z + fabs(beside)) : 1e-7 * (fabs(z) + fabs(beside)) + 1e-300;
@@ -47,7 +62,6 @@ static double near_forces(int count, const double *forces, const double *memory,
     const index_t wide = all->wide;
     double sum = 0, *sums = all->sum, by_place = 0, by_way = 0;
     const double beside = h > 0 ? way : 0; /* else it is a velocity */
-    const double along = inwards(x0, beside);
     double each[count + 1], by_memory[count + 1];
     for (int r = 0; r < count; r++) {
         const double *f = forces + 6 * r;
@@ -58,8 +72,10 @@ static double near_forces(int count, const double *forces, const double *memory,
         each[r] = force_at(f, x0, way, h, memory + r);
         sum += each[r];
         by_way += (force_at(f, x0, way + bit, h, memory + r) - each[r]) / bit;
-        if (minds_place(law))
+        if (minds_place(law)) {
+            const double along = inwards(x0, fabs(beside) + place_of(f));
             by_place += (force_at(f, x0 + along, way, h, memory + r) - each[r]) / along;
+        }
         by_memory[r] = 0;
         if (minds_memory(law)) {
             const double step = inwards(memory[r], beside), other = memory[r] + step;

@@ -66,8 +66,10 @@ def test_a_device_may_have_been_switched_on_with_its_record():
 @pytest.mark.parametrize("start", ["settled", "moving", "repeating"])
 def test_what_is_put_in_a_chain_begins_as_the_chain_does(start):
     """A lag that began at rest would answer the first samples in its own way."""
-    lag = block("drive-lag", time_constant_s=0.05, start=start)
-    state = state_of((*BASE, lag), operated(0.0))
+    dynamics = block(
+        "transfer-function", numerator=[1.0], denominator=[0.05, 1.0], start=start
+    )
+    state = state_of((*BASE, dynamics), operated(0.0))
     for name in ("sensor-lag", "creep", "resonance"):
         tried = list(effects()[name].every_variant(state.simulation))
         assert {item.operates for item in tried if item.is_linear} == {start}

@@ -15,7 +15,7 @@ from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.average_force import evened
-from hystbench.gap.inside.fewer import OnAll, on_fewer
+from hystbench.gap.inside.fewer import OnAll, on_fewer, starting
 from hystbench.gap.inside.insert_law import with_law
 from hystbench.gap.records.coarser import ENOUGH
 from hystbench.gap.records.scored_samples import ScoredSamples
@@ -134,3 +134,10 @@ def test_rivals_of_what_was_chosen_are_fitted_to_all_samples_too():
     _, best, rival, other = on_all.hypotheses(found, found[:2])
     assert abs(best.score - rival.score) < SCALE
     assert other.score > best.score + PAYS
+
+
+def test_a_lag_that_repeats_is_settled_where_the_dynamics_begin_at_rest():
+    lag = SensorLag(time_constant_s=0.01, start="repeating")
+    at_rest, host = starting((lag, replace(MACHINE, start="repeating")), "rest")
+    assert (at_rest.start, host.start) == ("settled", "rest")
+    assert starting((replace(lag, start="rest"),), "rest")[0].start == "rest"

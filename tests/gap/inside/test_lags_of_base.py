@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.attached import attached
+from hystbench.blocks.drag import Drag
 from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.sensor_lag import SensorLag
@@ -48,13 +49,19 @@ def found(record):
     late = Law("", lag, ("time_constant_s",), "behind")
     rubbed = with_law(host, "friction", friction)
     both = with_law(rubbed, "sensor-lag", late)
-    return [fitted_to_the_end(x, score) for x in (host, rubbed, both)], score
+    pulled = with_law(host, "drag", Law("", Drag(coefficient=1.0), ("coefficient",)))
+    other = with_law(pulled, "sensor-lag", late)
+    tried = (host, rubbed, both, pulled, other)
+    return [fitted_to_the_end(x, score) for x in tried], score
 
 
 def test_the_host_has_the_lag_and_the_effects_are_what_is_left(found):
     tried, score = found
-    alone, best = with_lags_of_base(tried[2], tried, score)
+    alone, best, rival = with_lags_of_base(tried[2], tried, score)
     assert (alone.effects, best.effects) == ((), ("friction",))
+    # What rivals it is what was found beside a lag, as it was.
+    assert rival.effects == ("drag",)
+    np.testing.assert_array_equal(rival.state.residual, tried[4].state.residual)
     lags = [
         x for item in (alone, best) for x in item.state.chain if x.name == "sensor-lag"
     ]

@@ -11,6 +11,7 @@ from hystbench.blocks.base import Block, Place
 from hystbench.blocks.forced import ForcedDynamics
 from hystbench.blocks.held import HeldBlock, held_until_smooth
 from hystbench.blocks.linear import LinearBlock
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.device_kinds import DEVICE_KINDS, DeviceKind, causes
 from hystbench.errors import refuse_unknown
@@ -264,8 +265,11 @@ class Effect(ABC):
 
 
 def start_of(chain: Sequence[Block]) -> str:
-    """Give how the first dynamics of a chain begin that do not begin at rest."""
-    dynamics = (x for x in chain if isinstance(x, LinearBlock | ForcedDynamics))
+    """Give how the dynamics of a chain begin, of several the first not at rest.
+
+    Its lags do not count: they may be effects, each with a start of its own.
+    """
+    dynamics = (x for x in chain if isinstance(x, TransferFunction | ForcedDynamics))
     return next((x.start for x in dynamics if x.start != "rest"), "rest")
 
 

@@ -46,7 +46,10 @@ def solve(
 
 
 def _solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
-    """Solve a symmetric system; directions that it hardly knows stay at zero."""
+    """Solve a symmetric system; directions that it hardly knows stay at zero.
+
+    All of them do where a number is not finite, as where a model ran away.
+    """
     if len(vector) == 1 and matrix[0, 0] > 0:  # as most are
         return np.asarray(vector / matrix[0])
     size = np.sqrt(np.maximum(matrix.diagonal(), 0.0))
@@ -56,4 +59,6 @@ def _solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     if not failed and (lower.diagonal() > KNOWN).all():  # elimination is quicker
         found, _ = dpotrs(lower, vector, lower=1)
         return np.asarray(found / size)
+    if not (np.isfinite(matrix).all() and np.isfinite(vector).all()):
+        return np.zeros(len(vector))
     return np.asarray(np.linalg.lstsq(matrix, vector, rcond=1e-13)[0] / size)

@@ -160,9 +160,9 @@ class ModelState:
         except InputError:  # beyond what the block accepts, so the other way
             step = -step
             change = self._change(k, step)
-        if rms(change) < ROUNDING * rms(self._simulated):
+        if not rms(change) >= ROUNDING * rms(self._simulated):
             # As of a play that never moves: divided by its step, it would look like
-            # something, and any weight would do.
+            # something, and any weight would do. Nor does what runs away tell a slope.
             return np.zeros(len(change))
         return change / step
 

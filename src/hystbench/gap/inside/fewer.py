@@ -11,7 +11,7 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.mechanism import Mechanism, free_starts
-from hystbench.blocks.starts import plainest_start, possible_starts
+from hystbench.blocks.starts import PASTS, plainest_start, possible_starts
 from hystbench.blocks.structure import Structure
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.least_squares import Fitted, fitted, judged
@@ -57,20 +57,27 @@ def on_fewer(start: ModelState, quantities: Quantities) -> ModelState:
 def starting(chain: Sequence[Block], start: str) -> tuple[Block, ...]:
     """Give linear dynamics another start; a free mass has only some.
 
-    A lag that is settled stays so where the dynamics are at rest.
+    Where the dynamics are at rest, a lag that is not is settled.
     """
-    changed: Any = {"start": start}
 
-    def may(block: Block) -> bool:
+    def start_of(block: Block) -> str:
+        own = getattr(block, "start", "rest")
         if isinstance(block, Mechanism):
-            return block.stiffness > 0.0 or start in free_starts(block.output)
-        if isinstance(block, Structure):
-            return True
-        return isinstance(block, LinearBlock) and (
-            start != "rest" or isinstance(block, TransferFunction)
+            may = block.stiffness > 0.0 or start in free_starts(block.output)
+            return start if may else own
+        if isinstance(block, Structure | TransferFunction):
+            return start
+        if isinstance(block, LinearBlock):
+            at_rest = "settled" if own in PASTS else own
+            return at_rest if start == "rest" else start
+        return own
+
+    def started(block: Any) -> Any:
+        return (
+            replace(block, start=start_of(block)) if hasattr(block, "start") else block
         )
 
-    return tuple(replace(x, **changed) if may(x) else x for x in chain)
+    return tuple(map(started, chain))
 
 
 @dataclass(frozen=True)

@@ -139,7 +139,7 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
 
     A force goes behind the host, a filter before all or behind all. What a force stands
     for goes out of the host's spring, if that may change. Of several hosts it is the
-    last one. A linear filter begins as the host does, unless that begins at rest.
+    last one. A lag begins as the host does, unless that begins at rest.
     """
     base: list[Any] = list(state.chain)
     place = 0 if law.place == "before" else len(base)

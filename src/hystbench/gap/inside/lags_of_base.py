@@ -20,8 +20,8 @@ def with_lags_of_base(
     """Give lags that were put beside an identified host to the host.
 
     A linear model that is identified has the poles that its records ask for, and one
-    coordinate has two of them. What is of a higher order needs another one beside its
-    effects. That one was missing in no simulation.
+    coordinate has two of them. A device of a higher order needs another pole beside its
+    effects. No simulation lacked it.
 
     Parameters
     ----------
@@ -35,8 +35,8 @@ def with_lags_of_base(
     -------
     list of Fitted
         Those found as they were, where the best one has no lag. Else the host with the
-        lag: alone, with the effects of the best one, and with all but one of these; and
-        what was found without a lag. Of each set of effects the best.
+        lag: alone, with the effects of the best one, with all but one of these, and
+        with effects that were found beside the same lag. Of each set the best.
     """
     if LAGS.isdisjoint(best.effects):
         return list(found)
@@ -48,8 +48,9 @@ def with_lags_of_base(
     fits = [
         fitted_to_the_end(x, score) for x in (alone, *fewer) if x.added or x is alone
     ]
-    others = [item for item in found[1:] if LAGS.isdisjoint(item.effects)]
-    return best_of_each([*fits, Fitted(state, judged(state, score)), *others])
+    lags = LAGS.intersection(best.effects)
+    states = (_as_host(x.state) for x in found if LAGS.intersection(x.effects) == lags)
+    return best_of_each([*fits, *(Fitted(x, judged(x, score)) for x in states)])
 
 
 def _as_host(state: ModelState) -> ModelState:

@@ -189,7 +189,7 @@ def named_inside(
     if not best.effects:
         say("inside: no force pays")
         if identified and fewer is start and not may_gain(best, score):
-            return without_forces(base, start, host, found, floor_rms)
+            return without_forces(base, start, host, words, found, floor_rms)
         return None
     if fewer is not start:
         on_all = OnAll.of(start, score_of_all, alone, identified)
@@ -224,6 +224,7 @@ def without_forces(
     base: Model,
     start: ModelState,
     host: Host,
+    words: str,
     found: Sequence[Fitted],
     floor_rms: float,
 ) -> Inside:
@@ -235,7 +236,7 @@ def without_forces(
     alone = found[0].state.settled()
     before, after = lefts((start, alone), floor_rms, base.output.unit)
     sentence = (
-        f"{host.words}, and leaves {after} rms of the fit records above the noise "
+        f"{words}, and leaves {after} rms of the fit records above the noise "
         f"floor, the base {before}"
     )
     rounds = (not_taken(alone, found),) if len(found) > 1 else ()
