@@ -60,22 +60,17 @@ def starting(chain: Sequence[Block], start: str) -> tuple[Block, ...]:
     Where the dynamics are at rest, a lag that is not is settled.
     """
 
-    def start_of(block: Block) -> str:
-        own = getattr(block, "start", "rest")
+    def started(block: Any) -> Any:
+        wanted = own = getattr(block, "start", "rest")
         if isinstance(block, Mechanism):
             may = block.stiffness > 0.0 or start in free_starts(block.output)
-            return start if may else own
-        if isinstance(block, Structure | TransferFunction):
-            return start
-        if isinstance(block, LinearBlock):
+            wanted = start if may else own
+        elif isinstance(block, Structure | TransferFunction):
+            wanted = start
+        elif isinstance(block, LinearBlock):
             at_rest = "settled" if own in PASTS else own
-            return at_rest if start == "rest" else start
-        return own
-
-    def started(block: Any) -> Any:
-        return (
-            replace(block, start=start_of(block)) if hasattr(block, "start") else block
-        )
+            wanted = at_rest if start == "rest" else start
+        return block if wanted == own else replace(block, start=wanted)
 
     return tuple(map(started, chain))
 

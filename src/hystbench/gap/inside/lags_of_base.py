@@ -44,10 +44,9 @@ def with_lags_of_base(
     alone = state
     while alone.added:
         alone = without_effect(alone, 0)
-    fewer = [without_effect(state, k) for k in range(len(state.added))]
-    fits = [
-        fitted_to_the_end(x, score) for x in (alone, *fewer) if x.added or x is alone
-    ]
+    fewer = (without_effect(state, k) for k in range(len(state.added)))
+    less = [alone, *(item for item in fewer if item.added)]
+    fits = [fitted_to_the_end(item, score) for item in less]
     lags = LAGS.intersection(best.effects)
     states = (_as_host(x.state) for x in found if LAGS.intersection(x.effects) == lags)
     return best_of_each([*fits, *(Fitted(x, judged(x, score)) for x in states)])
