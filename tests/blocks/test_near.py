@@ -64,7 +64,7 @@ def alongside(step, u, others):
     return [y for (y,) in near(step, us, us, (DT,), every)]
 
 
-def check(chain, u, names):
+def check(chain, u, names, most=2e-4):
     """Compare the derivative with each number to that of whole simulations."""
     steps = attached(chain)
     (plain,) = outputs([steps], u)
@@ -82,7 +82,7 @@ def check(chain, u, names):
         assert np.linalg.norm(expected) > 0
         off = np.linalg.norm(found - expected) / np.linalg.norm(expected)
         # One step of Newton's method a step: at a corner it is off by a bit each time.
-        assert off < 2e-4, (name, off)
+        assert off < most, (name, off)
 
 
 @pytest.mark.parametrize("host", [MACHINE, MOVED], ids=["mechanism", "impedance"])
@@ -93,7 +93,10 @@ def test_differences_of_motions_near_are_derivatives(law, host):
     names = [(0, "time_constant_s"), (3, "value"), (3, "offset")]
     names += [(1, name) for name in ("mass", "damping", "stiffness", "bias")]
     names += [(2, name) for name in LAWS[law]]
-    check(chain, drive() / (1 if host is MACHINE else 300), names)
+    # A whole simulation takes the slope of its own weight into its spring: what a step
+    # misses changes with that.
+    most = 1e-3 if law == "gravity" else 2e-4
+    check(chain, drive() / (1 if host is MACHINE else 300), names, most)
 
 
 def test_so_are_those_of_two_forces_and_of_other_modes_beside():

@@ -148,6 +148,11 @@ class Force(AttachedBlock, place="inside"):
         """How fast it swings by itself, in rad/s, which steps must resolve."""
         return 0.0
 
+    @property
+    def slope(self) -> float:
+        """Stiffness of a smooth force at q = 0, where that is part of its law."""
+        return 0.0
+
     def rows(self) -> FloatArray:
         """Give rows of the kernel: the law's number, then its own and zeros."""
         own = np.atleast_2d(np.asarray(self.numbers(), dtype=np.float64))
@@ -174,12 +179,18 @@ def rows(forces: tuple[Force, ...]) -> FloatArray:
     return np.vstack([np.zeros((0, ROW)), *(item.rows() for item in forces)])
 
 
-def exported(forces: tuple[Force, ...]) -> tuple[dict[str, Any], int]:
+def less_stiff(numbers: FloatArray, slope: float) -> FloatArray:
+    """Give rows of forces that are less by a linear spring, which their host has."""
+    row = np.zeros((1, ROW))
+    row[0, [0, 3]] = LAWS.index("stiffness"), -slope
+    return np.vstack([numbers, row])
+
+
+def exported(numbers: FloatArray) -> tuple[dict[str, Any], int]:
     """Give the constants of a step that stand for forces, and how many it remembers.
 
     Without a force there is a row of zeros and one memory, as C has no empty arrays.
     """
-    numbers = rows(forces)
     count = len(numbers)
     own = numbers.ravel() if count else np.zeros(ROW)
     return {"count": count, "forces": own}, max(count, 1)

@@ -32,3 +32,8 @@ class Gravity(Force, name="gravity", law="gravity"):
     def numbers(self) -> tuple[float, ...]:
         """Give the numbers of the law; the last is a unit of q in rad."""
         return (self.amplitude, self.angle, self.carried, RADIANS[self.unit])
+
+    @property
+    def slope(self) -> float:
+        """A pendulum swings as fast as this says."""
+        return self.amplitude * RADIANS[self.unit] * math.cos(self.angle)

@@ -17,7 +17,7 @@ from hystbench.blocks.curve import (
     through_samples,
     weighed,
 )
-from hystbench.blocks.force import Dynamics, Force, Motion, against, exported
+from hystbench.blocks.force import Dynamics, Force, Motion, against, exported, rows
 from hystbench.blocks.held import Hold
 from hystbench.blocks.parameter import choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
@@ -166,16 +166,16 @@ class Impedance(Dynamics, name="impedance", place="base"):
         between = exact and smooth and bool(forces)
         if smooth:
             way = _way(points, ahead)
-            for rows, order in ((rate, 1), (curvature, 2)):
+            for taken, order in ((rate, 1), (curvature, 2)):
                 if exact:
-                    rows += [rows[-1]] * (AHEAD + 1 - REACH)
-                rows[-1] = derivative_at(points, -ahead, order)
+                    taken += [taken[-1]] * (AHEAD + 1 - REACH)
+                taken[-1] = derivative_at(points, -ahead, order)
             if not exact:
                 told = f"{told}; {smooth_curve(points, ahead)}".removeprefix("; ")
                 if forces:
                     told += "; takes its forces at samples, without a low-pass filter"
         taps = low_pass_taps() if between else np.ones(1)
-        inside, memory = exported(forces)
+        inside, memory = exported(rows(forces))
         constants = {
             **self.constants(*NUMBERS),
             "velocity": int(self.input == "velocity"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import sqrt
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.attached import Signals
-from hystbench.blocks.force import Driven, Force, Motion, exported, rows
+from hystbench.blocks.force import Driven, Force, Motion, exported, less_stiff, rows
 from hystbench.blocks.forced import ForcedDynamics, step_weights, tables_of
 from hystbench.blocks.parameter import TINY, choice, number
 from hystbench.blocks.starts import PASTS
@@ -84,9 +85,10 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
         self, every: Sequence[Driven], drives: Sequence[Signals], dt: float
     ) -> list[list[Motion]]:
         """Move near motions through records, which have three samples or as many."""
-        hosts: list[Any] = [each.host for each in every]
-        numbers = np.array([rows(each.forces) for each in every])
-        driven = self.lines(every[0], drives, dt)
+        slope = slope_of(every[0].forces)
+        stiffer: list[Any] = [_stiffer(each, slope) for each in every]
+        hosts, numbers = [own for own, _ in stiffer], np.array([x for _, x in stiffer])
+        driven = hosts[0].lines(every[0], drives, dt)
         gain, bias, mass, damping, stiffness = np.array(
             [[x.gain, x.bias, x.mass, x.damping, x.stiffness] for x in hosts]
         ).T[..., None]
@@ -105,6 +107,7 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
         q, v = np.ascontiguousarray(np.moveaxis(motion, 2, 0))
         with np.errstate(over="ignore", invalid="ignore"):  # it may have run away
             curved = (p - damping * v - stiffness * q - force) / mass
+            force += slope * q
         return [
             [
                 Motion(*(x[k, own] for x in (q, v, curved, force)))
@@ -115,19 +118,20 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
 
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
         """Move the coordinate over the interval that has passed."""
+        stiffer, numbers = _stiffer(Driven(self, forces), slope_of(forces))
         lines = lines_of(self.holding, sampling)
         line = sampling.dt / lines.segments
-        parts = self.parts(line, forces)
-        balanced = 0.0 if self.start == "rest" else self.stiffness
-        inside, memory = exported(forces)
+        parts = stiffer.parts(line, forces)
+        balanced = 0.0 if self.start == "rest" else stiffer.stiffness
+        inside, memory = exported(numbers)
         constants = {
             "gain": self.gain,
             "bias": self.bias,
             **lines.constants,
             "parts": parts,
             "h": line / parts,
-            "step": step_weights((self.linear,), line / parts).ravel(),
-            "shown": self._shown(),
+            "step": step_weights((stiffer.linear,), line / parts).ravel(),
+            "shown": stiffer._shown(),
             "start": np.array([self.start_position, self.start_velocity, balanced]),
             **inside,
         }
@@ -177,6 +181,24 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
     def linear(self) -> tuple[float, float, float]:
         """Mass, damping and stiffness."""
         return self.mass, self.damping, self.stiffness
+
+
+def slope_of(forces: Sequence[Force]) -> float:
+    """Give the stiffness that a spring may take over from smooth forces.
+
+    Over a step the host's spring is exact, and a force is of second order.
+    """
+    return max(sum(item.slope for item in forces), 0.0)
+
+
+def _stiffer(driven: Driven, slope: float) -> tuple[Mechanism, FloatArray]:
+    """Give a mass that moves as before, with so much of its forces in its spring."""
+    host, numbers = driven.host, rows(driven.forces)
+    assert isinstance(host, Mechanism)  # noqa: S101  (for the type checker)
+    if slope == 0.0:
+        return host, numbers
+    more = replace(host, stiffness=host.stiffness + slope)
+    return more, less_stiff(numbers, slope)
 
 
 def free_starts(output: str) -> tuple[str, ...]:

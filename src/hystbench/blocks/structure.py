@@ -214,7 +214,7 @@ class Structure(ForcedDynamics, name="structure", place="base"):
         lines = lines_of(self.holding, sampling)
         line = sampling.dt / lines.segments
         parts = self.parts(line, forces)
-        inside, memory = exported(forces)
+        inside, memory = exported(rows(forces))
         count = len(self.stiffness)
         constants = {
             "modes": count,

@@ -12,6 +12,7 @@ from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.known_about import known_about
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import is_identified
+from hystbench.gap.effects import effects
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.fitting.augmented_model import augmented
@@ -374,9 +375,12 @@ def _most_inside(chain: Named, floor: Floor) -> float:
     """Give how many effects inside could do better than what a chain has found.
 
     They have to lower its score by what an effect has to gain. Where it leaves so
-    little that nothing can, they have to be fewer.
+    little that nothing can, they have to be fewer. A free form, as a path is, bends to
+    much of what is there: it says nothing of what could do better.
     """
     state = chain.state
+    if any(item.form in effects()[item.effect].free_forms for item in state.added):
+        return np.inf
     score = Score.plain(state.sample, floor.rms**2)
     left = score_of(state, score) - score.least(state.freedom)
     return np.inf if left >= PAYS else len(state.added) - 1

@@ -164,7 +164,7 @@ static double hb_force(const double *f, double q, double v, const double *memori
     const double memory = memories[0];
     switch ((int)f[0]) {
     case 0: /* stiffness */
-        return q * q * (f[1] + f[2] * q);
+        return q * (f[3] + q * (f[1] + f[2] * q));
     case 1: /* sinh */
         return f[1] * (f[2] * sinh(q / f[2]) - q);
     case 2: /* stop */ {
@@ -203,7 +203,7 @@ static double hb_mean_force(const double *f, double q, double way, double h,
     switch ((int)f[0]) {
     case 0: /* stiffness */
         return f[1] * (q * q + q * to + to * to) / 3 +
-               f[2] * middle * (q * q + to * to) / 2;
+               middle * (f[3] + f[2] * (q * q + to * to) / 2);
     case 1: /* sinh */ {
         const double y = half / f[2];
         const double spread = y == 0 ? 1 : sinh(y) / y;

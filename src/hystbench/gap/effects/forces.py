@@ -162,11 +162,17 @@ class Gravity(InsideEffect):
         """Offer a weight that makes half of the spring, one against it, one beside it.
 
         The coordinate is an angle. It is counted from the vertical, or from any angle:
-        from where the weight is at rest, or from where the spring is.
+        from where the weight is at rest, or from where the spring is. Without a spring
+        the weight alone holds it.
         """
         both = ("amplitude", "angle")
-        starts = (BESIDE, 0.5, -0.5) if moved.turns and not moved.anywhere else ()
-        for share in starts:
+        if not moved.turns or moved.anywhere:
+            return
+        if moved.loose:
+            spring = moved.stiffness / RADIANS[moved.turns]
+            alone = GravityBlock(amplitude=spring, unit=moved.turns)
+            yield Law("without a spring", alone, both[:1], stands_for=1.0)
+        for share in (BESIDE, 0.5, -0.5):
             # Of so small an angle that its sine is the angle, a spring.
             weight = share * moved.stiffness / RADIANS[moved.turns]
             block = GravityBlock(amplitude=weight, unit=moved.turns)
@@ -284,22 +290,30 @@ class Stop(InsideEffect):
     shows = "amplitude"
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Offer both sides, and either one, met early and late, and one that loses."""
+        """Offer both sides, and either one, met early and late, and one that loses.
+
+        Of both sides one may be nearer than the other.
+        """
         stiffness = moved.force / moved.reach
+        numbers = ("contact_stiffness", "gap")
         for sides in () if moved.anywhere else SIDES:
             for share in (0.3, 0.8):
                 block = StopBlock(
                     contact_stiffness=stiffness, gap=share * moved.reach, sides=sides
                 )
-                yield Law(_form(sides), block, ("contact_stiffness", "gap"))
+                yield Law(_form(sides), block, numbers)
+                if sides == "both":
+                    yield Law(UNEVEN, block, (*numbers, "centre"))
             lossy = replace(block, loss=LOSS / moved.speed)
-            numbers = ("contact_stiffness", "gap", "loss")
-            yield Law(f"{_form(sides)}, lossy", lossy, numbers)
+            yield Law(f"{_form(sides)}, lossy", lossy, (*numbers, "loss"))
 
     def vanishing(self, form: str) -> Mapping[str, float]:
         """Without its clearance a stop on both sides is a linear spring."""
-        return {"gap": 0.0} if form == _form("both") else {}
+        return {"gap": 0.0} if form in (_form("both"), UNEVEN) else {}
 
 
 def _form(sides: str) -> str:
     return f"sides: {sides}"
+
+
+UNEVEN = _form("both, uneven")

@@ -26,7 +26,9 @@ class Moved:
     """Whether where it is does not matter, as of a mass without a spring: a force that
     depends on the place has no meaning then."""
     stiffness: float = 0.0
-    """Of its linear spring; zero without one."""
+    """Of its linear spring, and of a weight; zero without either."""
+    loose: bool = False
+    """Whether nobody knows that it has a spring."""
 
 
 class Passed(NamedTuple):
@@ -53,8 +55,8 @@ class Law:
     """Parameters that are fitted."""
     place: Literal["inside", "before", "behind"] = "inside"
     stands_for: float = 0.0
-    """Share of the linear spring that the force stands for: it goes out of the
-    spring."""
+    """Share of the linear spring that the force stands for: it goes out of the spring.
+    Of one it is all of it, and no spring is left."""
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Of its numbers, where beyond them it would be another effect."""
 

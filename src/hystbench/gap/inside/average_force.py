@@ -11,7 +11,7 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.force import Dynamics, Force, against
 from hystbench.blocks.held import Hold
-from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.mechanism import Mechanism, free_starts
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.structure import Structure
@@ -127,6 +127,19 @@ def relieved(
         )
     chain[place] = replace(host, **values)
     return state.with_chain(tuple(chain))
+
+
+def without_spring(state: ModelState, place: int) -> ModelState:
+    """Give a mass no spring, if nobody knows that it has one and it may start so."""
+    host: Any = state.chain[place]
+    if not isinstance(host, Mechanism) or "stiffness" not in _unknown(state, place):
+        return state
+    if host.start not in free_starts(host.output) or host.stiffness == 0.0:
+        return state
+    chain = list(state.chain)
+    chain[place] = replace(host, stiffness=0.0)
+    free = [x for x in state.free if (x.block, x.parameter) != (place, "stiffness")]
+    return replace(state.with_chain(tuple(chain)), free=tuple(free))
 
 
 def _as_strong(state: ModelState, place: int) -> ModelState:

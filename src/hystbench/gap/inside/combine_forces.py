@@ -266,8 +266,9 @@ def fitted_likely(
     score : Score
         Of the whole records.
     count : int
-        How many, each by its best start, are fitted to the end; twice as many are
-        fitted roughly, each from twice as many starts.
+        How many, each by its best start, are fitted to the end. Twice as many are
+        fitted roughly, and four times as many a little, each from twice as many starts:
+        what a law promises where it starts says little of where it comes to.
 
     Returns
     -------
@@ -277,10 +278,12 @@ def fitted_likely(
     likely: dict[frozenset[str], list[Fitted]] = {}
     for item in sorted(begun, key=lambda item: item.score):
         likely.setdefault(frozenset(item.effects), []).append(item)
-    rough = [
-        raced(own[: 2 * count], beginnings)
-        for own in list(likely.values())[: 2 * count]
+    tried = [
+        _a_little(own[: 2 * count], beginnings)
+        for own in list(likely.values())[: 4 * count]
     ]
+    tried.sort(key=lambda running: running[0][1].score)
+    rough = [raced(running, beginnings) for running in tried[: 2 * count]]
     rough.sort(key=lambda pair: pair[1].score)
     begun_well = []
     for item, own in rough[:count]:
@@ -289,39 +292,55 @@ def fitted_likely(
     return _to_the_end(begun_well, score)
 
 
-def raced(begun: Sequence[Fitted], beginnings: Beginnings) -> tuple[Fitted, Fitted]:
-    """Fit starts a little, and the better half of them further, until one is left.
+Running = list[tuple[Fitted, Fitted]]
+"""Starts, each with what it came to; the least score first."""
+
+
+def _a_little(begun: Sequence[Fitted], beginnings: Beginnings) -> Running:
+    """Fit starts by a few evaluations."""
+    cut = [(item, Fitted(beginnings.cut(item.state), np.inf)) for item in begun]
+    return _further(cut, beginnings, FEW)
+
+
+def _further(running: Running, beginnings: Beginnings, evaluations: int) -> Running:
+    more = [
+        (item, fitted(own.state, beginnings.score, evaluations))
+        for item, own in running
+    ]
+    return sorted(more, key=lambda pair: pair[1].score)
+
+
+def raced(running: Running, beginnings: Beginnings) -> tuple[Fitted, Fitted]:
+    """Fit the better half of starts further, until one is left.
 
     Successive halving [1]_: the same time is spent on all starts of a round together.
     The best start of each law stays for a round more: some laws take longer to come
     near.
+
+    Parameters
+    ----------
+    running : list of (Fitted, Fitted)
+        Fitted a little.
+    beginnings : Beginnings
 
     References
     ----------
     .. [1] K. Jamieson, A. Talwalkar, "Non-stochastic best arm identification and
        hyperparameter optimization", AISTATS 2016, 240-248.
     """
-    running = [(item, Fitted(beginnings.cut(item.state), np.inf)) for item in begun]
+    best_of_law = {item.forms: item for item, _ in reversed(running)}
     evaluations = FEW
-    while True:
-        running = [
-            (item, fitted(own.state, beginnings.score, evaluations))
-            for item, own in running
-        ]
-        running.sort(key=lambda pair: pair[1].score)
-        if len(running) == 1 or evaluations >= QUICK:
-            return running[0]
+    while len(running) > 1 and evaluations < QUICK:
         half = ceil(len(running) / 2)
-        first = evaluations == FEW
-        best_of_law = (
-            {item.forms: item for item, _ in reversed(running)} if first else {}
-        )
-        running = [
+        kept = [
             (item, own)
             for k, (item, own) in enumerate(running)
             if k < half or best_of_law.get(item.forms) is item
         ]
+        best_of_law = {}
         evaluations = min(2 * evaluations, QUICK)
+        running = _further(kept, beginnings, evaluations)
+    return running[0]
 
 
 def fitted_each(begun: Iterable[Fitted], score: Score) -> list[Fitted]:

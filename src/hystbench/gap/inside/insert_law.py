@@ -9,8 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hystbench.blocks.attached_mass import AttachedMass
+from hystbench.blocks.force import Force
 from hystbench.blocks.linear import LinearBlock
-from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.mechanism import Mechanism, slope_of
 from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.gap.effects import among
@@ -18,7 +19,7 @@ from hystbench.gap.effects.effect import start_of
 from hystbench.gap.effects.law import Changed, Filled, Law, Moved, Passed
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added, Free, ModelState
-from hystbench.gap.inside.average_force import relieved, spring_of
+from hystbench.gap.inside.average_force import relieved, spring_of, without_spring
 from hystbench.gap.inside.host_places import host_of
 from hystbench.gap.inside.joint import has_no_joint
 from hystbench.record import Record
@@ -97,8 +98,9 @@ def how_it_moves(state: ModelState, turns: str) -> Moved:
     """Look how far, how fast and by what force a host moves on its records."""
     place = host_of(state)
     host: Any = state.chain[place]
-    spring = spring_of(host)
-    linear = tuple(x for x in state.chain[place:] if isinstance(x, AttachedMass))
+    inside = tuple(x for x in state.chain[place:] if isinstance(x, Force))
+    linear = tuple(x for x in inside if isinstance(x, AttachedMass) or x.slope > 0.0)
+    spring = spring_of(host) + slope_of(inside)
     reach = speed = force = 0.0
     for record, z in zip(state.records, state.simulation.driving(place), strict=True):
         motion = host.motion(z, record.dt, linear)
@@ -116,6 +118,7 @@ def how_it_moves(state: ModelState, turns: str) -> Moved:
         turns,
         anywhere,
         spring,
+        without_spring(state, place) is not state,
     )
 
 
@@ -142,13 +145,16 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
     last one. A lag begins as the host does, unless that begins at rest.
     """
     base: list[Any] = list(state.chain)
-    place = 0 if law.place == "before" else len(base)
+    place, replaced = 0 if law.place == "before" else len(base), 0
     if law.place == "inside":
         host = host_of(state)
         place = host + 1
-        if law.stands_for:
-            less = law.stands_for * spring_of(base[host])
-            base = list(relieved(state, host, less).chain)
+        if law.stands_for == 1.0:
+            before, state = len(state.free), without_spring(state, host)
+            replaced = before - len(state.free)
+        elif law.stands_for:
+            state = relieved(state, host, law.stands_for * spring_of(base[host]))
+        base = list(state.chain)
     block: Any = law.block
     begun = start_of(base)
     if isinstance(block, LinearBlock) and begun != "rest":
@@ -161,7 +167,8 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
         low, high = law.ranges.get(name, (-np.inf, np.inf))
         free.append(Free(place, name, low=low, high=high))
     values: dict[str, Any] = {name: getattr(law.block, name) for name in law.free}
-    item = Added(effect, law.place, law.form, (place,), values, float(len(law.free)))
+    more = float(len(law.free) - replaced)
+    item = Added(effect, law.place, law.form, (place,), values, more)
     return replace(state, free=tuple(free), added=(*state.added, item))
 
 
