@@ -273,7 +273,9 @@ def fitted_likely(
     Returns
     -------
     list of Fitted
-        Those that were fitted to the end, the least score first.
+        Those that were fitted to the end, the least score first. Where the best one
+        leaves what a further effect could gain, its other starts were fitted as well: a
+        fit may end in one of several minima.
     """
     likely: dict[frozenset[str], list[Fitted]] = {}
     for item in sorted(begun, key=lambda item: item.score):
@@ -289,7 +291,12 @@ def fitted_likely(
     for item, own in rough[:count]:
         numbers = {k: own.state.value(free) for k, free in enumerate(item.state.free)}
         begun_well.append(replace(own, state=item.state.at(numbers)))
-    return _to_the_end(begun_well, score)
+    done = _to_the_end(begun_well, score)
+    if done and may_gain(done[0], score):
+        others = likely[frozenset(done[0].effects)][: 2 * count]
+        done = [*done, *_to_the_end(others, score)]
+        done = best_of_each(sorted(done, key=lambda item: item.score))
+    return done
 
 
 Running = list[tuple[Fitted, Fitted]]
