@@ -356,8 +356,18 @@ def test_another_rate_is_no_other_law_of_a_tank_with_a_free_outlet():
     tank = Store(gain=1.0, rate=0.9, exponent=0.5, start_level=20.0)
     filled = Filled(((0, tank, 30.0),), known=True)
     changed = list(effects()["outflow"].stored(filled))
-    assert [item.form for item in changed] == ["power"]
+    assert [item.form for item in changed] == ["power", "weir", "power"]
     assert changed[0].free == ((0, "exponent"),)
+
+
+def test_water_over_a_straight_edge_flows_by_the_level_to_the_power_of_a_half_more():
+    tank = Store(gain=1.0, rate=0.9, exponent=1.0, start_level=20.0)
+    changed = list(effects()["outflow"].stored(Filled(((0, tank, 30.0),))))
+    (weir,) = (item for item in changed if item.form == "weir")
+    assert weir.values[0]["exponent"] == 1.5
+    # As much leaves the tank where it is half full.
+    assert weir.values[0]["rate"] * 15.0**1.5 == pytest.approx(0.9 * 15.0)
+    assert weir.free == ((0, "rate"),)
 
 
 def _ends(value):
