@@ -13,6 +13,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Changed, Law
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import (
+    EVALUATIONS,
     QUICK,
     Fitted,
     fitted,
@@ -285,7 +286,9 @@ def fitted_likely(
         for own in list(likely.values())[: 4 * count]
     ]
     tried.sort(key=lambda running: running[0][1].score)
-    rough = [raced(running, beginnings) for running in tried[: 2 * count]]
+    rough = [
+        raced(running, beginnings.score, FEW, QUICK) for running in tried[: 2 * count]
+    ]
     rough.sort(key=lambda pair: pair[1].score)
     begun_well = []
     for item, own in rough[:count]:
@@ -294,7 +297,9 @@ def fitted_likely(
     done = _to_the_end(begun_well, score)
     if done and may_gain(done[0], score):
         others = likely[frozenset(done[0].effects)][: 2 * count]
-        done = [*done, *_to_the_end(others, score)]
+        whole = _further([(item, item) for item in others], score, QUICK)
+        _, nearest = raced(whole, score, QUICK, EVALUATIONS)
+        done += _to_the_end([nearest], score)
         done = best_of_each(sorted(done, key=lambda item: item.score))
     return done
 
@@ -306,18 +311,17 @@ Running = list[tuple[Fitted, Fitted]]
 def _a_little(begun: Sequence[Fitted], beginnings: Beginnings) -> Running:
     """Fit starts by a few evaluations."""
     cut = [(item, Fitted(beginnings.cut(item.state), np.inf)) for item in begun]
-    return _further(cut, beginnings, FEW)
+    return _further(cut, beginnings.score, FEW)
 
 
-def _further(running: Running, beginnings: Beginnings, evaluations: int) -> Running:
-    more = [
-        (item, fitted(own.state, beginnings.score, evaluations))
-        for item, own in running
-    ]
+def _further(running: Running, score: Score, evaluations: int) -> Running:
+    more = [(item, fitted(own.state, score, evaluations)) for item, own in running]
     return sorted(more, key=lambda pair: pair[1].score)
 
 
-def raced(running: Running, beginnings: Beginnings) -> tuple[Fitted, Fitted]:
+def raced(
+    running: Running, score: Score, evaluations: int, most: int
+) -> tuple[Fitted, Fitted]:
     """Fit the better half of starts further, until one is left.
 
     Successive halving [1]_: the same time is spent on all starts of a round together.
@@ -327,8 +331,10 @@ def raced(running: Running, beginnings: Beginnings) -> tuple[Fitted, Fitted]:
     Parameters
     ----------
     running : list of (Fitted, Fitted)
-        Fitted a little.
-    beginnings : Beginnings
+        Fitted by so many evaluations of the residual.
+    score : Score
+    evaluations, most : int
+        As many as before at first, twice as many each time, and so many at the end.
 
     References
     ----------
@@ -336,8 +342,7 @@ def raced(running: Running, beginnings: Beginnings) -> tuple[Fitted, Fitted]:
        hyperparameter optimization", AISTATS 2016, 240-248.
     """
     best_of_law = {item.forms: item for item, _ in reversed(running)}
-    evaluations = FEW
-    while len(running) > 1 and evaluations < QUICK:
+    while len(running) > 1 and evaluations < most:
         half = ceil(len(running) / 2)
         kept = [
             (item, own)
@@ -345,8 +350,8 @@ def raced(running: Running, beginnings: Beginnings) -> tuple[Fitted, Fitted]:
             if k < half or best_of_law.get(item.forms) is item
         ]
         best_of_law = {}
-        evaluations = min(2 * evaluations, QUICK)
-        running = _further(kept, beginnings, evaluations)
+        evaluations = min(2 * evaluations, most)
+        running = _further(kept, score, evaluations)
     return running[0]
 
 
