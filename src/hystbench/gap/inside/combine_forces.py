@@ -140,13 +140,20 @@ def with_one_fewer(best: Fitted, found: Sequence[Fitted], score: Score) -> list[
 
 
 def best_of_each(found: Sequence[Fitted]) -> list[Fitted]:
-    """Keep of each set of effects the hypothesis that scores least, in their order."""
-    best: dict[frozenset[str], Fitted] = {}
+    """Keep of each set of effects the hypothesis that scores least, in their order.
+
+    Of laws that cannot be told apart it is the one of the fewest numbers.
+    """
+    alike: dict[frozenset[str], list[Fitted]] = {}
     for item in found:
-        effects = frozenset(item.effects)
-        if effects not in best or item.score < best[effects].score:
-            best[effects] = item
-    return list(best.values())
+        alike.setdefault(frozenset(item.effects), []).append(item)
+    best = []
+    for own in alike.values():
+        most = least(own).score + SCALE
+        near = [item for item in own if item.score <= most]
+        fewest = min(near, key=lambda item: (item.state.freedom, item.score))
+        best.append(fewest)
+    return best
 
 
 def _one_more(
@@ -300,7 +307,7 @@ def fitted_likely(
         whole = _further([(item, item) for item in others], score, QUICK)
         _, nearest = raced(whole, score, QUICK, EVALUATIONS)
         done += _to_the_end([nearest], score)
-        done = best_of_each(sorted(done, key=lambda item: item.score))
+        done = sorted(best_of_each(done), key=lambda item: item.score)
     return done
 
 
