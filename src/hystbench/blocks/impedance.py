@@ -258,9 +258,9 @@ class Impedance(Dynamics, name="impedance", place="base"):
         way, rate, curvature = weighed(z, _of_curve())
         # The curve is turned about its ends: its derivatives have a kink there.
         first, last = slice(AHEAD + 1), slice(-AHEAD, None)
-        for found, rows, order in ((rate, RATE, 1), (curvature, CURVATURE, 2)):
-            found[first] = _weighed(z[: AHEAD + 1 + REACH], rows, order)[first]
-            found[last] = _weighed(z[-AHEAD - REACH :], rows, order)[last]
+        for found, table, order in ((rate, RATE, 1), (curvature, CURVATURE, 2)):
+            found[first] = _weighed(z[: AHEAD + 1 + REACH], table, order)[first]
+            found[last] = _weighed(z[-AHEAD - REACH :], table, order)[last]
             found /= dt**order
         if self.input == "position":
             return z, rate, curvature
