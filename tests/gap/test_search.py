@@ -17,6 +17,7 @@ from hystbench.gap.experiment.tell_apart import next_experiment
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.on_records import start_state
+from hystbench.gap.inside.choose import most_inside
 from hystbench.gap.judging.left import Left
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
@@ -277,7 +278,11 @@ def test_forces_have_to_be_fewer_than_what_leaves_nothing(alike, effects, most):
     _, _, floor, found = alike
     state = found["sensor-lag"]
     named = Named(replace(state, added=state.added * effects), ())
-    assert search_module._most_inside(named, floor) == most
+    assert most_inside(named, floor.rms) == most
     # Where a gap is left any number of forces may close it.
     base = replace(named, state=alike[1])
-    assert search_module._most_inside(base, floor) == np.inf
+    assert most_inside(base, floor.rms) == np.inf
+    # A path bends to whatever is there, and leaves nothing to any law.
+    path = state.added[0]._replace(effect="drift", form="winding path")
+    free = replace(named, state=replace(state, added=(path,)))
+    assert most_inside(free, floor.rms) == np.inf

@@ -6,13 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, partial
 
-import numpy as np
-
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.known_about import known_about
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import is_identified
-from hystbench.gap.effects import effects
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.fitting.augmented_model import augmented
@@ -28,6 +25,7 @@ from hystbench.gap.fitting.re_tuning_gain import (
 )
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.choose import most_inside
 from hystbench.gap.inside.named_inside import (
     Inside,
     apart_inside,
@@ -259,7 +257,7 @@ def _beside(
 
     @cache
     def most() -> float:
-        return _most_inside(in_a_chain(), floor)
+        return most_inside(in_a_chain(), floor.rms)
 
     halves = bool(places_between_halves(start.simulation))
     # Two halves say themselves that there is a curve between two filters: a chain. And
@@ -369,21 +367,6 @@ def _leaves_little(inside: Inside | None, floor: Floor) -> bool:
     square = floor.rms**2
     left = inside.named.state.power(square)
     return left <= LOOSE * inside.start.power(square)
-
-
-def _most_inside(chain: Named, floor: Floor) -> float:
-    """Give how many effects inside could do better than what a chain has found.
-
-    They have to lower its score by what an effect has to gain. Where it leaves so
-    little that nothing can, they have to be fewer. A free form, as a path is, bends to
-    much of what is there: it says nothing of what could do better.
-    """
-    state = chain.state
-    if any(item.form in effects()[item.effect].free_forms for item in state.added):
-        return np.inf
-    score = Score.plain(state.sample, floor.rms**2)
-    left = score_of(state, score) - score.least(state.freedom)
-    return np.inf if left >= PAYS else len(state.added) - 1
 
 
 def _why_enough(

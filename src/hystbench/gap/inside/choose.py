@@ -10,7 +10,10 @@ import numpy as np
 
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.least_squares import Fitted
+from hystbench.gap.fitting.model_score import score_of
+from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
 from hystbench.gap.thresholds import CERTAIN, FURTHER, PAYS, SCALE, UNNAMED_SHARE
 
@@ -139,3 +142,18 @@ def _candidate(item: Fitted, already: frozenset[str], now: float) -> Candidate:
     return Candidate(
         last.effect, last.place, last.form, item.score, now - item.score, state
     )
+
+
+def most_inside(chain: Named, floor_rms: float) -> float:
+    """Give how many effects inside could do better than what a chain has found.
+
+    They have to lower its score by what an effect has to gain. Where it leaves so
+    little that nothing can, they have to be fewer. A free form, as a path is, bends to
+    much of what is there: it says nothing of what could do better.
+    """
+    state = chain.state
+    if any(item.form in effects()[item.effect].free_forms for item in state.added):
+        return np.inf
+    score = Score.plain(state.sample, floor_rms**2)
+    left = score_of(state, score) - score.least(state.freedom)
+    return np.inf if left >= PAYS else len(state.added) - 1

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
-from math import ceil
 
 import numpy as np
 
@@ -31,6 +30,7 @@ from hystbench.gap.inside.insert_law import (
     with_law,
 )
 from hystbench.gap.inside.joint import joints
+from hystbench.gap.inside.race import FEW, a_little, further, raced
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
 from hystbench.record import FloatArray
@@ -38,8 +38,6 @@ from hystbench.record import FloatArray
 SINGLES, PAIRS = 4, 2
 """Hypotheses of one force that go on to pairs, and of two that go on to threes: forces
 that gain little alone may gain much together."""
-FEW = 4
-"""Evaluations of the residual after which the worse half of the starts is left."""
 
 
 def singles(
@@ -289,7 +287,7 @@ def fitted_likely(
     for item in sorted(begun, key=lambda item: item.score):
         likely.setdefault(frozenset(item.effects), []).append(item)
     tried = [
-        _a_little(own[: 2 * count], beginnings)
+        a_little(own[: 2 * count], beginnings)
         for own in list(likely.values())[: 4 * count]
     ]
     tried.sort(key=lambda running: running[0][1].score)
@@ -304,62 +302,11 @@ def fitted_likely(
     done = _to_the_end(begun_well, score)
     if done and may_gain(done[0], score):
         others = likely[frozenset(done[0].effects)][: 2 * count]
-        whole = _further([(item, item) for item in others], score, QUICK)
+        whole = further([(item, item) for item in others], score, QUICK)
         _, nearest = raced(whole, score, QUICK, EVALUATIONS)
         done += _to_the_end([nearest], score)
         done = sorted(best_of_each(done), key=lambda item: item.score)
     return done
-
-
-Running = list[tuple[Fitted, Fitted]]
-"""Starts, each with what it came to; the least score first."""
-
-
-def _a_little(begun: Sequence[Fitted], beginnings: Beginnings) -> Running:
-    """Fit starts by a few evaluations."""
-    cut = [(item, Fitted(beginnings.cut(item.state), np.inf)) for item in begun]
-    return _further(cut, beginnings.score, FEW)
-
-
-def _further(running: Running, score: Score, evaluations: int) -> Running:
-    more = [(item, fitted(own.state, score, evaluations)) for item, own in running]
-    return sorted(more, key=lambda pair: pair[1].score)
-
-
-def raced(
-    running: Running, score: Score, evaluations: int, most: int
-) -> tuple[Fitted, Fitted]:
-    """Fit the better half of starts further, until one is left.
-
-    Successive halving [1]_: the same time is spent on all starts of a round together.
-    The best start of each law stays for a round more: some laws take longer to come
-    near.
-
-    Parameters
-    ----------
-    running : list of (Fitted, Fitted)
-        Fitted by so many evaluations of the residual.
-    score : Score
-    evaluations, most : int
-        As many as before at first, twice as many each time, and so many at the end.
-
-    References
-    ----------
-    .. [1] K. Jamieson, A. Talwalkar, "Non-stochastic best arm identification and
-       hyperparameter optimization", AISTATS 2016, 240-248.
-    """
-    best_of_law = {item.forms: item for item, _ in reversed(running)}
-    while len(running) > 1 and evaluations < most:
-        half = ceil(len(running) / 2)
-        kept = [
-            (item, own)
-            for k, (item, own) in enumerate(running)
-            if k < half or best_of_law.get(item.forms) is item
-        ]
-        best_of_law = {}
-        evaluations = min(2 * evaluations, most)
-        running = _further(kept, score, evaluations)
-    return running[0]
 
 
 def fitted_each(begun: Iterable[Fitted], score: Score) -> list[Fitted]:

@@ -17,7 +17,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.least_squares import Fitted, fitted, judged
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.combine_forces import FEW
+from hystbench.gap.inside.race import FEW
 from hystbench.gap.records.coarser import coarser, left_out
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation

@@ -1,0 +1,66 @@
+"""A race of starts: all are fitted a little, and the better ones further."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import ceil
+
+import numpy as np
+
+from hystbench.gap.fitting.least_squares import Fitted, fitted
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.inside.beginnings import Beginnings
+
+FEW = 4
+"""Evaluations of the residual after which the worse half of the starts is left."""
+
+Running = list[tuple[Fitted, Fitted]]
+"""Starts, each with what it came to; the least score first."""
+
+
+def a_little(begun: Sequence[Fitted], beginnings: Beginnings) -> Running:
+    """Fit starts by a few evaluations."""
+    cut = [(item, Fitted(beginnings.cut(item.state), np.inf)) for item in begun]
+    return further(cut, beginnings.score, FEW)
+
+
+def further(running: Running, score: Score, evaluations: int) -> Running:
+    """Fit all of them by so many evaluations more."""
+    more = [(item, fitted(own.state, score, evaluations)) for item, own in running]
+    return sorted(more, key=lambda pair: pair[1].score)
+
+
+def raced(
+    running: Running, score: Score, evaluations: int, most: int
+) -> tuple[Fitted, Fitted]:
+    """Fit the better half of starts further, until one is left.
+
+    Successive halving [1]_: the same time is spent on all starts of a round together.
+    The best start of each law stays for a round more: some laws take longer to come
+    near.
+
+    Parameters
+    ----------
+    running : list of (Fitted, Fitted)
+        Fitted by so many evaluations of the residual.
+    score : Score
+    evaluations, most : int
+        As many as before at first, twice as many each time, and so many at the end.
+
+    References
+    ----------
+    .. [1] K. Jamieson, A. Talwalkar, "Non-stochastic best arm identification and
+       hyperparameter optimization", AISTATS 2016, 240-248.
+    """
+    best_of_law = {item.forms: item for item, _ in reversed(running)}
+    while len(running) > 1 and evaluations < most:
+        half = ceil(len(running) / 2)
+        kept = [
+            (item, own)
+            for k, (item, own) in enumerate(running)
+            if k < half or best_of_law.get(item.forms) is item
+        ]
+        best_of_law = {}
+        evaluations = min(2 * evaluations, most)
+        running = further(kept, score, evaluations)
+    return running[0]
