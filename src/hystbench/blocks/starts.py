@@ -29,9 +29,19 @@ def begun_once(block: Any) -> Any:
     return replace(block, start="rest" if free else "settled")
 
 
+def started(block: Any, record: Record) -> Any:
+    """Give a block as it begins on a record: only whole periods repeat."""
+    return block if record.repeats else begun_once(block)
+
+
+def start_on(record: Record, start: str) -> str:
+    """Give the start of linear dynamics on a record, as :func:`started` does."""
+    return "settled" if start == "repeating" and not record.repeats else start
+
+
 def possible_starts(records: Sequence[Record]) -> tuple[Start, ...]:
-    """Give the starts that records may have: only whole periods repeat."""
-    return STARTS if all(record.repeats for record in records) else STARTS[:-1]
+    """Give the starts that records may have: ``repeating`` where some repeat."""
+    return STARTS if any(record.repeats for record in records) else STARTS[:-1]
 
 
 def plainest_start(costs: Sequence[float]) -> int:

@@ -128,7 +128,8 @@ def _without(record: Record, base: Model, asked: Model, most: float) -> Record:
     lead = len(free)
     if lead == 0:
         return record
-    rest = record.y - asked.simulate(record.u, record.dt)
+    begun = asked if record.repeats else asked.begun_once()
+    rest = record.y - begun.simulate(record.u, record.dt)
     first, behind = rest[:lead], rest[lead:][record.counted[lead:]]
     measured = record.counted[:lead]
     first, free = first[measured], free[measured]
@@ -160,6 +161,7 @@ def _free_motion(model: Model, record: Record, most: float) -> FloatArray:
             order += 2
         elif isinstance(block, Store):
             order += 1
+    model = model.begun_once()
     u = np.concatenate([np.full(order, record.u[0]), record.u])
     now = model.simulate(u, record.dt)
     size = np.std(record.u) or np.max(np.abs(record.u)) or 1.0

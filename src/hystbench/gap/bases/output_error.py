@@ -11,7 +11,7 @@ import numpy as np
 
 from hystbench.blocks.held import Hold
 from hystbench.blocks.linear import states_of
-from hystbench.blocks.starts import path_from
+from hystbench.blocks.starts import path_from, start_on, started
 from hystbench.blocks.state_space import StateSpace
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
@@ -101,7 +101,8 @@ class OutputError:
         """Simulate a ratio with its constant, one output a record."""
         block = self.block(ratio)
         return [
-            block.simulate(record.u, record.u, record.dt) + ratio.offset
+            started(block, record).simulate(record.u, record.u, record.dt)
+            + ratio.offset
             for record in self.records
         ]
 
@@ -181,7 +182,7 @@ class OutputError:
         ``x_k`` with b_k and by ``-s^k y / A`` with a_k.
         """
         a, b = ratio.a, ratio.b
-        path, before = path_from(record.u, self.start)
+        path, before = path_from(record.u, start_on(record, self.start))
         own, k = slice(len(path) - len(record), None), len(a)
         system = _with_its_derivatives(ratio, self.scale)
         states = states_of(system, path - before, record.dt, self.hold)[own]

@@ -27,6 +27,7 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
+from hystbench.blocks.starts import started
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.spectral import Ratio, Rational
 from hystbench.gap.bases.wiener_hammerstein import Halves, HalvesError
@@ -138,7 +139,7 @@ def _line(task: HalvesError, chain: tuple[Block, ...]) -> tuple[float, float, fl
     for record, mask in zip(task.records, task.masks, strict=True):
         z = record.u
         for block in chain:
-            z = block.simulate(z, record.u, record.dt)
+            z = started(block, record).simulate(z, record.u, record.dt)
         tables.append(np.column_stack([z, np.ones(len(z))])[mask])
         wanted.append(record.y[mask])
     table, y = np.vstack(tables), np.concatenate(wanted)

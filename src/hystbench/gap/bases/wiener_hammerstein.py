@@ -11,7 +11,7 @@ import numpy as np
 from scipy import fft
 
 from hystbench.blocks.held import Hold
-from hystbench.blocks.starts import path_from
+from hystbench.blocks.starts import path_from, start_on
 from hystbench.gap.bases.output_error import descended
 from hystbench.gap.bases.spectral import Rational, below, held, stable
 from hystbench.record import ComplexArray, FloatArray, Mask, Record
@@ -70,7 +70,8 @@ class Way:
 
     def __init__(self, record: Record, mask: Mask, task: HalvesError) -> None:
         self.record, self.mask = record, mask
-        path, self.before = path_from(record.u, task.start)
+        start = start_on(record, task.start)
+        path, self.before = path_from(record.u, start)
         self.count = len(path)
         self.length = fft.next_fast_len(2 * self.count, real=True)
         f = np.asarray(fft.rfftfreq(self.length, record.dt), np.float64)

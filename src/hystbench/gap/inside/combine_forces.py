@@ -273,8 +273,9 @@ def fitted_likely(
         Of the whole records.
     count : int
         How many, each by its best start, are fitted to the end. Twice as many are
-        fitted roughly, and four times as many a little, each from twice as many starts:
-        what a law promises where it starts says little of where it comes to.
+        fitted roughly, and four times as many a little, each from twice as many starts
+        and by all its laws: what a law promises where it starts says little of where it
+        comes to.
 
     Returns
     -------
@@ -286,10 +287,11 @@ def fitted_likely(
     likely: dict[frozenset[str], list[Fitted]] = {}
     for item in sorted(begun, key=lambda item: item.score):
         likely.setdefault(frozenset(item.effects), []).append(item)
-    tried = [
-        a_little(own[: 2 * count], beginnings)
-        for own in list(likely.values())[: 4 * count]
-    ]
+    some = {
+        effects: _of_each_law(own, 2 * count)
+        for effects, own in list(likely.items())[: 4 * count]
+    }
+    tried = [a_little(own, beginnings) for own in some.values()]
     tried.sort(key=lambda running: running[0][1].score)
     rough = [
         raced(running, beginnings.score, FEW, QUICK) for running in tried[: 2 * count]
@@ -301,12 +303,19 @@ def fitted_likely(
         begun_well.append(replace(own, state=item.state.at(numbers)))
     done = _to_the_end(begun_well, score)
     if done and may_gain(done[0], score):
-        others = likely[frozenset(done[0].effects)][: 2 * count]
+        others = some[frozenset(done[0].effects)]
         whole = further([(item, item) for item in others], score, QUICK)
         _, nearest = raced(whole, score, QUICK, EVALUATIONS)
         done += _to_the_end([nearest], score)
         done = sorted(best_of_each(done), key=lambda item: item.score)
     return done
+
+
+def _of_each_law(starts: Sequence[Fitted], count: int) -> list[Fitted]:
+    """Give the likeliest starts, the likeliest of each law in any case."""
+    firsts = list({item.forms: item for item in reversed(starts)}.values())
+    others = [item for item in starts if not any(item is one for one in firsts)]
+    return firsts + others[: max(count - len(firsts), 0)]
 
 
 def fitted_each(begun: Iterable[Fitted], score: Score) -> list[Fitted]:

@@ -15,7 +15,7 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
 from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.mechanism import Mechanism, free_starts
-from hystbench.blocks.starts import possible_starts
+from hystbench.blocks.starts import possible_starts, started
 from hystbench.gap.cache import records_digest
 from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.fitting.score import Score
@@ -201,7 +201,8 @@ def _solved_for(
     roughly: Any = {"hold": "linear" if hold == "band-limited" else hold}
     found: list[list[tuple[float, Mechanism, float, float]]] = [[] for _ in outputs]
     for unit in units:
-        moved = [replace(unit, **roughly).motion(r.u, r.dt, ()) for r in records]
+        rough = replace(unit, **roughly)
+        moved = [started(rough, r).motion(r.u, r.dt, ()) for r in records]
         other = beside(unit)
         for output, own in zip(outputs, found, strict=True):
             seen: Any = {"output": output, "hold": hold}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar, Literal, cast
@@ -88,21 +88,38 @@ class Simulation:
 
     def run(self, blocks: Sequence[Block], signals: Signals) -> Signals:
         """Send signals through blocks, from rest."""
-        begun = steps = self._steps(blocks)
-        repeating = any(getattr(block, "start", "") == "repeating" for block in blocks)
-        if repeating and not all(record.repeats for record in self.records):
-            begun = self._steps([begun_once(block) for block in blocks])
+        found = list(signals)
         finely = self.steps == "fine" and self.hold == LIMITED
-        dts = [record.dt for record in self.records]
-        for step, first in zip(steps, begun, strict=True):
-            if step is first and hasattr(step, "simulate_records"):
-                signals = tuple(step.simulate_records(signals, dts))
-                continue
-            signals = tuple(
-                self._sent(step if record.repeats else first, z, record, finely)
-                for z, record in zip(signals, self.records, strict=True)
-            )
-        return signals
+        for begun, places in self._begun_alike(blocks):
+            records = [self.records[k] for k in places]
+            own = tuple(signals[k] for k in places)
+            dts = [record.dt for record in records]
+            for step in self._steps([begun(block) for block in blocks]):
+                if hasattr(step, "simulate_records"):
+                    own = tuple(step.simulate_records(own, dts))
+                    continue
+                own = tuple(
+                    self._sent(step, z, record, finely)
+                    for z, record in zip(own, records, strict=True)
+                )
+            for k, z in zip(places, own, strict=True):
+                found[k] = z
+        return tuple(found)
+
+    def _begun_alike(
+        self, blocks: Sequence[Block]
+    ) -> list[tuple[Callable[[Block], Block], list[int]]]:
+        """Tell how blocks begin on records, and on which of them: by their places."""
+        repeating = any(getattr(block, "start", "") == "repeating" for block in blocks)
+        whole = [
+            k
+            for k, record in enumerate(self.records)
+            if record.repeats or not repeating
+        ]
+        others = [k for k in range(len(self.records)) if k not in whole]
+        begun: list[tuple[Callable[[Block], Block], list[int]]]
+        begun = [(_as_it_is, whole), (begun_once, others)]
+        return [(how, places) for how, places in begun if places]
 
     def _sent(self, step: Any, z: FloatArray, record: Record, finely: bool) -> Any:
         """Send one signal through one step."""
@@ -133,10 +150,17 @@ class Simulation:
         tuple of ndarray, shape (n, 1 + chains)
             One a record: the chain's own output first.
         """
-        steps = [self._steps(chain) for chain in (self.chain, *chains)]
-        us, dts = zip(*((record.u, record.dt) for record in self.records), strict=True)
-        found = through_near(steps, us, dts)
-        return tuple(np.column_stack(own) for own in zip(*found, strict=True))
+        found: dict[int, FloatArray] = {}
+        for begun, places in self._begun_alike(self.chain):
+            steps = [
+                self._steps([begun(block) for block in chain])
+                for chain in (self.chain, *chains)
+            ]
+            records = [self.records[k] for k in places]
+            us, dts = zip(*((record.u, record.dt) for record in records), strict=True)
+            every = zip(*through_near(steps, us, dts), strict=True)
+            found.update(zip(places, map(np.column_stack, every), strict=True))
+        return tuple(found[k] for k in range(len(self.records)))
 
     def _known(self, step: Block | Wrapped, z: FloatArray) -> Block | Wrapped:
         """Put in what the chain's own hysteresis gives for a signal, if it is wrapped.
@@ -309,6 +333,10 @@ class _InLongSteps:
 
 
 @lru_cache(maxsize=1024)
+def _as_it_is(block: Block) -> Block:
+    return block
+
+
 def _quick(block: Block) -> Block | _InLongSteps:
     if isinstance(block, StiffnessHardening):
         return _InLongSteps(block)
