@@ -32,7 +32,7 @@ from hystbench.gap.inside.insert_law import (
 from hystbench.gap.inside.joint import joints
 from hystbench.gap.inside.race import FEW, a_little, further, raced
 from hystbench.gap.progress import Say, silent
-from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
+from hystbench.gap.thresholds import CERTAIN, FURTHER, PAYS, SCALE
 from hystbench.record import FloatArray
 
 SINGLES, PAIRS = 4, 2
@@ -301,7 +301,7 @@ def fitted_likely(
     for item, own in rough[:count]:
         numbers = {k: own.state.value(free) for k, free in enumerate(item.state.free)}
         begun_well.append(replace(own, state=item.state.at(numbers)))
-    done = _to_the_end(begun_well, score)
+    done = _as_far_as_they_matter(begun_well, score)
     if done and may_gain(done[0], score):
         others = some[frozenset(done[0].effects)]
         whole = further([(item, item) for item in others], score, QUICK)
@@ -309,6 +309,21 @@ def fitted_likely(
         done += _to_the_end([nearest], score)
         done = sorted(best_of_each(done), key=lambda item: item.score)
     return done
+
+
+def _as_far_as_they_matter(begun: Sequence[Fitted], score: Score) -> list[Fitted]:
+    """Fit hypotheses to the end, or till it is beyond doubt that they are worse.
+
+    That is so where the first leaves nothing that another effect could gain.
+    """
+    done = _to_the_end(begun[:1], score)
+    others = list(begun[1:])
+    if done and not may_gain(done[0], score):
+        most = done[0].score + CERTAIN
+        nearer = [fitted(item.state, score, QUICK) for item in others]
+        others = [item for item in nearer if item.score < most]
+        done += [item for item in nearer if most <= item.score < np.inf]
+    return sorted([*done, *_to_the_end(others, score)], key=lambda item: item.score)
 
 
 def _of_each_law(starts: Sequence[Fitted], count: int) -> list[Fitted]:
