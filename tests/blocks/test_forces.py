@@ -40,6 +40,10 @@ LAWS = {
         {"coefficient": 4.0, "reach": 0.5},
         lambda q, v: 4 * (0.5 * np.sinh(q / 0.5) - q),
     ),
+    "saturating-stiffness": (
+        {"stiffness": 4.0, "reach": 0.5},
+        lambda q, v: 4 * q / np.sqrt(1 + (q / 0.5) ** 2),
+    ),
     "stop": (
         {"contact_stiffness": 7.0, "gap": 0.4, "centre": 0.1},
         lambda q, v: np.select(

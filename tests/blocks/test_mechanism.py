@@ -55,6 +55,8 @@ SMOOTH = {
               lambda q, v: 50 * q**2 + 300 * q**3),
     "steep": ([force("exponential-stiffness", coefficient=80.0, reach=0.3)],
               lambda q, v: 80 * (0.3 * np.sinh(q / 0.3) - q)),
+    "level": ([force("saturating-stiffness", stiffness=80.0, reach=0.3)],
+              lambda q, v: 80 * q / np.sqrt(1 + (q / 0.3) ** 2)),
     "drag": ([force("drag", coefficient=0.8)], lambda q, v: 0.8 * v * abs(v)),
     "pendulum": ([force("gravity", amplitude=150.0, angle=0.5)],
                  lambda q, v: 150 * (np.sin(q + 0.5) - np.sin(0.5))),
@@ -199,6 +201,9 @@ POTENTIALS = {
                 lambda q: 40 * q**3 / 3 + 75 * q**4),
     "steep spring": ("exponential-stiffness", {"coefficient": 80.0, "reach": 0.1},
                      lambda q: 80 * (0.01 * (np.cosh(q / 0.1) - 1) - q**2 / 2)),
+    "spring that levels off": (
+        "saturating-stiffness", {"stiffness": 80.0, "reach": 0.1},
+        lambda q: 80 * 0.01 * (np.sqrt(1 + (q / 0.1) ** 2) - 1)),
     "weight": ("gravity", {"amplitude": 150.0, "angle": 0.5},
                lambda q: 150 * (np.cos(0.5) - np.cos(q + 0.5) - np.sin(0.5) * q)),
     "contact": ("stop", {"contact_stiffness": 2e3, "gap": 0.3, "centre": 0.1},

@@ -19,7 +19,7 @@ from hystbench.record import FloatArray
 LAWS = (
     *("stiffness", "sinh", "stop", "friction"),
     *("drag", "hysteretic", "gravity", "slider", "smooth", "relaxation"),
-    *("attached", "lugre", "faster"),
+    *("attached", "lugre", "faster", "saturating"),
 )
 """Laws of the kernel, by the number that they have in kernels/forces.c."""
 ROW = 6

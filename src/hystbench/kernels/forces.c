@@ -98,6 +98,9 @@ static double hb_level(double sliding, double excess, double fades, double v)
     return sliding + (fades > 0 ? excess * exp(-(v / fades) * (v / fades)) : 0);
 }
 
+/* The hypotenuse of one and y. */
+static double hb_longer(double y) { return sqrt(1 + y * y); }
+
 /* The largest force of friction at a velocity, the largest at all being f[1] + f[2]. */
 static double hb_sliding(const double *f, double v)
 {
@@ -184,6 +187,8 @@ static double hb_force(const double *f, double q, double v, const double *memori
         return f[1] * memory;
     case 6: /* gravity */
         return f[1] * (sin(f[4] * q + f[2]) - f[3] * sin(f[2]));
+    case 13: /* saturating */
+        return f[1] * q / hb_longer(q / f[2]);
     case 7: /* slider */
         return f[1] * hb_dead_zone(f[3], memory);
     case 9: /* relaxation */
@@ -245,6 +250,8 @@ static double hb_mean_force(const double *f, double q, double way, double h,
         return f[1] * (sin(f[4] * middle + f[2]) * (by == 0 ? 1 : sin(by) / by) -
                        f[3] * sin(f[2]));
     }
+    case 13: /* saturating */
+        return f[1] * 2 * middle / (hb_longer(q / f[2]) + hb_longer(to / f[2]));
     case 7: /* slider */
         return f[1] * hb_mean_held(memory, way, f[2], f[3]);
     case 9: /* relaxation */ {

@@ -18,7 +18,7 @@ struct nearby {
 #define EACH(k, all) for (index_t k = 0; k < (all)->wide; k += LANES)
 
 /* What a law depends on, beside the way or the velocity: the place, and its memory. */
-static int minds_place(int law) { return law <= 2 || law == 6; }
+static int minds_place(int law) { return law <= 2 || law == 6 || law == 13; }
 static int minds_memory(int law)
 {
     return law == 3 || law == 5 || law == 7 || law == 9 || law == 11;
@@ -35,6 +35,7 @@ static double place_of(const double *f)
 {
     switch ((int)f[0]) {
     case 1: /* sinh */
+    case 13: /* saturating */
         return fabs(f[2]);
     case 2: /* stop */
         return fabs(f[2]) + fabs(f[3]);

@@ -13,6 +13,7 @@ from scipy import fft
 from hystbench.blocks import block_class
 from hystbench.blocks.base import Block
 from hystbench.blocks.exponential_stiffness import ExponentialStiffness
+from hystbench.blocks.saturating_stiffness import SaturatingStiffness
 from hystbench.blocks.stiffness import Stiffness
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
@@ -120,12 +121,12 @@ Before = tuple[Block, ...]
 
 
 class StiffnessHardening(Effect):
-    """A cubic spring in the place of one of the chain's linear modes."""
+    """A spring that stiffens or softens with its displacement, in place of a linear one."""
 
     name = "stiffness-hardening"
     shows = "frequency"
     place = "mechanics"
-    laws = ("stiffness", "exponential-stiffness")
+    laws = ("stiffness", "exponential-stiffness", "saturating-stiffness")
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the spring for each mode, those inside transfer functions included.
@@ -144,7 +145,10 @@ class StiffnessHardening(Effect):
             raise Declined("the chain has no mode whose spring could harden")
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Offer a cube of either sign, a square beside it, and a steep spring."""
+        """Offer a cube of either sign, a square beside it, and other springs.
+
+        One grows steeply; one levels off, beside a linear spring or in its place.
+        """
         if moved.anywhere:
             return
         linear = moved.force / moved.reach
@@ -159,6 +163,14 @@ class StiffnessHardening(Effect):
                 yield Law("cube", replace(block, cubic=much), ("cubic",))
         steep = ExponentialStiffness(coefficient=0.03 * linear, reach=moved.reach / 2)
         yield Law("steep", steep, ("coefficient", "reach"))
+        shares = (0.5, 1.0) if moved.loose else (0.5,)
+        for share in shares if moved.stiffness > 0.0 else ():
+            levels_off = SaturatingStiffness(
+                stiffness=share * moved.stiffness, reach=moved.reach
+            )
+            form = "levels off" + ", without a linear spring" * (share == 1.0)
+            numbers = ("stiffness", "reach")
+            yield Law(form, levels_off, numbers, stands_for=share)
 
     def _hardened(
         self, simulation: Simulation, k: int, before: Before, mode: Mapping[str, Any]
