@@ -1,4 +1,4 @@
-"""Block ``saturating-stiffness``: a spring inside a mechanism whose force levels off."""
+"""Block ``saturating-stiffness``: a spring in a mechanism whose force levels off."""
 
 from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import TINY, number

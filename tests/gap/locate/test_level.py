@@ -115,6 +115,21 @@ def test_a_stiffness_that_moves_more_than_the_damping_is_no_friction(
     assert found.kind.startswith(kind)
 
 
+def test_a_spring_that_yields_more_than_the_damping_falls_is_softening(hardening):
+    fallen = [
+        replace(
+            x,
+            frequency=x.frequency * 0.9**k,
+            power_damping=x.power_damping / 0.9**k * 0.95**k,
+            errors=np.full(4, 0.01),
+        )
+        for k, x in enumerate([hardening.modes[0]] * len(hardening.modes))
+    ]
+    found = replace(hardening, modes=tuple(fallen))
+    assert found.moved[:2] == (-1, -1)
+    assert found.kind == "softening"
+
+
 def test_levels_are_in_the_order_of_what_they_move(oscillators):
     """An input that is strong beside the mode moves it no farther."""
     compared = records(oscillators["hardening"])

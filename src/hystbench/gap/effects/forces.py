@@ -305,7 +305,10 @@ class Stop(InsideEffect):
                 if sides == "both":
                     yield Law(UNEVEN, block, (*numbers, "centre"))
             lossy = replace(block, loss=LOSS / moved.speed)
-            yield Law(f"{_form(sides)}, lossy", lossy, (*numbers, "loss"))
+            form, more = _form(sides), ("loss",)
+            if sides == "both":
+                form, more = UNEVEN, ("centre", *more)
+            yield Law(f"{form}, lossy", lossy, (*numbers, *more))
 
     def vanishing(self, form: str) -> Mapping[str, float]:
         """Without its clearance a stop on both sides is a linear spring."""

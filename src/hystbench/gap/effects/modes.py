@@ -121,7 +121,7 @@ Before = tuple[Block, ...]
 
 
 class StiffnessHardening(Effect):
-    """A spring that stiffens or softens with its displacement, in place of a linear one."""
+    """A spring that stiffens or softens with its displacement."""
 
     name = "stiffness-hardening"
     shows = "frequency"

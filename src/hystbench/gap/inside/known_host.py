@@ -18,7 +18,7 @@ from hystbench.gap.inside.combine_forces import (
     together,
 )
 from hystbench.gap.inside.host_places import LINEAR, host_of, own_numbers
-from hystbench.gap.inside.insert_law import Offer
+from hystbench.gap.inside.insert_law import Offer, of_stores
 from hystbench.gap.progress import Say, silent
 
 
@@ -48,6 +48,8 @@ def with_pairs_beside_free(
         the best.
     """
     host = found[0].state
+    if of_stores(found[0]):
+        return list(found)
     place = host_of(host)
     if not isinstance(host.chain[place], Mechanism) or not _known(host, place):
         return list(found)

@@ -105,7 +105,7 @@ class Moving:
     def kind(self) -> str:
         """The class that follows from what moves."""
         frequency, damping, gain = self.moved
-        if damping < 0 and not (frequency > 0 and self.stiffens):
+        if damping < 0 and not (frequency and self.springs):
             return "Coulomb friction"
         if frequency > 0:
             return "clearance" if self.bend > CLEARANCE_BEND else "hardening"
@@ -116,11 +116,11 @@ class Moving:
         return "a static curve before or behind" if gain else "none"
 
     @property
-    def stiffens(self) -> bool:
-        """Whether the stiffness grows by a larger factor than the damping falls.
+    def springs(self) -> bool:
+        """Whether the stiffness changes by a larger factor than the damping.
 
-        Sliding more freely makes no spring stiffer; but of a motion that meets a stop
-        the damping is not well known.
+        Sliding more freely makes no spring stiffer or softer; but of a motion that
+        meets a stop, or of a spring that yields, the damping is not well known.
         """
         values, _ = self.told
         change = np.abs(
@@ -161,18 +161,19 @@ class Moving:
         moved = f"stays (it moves by {by} %)"
         if frequency:
             moved = f"{'rises' if frequency > 0 else 'falls'} by {by} %"
+        rates = 2 * np.pi * self.numbers[:, 0] * self.numbers[:, 2]
         low, *_, high = (
-            _with_error(100 * mode.power_damping, 100 * mode.power_damping * error)
-            for mode, error in zip(self.modes, self.errors[:, 2], strict=True)
+            _with_error(rate, rate * float(error))
+            for rate, error in zip(rates.tolist(), self.errors[:, 2], strict=True)
         )
-        told = f"{low} to {high} %"
+        told = f"{low} to {high} 1/s"
         damped = f"{_verb(damping)} {told}" if damping else f"stays ({told})"
         ratio = _with_error(last[3] / first[3], last[3] / first[3] * float(errors[3]))
         held = f"its gain {_verb(gain)} 1 to {ratio}" if gain else "its gain stays"
         seen = len(self.modes)
         at = "" if seen == self.levels else f" ({seen} of {self.levels} levels)"
         return (
-            f"the mode at {shortly(first[0])} Hz {moved}, its damping ratio {damped}, "
+            f"the mode at {shortly(first[0])} Hz {moved}, its rate of decay {damped}, "
             f"{held}{at}: {CLASSES[self.kind][0]}"
         )
 
