@@ -5,59 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from hystbench.gap.fitting.score import Score
-from hystbench.gap.inside.one_coordinate import best_host, one_coordinate
-from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import SCALE
-from hystbench.quantities import Quantities
-from hystbench.record import Channel, Record
-from tests.gap.inside_host import search
-
-DT = 0.005
-NOISE = 1e-4
-OFFERED = ["friction", "hysteretic-force", "stiffness-hardening"]
-
-
-def spring(q):
-    return 60.0 * q
-
-
-def moved(u, held, spring, fine=40):
-    """Give the way of 1 kg on a spring and a damper against a held force, by Euler.
-
-    ``held`` is the change of that force, of it and the velocity.
-    """
-    q, v, force, out = 0.0, 0.0, 0.0, []
-    for push in np.repeat(u, fine).tolist():
-        out.append(q)
-        all_of_it = force.sum() if isinstance(force, np.ndarray) else force
-        v += DT / fine * (push - 1.5 * v - spring(q) - all_of_it)
-        force += DT / fine * held(force, v)
-        q += DT / fine * v
-    return np.array(out[::fine])
-
-
-def records_of(held, spring, noise):
-    random = np.random.default_rng(8)
-    for size in (10.0, 20.0):
-        u = size * np.repeat(random.uniform(-1, 1, 50), 20)
-        y = moved(u, held, spring) + noise * random.standard_normal(len(u))
-        channels = Channel("in", "N"), Channel("out", "m")
-        yield Record(f"{size:g}", DT, u, y, *channels, "measured", "fit")
-
-
-def best(held, spring=spring, offered=OFFERED):
-    """Name the force in a linear host that was fitted to the records."""
-    return min(tried(held, spring, offered), key=lambda item: item.score)
-
-
-def tried(held, spring, offered, noise=NOISE):
-    """Put forces into a linear host that was fitted to the records."""
-    records = tuple(records_of(held, spring, noise))
-    begun = one_coordinate(records, Quantities("force", "position"), "zero-order")
-    sample = ScoredSamples.of(records)
-    score = Score.plain(sample, noise**2)
-    return search(best_host(list(begun), score), score, offered)
+from tests.gap.oscillator import NOISE, best, spring, tried
 
 
 def stiffens(force, v):
@@ -93,8 +42,9 @@ def test_a_spring_that_softens_and_loses_nothing_is_none_either():
     def magnet(q):
         return 40.0 * q + math.copysign(3.0 * math.expm1(-abs(q) / 0.1), q)
 
-    item = best(lambda force, v: 0.0, magnet, ["hysteretic-force"])
-    assert item.effects == ()
+    offered = ["hysteretic-force", "stiffness-hardening"]
+    item = best(lambda force, v: 0.0, magnet, offered)
+    assert item.effects == ("stiffness-hardening",)
 
 
 def test_elements_that_slip_one_after_the_other_are_a_hysteretic_force():
