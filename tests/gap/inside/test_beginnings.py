@@ -67,15 +67,6 @@ def test_without_a_gap_a_quarter_of_the_record_is_left():
     assert 0.25 <= share < 0.26
 
 
-def test_a_thousand_samples_are_left_in_any_case():
-    short = state(np.exp(-TIME / 0.01))
-    (record,) = short.records
-    record = record.cut(slice(1200))
-    short = replace(short, records=(record,), sample=ScoredSamples.of((record,)))
-    (left,) = beginnings(short.settled()).records
-    assert 1000 <= len(left) <= 1010
-
-
 def test_every_record_is_cut_by_itself():
     early, late = shares(state(np.exp(-TIME / 0.01), TIME))
     assert early < 0.26

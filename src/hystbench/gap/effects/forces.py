@@ -305,7 +305,8 @@ class Stop(InsideEffect):
                 if sides == "both":
                     yield Law(UNEVEN, block, (*numbers, "centre"))
             lossy = replace(block, loss=LOSS / moved.speed)
-            form, more = _form(sides), ("loss",)
+            more: tuple[str, ...] = ("loss",)
+            form = _form(sides)
             if sides == "both":
                 form, more = UNEVEN, ("centre", *more)
             yield Law(f"{form}, lossy", lossy, (*numbers, *more))

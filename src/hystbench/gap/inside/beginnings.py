@@ -2,11 +2,10 @@
 
 A simulation runs over whole records, and a fit simulates them some hundred times. Which
 of many laws is likely is seen on less: a quarter of each record, and as much as holds a
-quarter of what the host leaves of it, but a thousand samples at least. Records that
-move alike from end to end become four times as short; one that is driven harder and
-harder keeps most of its length. A record that repeats stays whole: of several, the two
-are left of which the host leaves least and most, as a rule the most gently driven and
-the hardest driven.
+quarter of what the host leaves of it. Records that move alike from end to end become
+four times as short; one that is driven harder and harder keeps most of its length. A
+record that repeats stays whole: of several, the two are left of which the host leaves
+least and most, as a rule the most gently driven and the hardest driven.
 """
 
 from __future__ import annotations
@@ -25,8 +24,6 @@ from hystbench.record import Record
 
 PART = 0.25
 """Share of a record's residual power, and of its samples, that its beginning holds."""
-LEAST = 1000
-"""Samples that it holds in any case: of fewer a fit takes little time."""
 
 
 @dataclass(frozen=True)
@@ -74,8 +71,7 @@ class Beginnings:
                 continue
             passed = np.cumsum(rest[part] ** 2)
             count = int(np.searchsorted(passed, PART * passed[-1])) + 1
-            least = int(np.searchsorted(places, LEAST))
-            count = max(count, ceil(PART * len(places)), least)
+            count = max(count, ceil(PART * len(places)))
             if repeats:
                 count = len(places)
             end = len(record) if count == len(places) else int(places[count - 1]) + 1

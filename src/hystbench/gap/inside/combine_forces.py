@@ -98,6 +98,7 @@ def together(
     best = least(every)
     if not of_stores(best):
         every += with_one_fewer(best, every, score)
+        every += _with_another(best, offer, score, alone, say)
     return best_of_each(every)
 
 
@@ -135,6 +136,20 @@ def with_one_fewer(best: Fitted, found: Sequence[Fitted], score: Score) -> list[
             continue
         left.append(Fitted(without_effect(best.state, number), np.inf))
     return _to_the_end(left, score)
+
+
+def _with_another(
+    best: Fitted, offer: Offer, score: Score, alone: float, say: Say
+) -> list[Fitted]:
+    """Put another effect in the place of each of several.
+
+    One that came early may stand for another that is only seen beside the rest.
+    """
+    if len(best.effects) < 2:
+        return []
+    fewer = [without_effect(best.state, k) for k in range(len(best.effects))]
+    carried = [fitted(state, score) for state in fewer]
+    return _one_more(carried, offer, score, SINGLES, alone, say)
 
 
 def best_of_each(found: Sequence[Fitted]) -> list[Fitted]:
@@ -281,8 +296,9 @@ def fitted_likely(
     -------
     list of Fitted
         Those that were fitted to the end, the least score first. Where the best one
-        leaves what a further effect could gain, its other starts were fitted as well: a
-        fit may end in one of several minima.
+        leaves what a further effect could gain, its other starts and the other laws of
+        the rest were raced on whole records as well: a fit may end in one of several
+        minima, and not all laws act at the beginning of a record.
     """
     likely: dict[frozenset[str], list[Fitted]] = {}
     for item in sorted(begun, key=lambda item: item.score):
@@ -303,12 +319,20 @@ def fitted_likely(
         begun_well.append(replace(own, state=item.state.at(numbers)))
     done = _as_far_as_they_matter(begun_well, score)
     if done and may_gain(done[0], score):
-        others = some[frozenset(done[0].effects)]
-        whole = further([(item, item) for item in others], score, QUICK)
-        _, nearest = raced(whole, score, QUICK, EVALUATIONS)
-        done += _to_the_end([nearest], score)
+        of_best, *others = (some[frozenset(item.effects)] for item in done)
+        rest = [one for own in others for one in _of_each_law(own, 0)]
+        nearest = [_on_the_whole(of_best, score, QUICK)]
+        nearest += [_on_the_whole(rest, score, FEW)] if rest else []
+        done += _to_the_end(nearest, score)
         done = sorted(best_of_each(done), key=lambda item: item.score)
     return done
+
+
+def _on_the_whole(starts: Sequence[Fitted], score: Score, evaluations: int) -> Fitted:
+    """Race starts on whole records; the first round takes so many evaluations."""
+    begun = further([(item, item) for item in starts], score, evaluations)
+    _, nearest = raced(begun, score, evaluations, EVALUATIONS)
+    return nearest
 
 
 def _as_far_as_they_matter(begun: Sequence[Fitted], score: Score) -> list[Fitted]:

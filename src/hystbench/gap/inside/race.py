@@ -10,6 +10,7 @@ import numpy as np
 from hystbench.gap.fitting.least_squares import Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.beginnings import Beginnings
+from hystbench.gap.thresholds import SCALE
 
 FEW = 4
 """Evaluations of the residual after which the worse half of the starts is left."""
@@ -37,7 +38,7 @@ def raced(
 
     Successive halving [1]_: the same time is spent on all starts of a round together.
     The best start of each law stays for a round more: some laws take longer to come
-    near.
+    near. Of laws that cannot be told apart it is the one of the fewest numbers.
 
     Parameters
     ----------
@@ -52,15 +53,23 @@ def raced(
     .. [1] K. Jamieson, A. Talwalkar, "Non-stochastic best arm identification and
        hyperparameter optimization", AISTATS 2016, 240-248.
     """
-    best_of_law = {item.forms: item for item, _ in reversed(running)}
+    best_of_law = {_law(item): item for item, _ in reversed(running)}
     while len(running) > 1 and evaluations < most:
         half = ceil(len(running) / 2)
         kept = [
             (item, own)
             for k, (item, own) in enumerate(running)
-            if k < half or best_of_law.get(item.forms) is item
+            if k < half
+            or best_of_law.get(_law(item)) is item
+            or own.score <= running[0][1].score + SCALE
         ]
         best_of_law = {}
         evaluations = min(2 * evaluations, most)
         running = further(kept, score, evaluations)
-    return running[0]
+    most_likely = running[0][1].score + SCALE
+    near = [pair for pair in running if pair[1].score <= most_likely] or running
+    return min(near, key=lambda pair: (pair[1].state.freedom, pair[1].score))
+
+
+def _law(item: Fitted) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    return item.effects, item.forms
