@@ -1,5 +1,7 @@
 """The vocabulary of blocks as a table, for docs/model-files.md."""
 
+from dataclasses import MISSING, fields
+
 from hystbench import files
 from hystbench.blocks import own
 from hystbench.blocks.parameter import HUGE, Parameter
@@ -12,8 +14,9 @@ def markdown_table() -> str:
     rows = []
     for name, block in own().items():
         first = [f"`{name}`", str(block.place)]
+        default = {field.name: field.default for field in fields(block)}
         for key, about in block.parameters().items():
-            values = _values(about)
+            values = _values(about) + _default(default[key])
             rows.append((*first, f"`{key}`", about.unit, values, about.meaning))
             first = ["", ""]
     return files.markdown_table(COLUMNS, rows) + "\n"
@@ -38,3 +41,14 @@ def _bounds(about: Parameter) -> str:
     if about.low <= -HUGE:
         return "any number"
     return "more than 0" if about.low > 0 else "0 or more"
+
+
+def _default(value: object) -> str:
+    """Say what a parameter is that a file leaves out, if it may."""
+    if value is MISSING:
+        return ""
+    if isinstance(value, str):
+        return f"; default `{value}`" if value else "; may be left out"
+    if isinstance(value, float) and abs(value) < HUGE:
+        return f"; default {value:g}"
+    return "; may be left out"

@@ -229,7 +229,7 @@ def test_lags_are_mistaken_for_each_other(plain):
 def test_the_text_is_one_screen_and_the_page_says_the_same(plain):
     lines = screen.lines(plain)
     assert len(lines) <= 40
-    assert "effects." in " ".join(lines[:3])
+    assert "effects judged." in " ".join(lines[:3])
     made = page(plain)
     for item in plain.effects:
         assert item.effect in made

@@ -73,7 +73,17 @@ class Check:
     @property
     def hidden(self) -> tuple[SmallestSeen, ...]:
         """The others."""
-        return tuple(item for item in self.effects if not item.revealed)
+        return tuple(x for x in self.effects if x.judged and not x.revealed)
+
+    @property
+    def judged(self) -> tuple[SmallestSeen, ...]:
+        """Effects that were simulated on the records."""
+        return tuple(item for item in self.effects if item.judged)
+
+    @property
+    def unjudged(self) -> tuple[SmallestSeen, ...]:
+        """Effects of which nothing is said here."""
+        return tuple(item for item in self.effects if not item.judged)
 
 
 def check(dataset: Dataset, effects: bool = True) -> Check:

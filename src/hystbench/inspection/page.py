@@ -43,6 +43,8 @@ LOOPS_IN_ROW = 4
 """Loops in a row."""
 LEAST_STRENGTH = 1e-4
 """Share of the output below which the axis of strength ends."""
+WHY = {Heading("effect"): attrgetter("effect"), Heading("why"): attrgetter("why")}
+"""Columns of the effects that are not revealed, or not judged."""
 RIVALS_TOLD = 2
 """Rivals that are named."""
 
@@ -67,6 +69,7 @@ def page(found: Check) -> str:
         chart=_chart(found),
         revealed=_revealed(found),
         hidden=_hidden(found),
+        unjudged=_unjudged(found),
     )
     return one_micro(made)
 
@@ -164,7 +167,7 @@ def _revealed(found: Check) -> PageTable:
     }
     return table_of(
         "revealed",
-        f"Revealed: {len(found.revealed)} of {len(found.effects)} effects. Until it is "
+        f"Revealed: {len(found.revealed)} of {len(found.judged)} effects. Until it is "
         "as strong as the last column says, it can be mistaken for another.",
         found.revealed,
         shown,
@@ -175,9 +178,19 @@ def _revealed(found: Check) -> PageTable:
 def _hidden(found: Check) -> PageTable:
     return table_of(
         "hidden",
-        f"Not revealed: {len(found.hidden)} of {len(found.effects)} effects.",
+        f"Not revealed: {len(found.hidden)} of {len(found.judged)} effects.",
         found.hidden,
-        {Heading("effect"): attrgetter("effect"), Heading("why"): attrgetter("why")},
+        WHY,
+        cards=True,
+    )
+
+
+def _unjudged(found: Check) -> PageTable:
+    return table_of(
+        "unjudged",
+        f"Not judged here: {len(found.unjudged)} of {len(found.effects)} effects.",
+        found.unjudged,
+        WHY,
         cards=True,
     )
 

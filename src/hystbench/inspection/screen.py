@@ -13,6 +13,7 @@ from hystbench.figures.style import unit_text
 from hystbench.inspection.check import Check, Finding
 from hystbench.inspection.facts import Facts
 from hystbench.inspection.visible import SmallestSeen
+from hystbench.report.markup import one_micro
 
 FLOORS = {
     "repeats": "measured by repeats",
@@ -28,7 +29,7 @@ SCREEN_LINES = 40
 """Lines of a screen."""
 FEW_RECORDS = 6
 """Records up to which each has a line of its own."""
-PART_LINES = {"records": 9, "seen": 5, "alike": 4, "hidden": 5}
+PART_LINES = {"records": 9, "seen": 5, "alike": 4, "hidden": 3, "unjudged": 2}
 """Lines of each part where all together are more than a screen; findings get the
 rest."""
 
@@ -51,7 +52,7 @@ def lines(found: Check) -> list[str]:
         parts["findings"] = []
         room = SCREEN_LINES - sum(map(len, parts.values()))
         parts["findings"] = _cut(_findings(found.findings, 1), room)
-    return [line for part in parts.values() for line in part]
+    return [one_micro(line) for part in parts.values() for line in part]
 
 
 def _cut(part: list[str], most: int) -> list[str]:
@@ -178,7 +179,7 @@ def _shortened(text: str) -> str:
 def _effects(found: Check) -> dict[str, list[str]]:
     """Tell which effects are seen, not told apart and not revealed."""
     if not found.effects:
-        return {key: [] for key in ("seen", "alike", "hidden")}
+        return {key: [] for key in ("seen", "alike", "hidden", "unjudged")}
     seen = _listed(f"{x.effect} {percent(x.seen_from)}" for x in found.revealed)
     pairs = _listed(
         f"{x.effect} from {rival} {'at any share' if share > 1 else percent(share)}"
@@ -189,6 +190,7 @@ def _effects(found: Check) -> dict[str, list[str]]:
         "seen": ["  Seen from this share of the output on (rms):", *seen],
         "alike": ["  Not told apart, up to this share of the output:", *pairs],
         "hidden": ["  Not revealed:", *_hidden(found.hidden)],
+        "unjudged": ["  Not judged here:", *_hidden(found.unjudged)],
     }
     return {key: part if len(part) > 1 else [] for key, part in told.items()}
 
@@ -212,7 +214,10 @@ def _listed(parts: Iterable[str]) -> list[str]:
 
 def percent(share: float) -> str:
     """Write a share in percent with two digits."""
-    return "never" if math.isinf(share) else f"{100 * share:.2g} %"
+    if math.isinf(share):
+        return "never"
+    value = 100 * share
+    return f"{value:.2g} %" if value < 99.5 else f"{value:.0f} %"
 
 
 def quantity(value: float, unit: str) -> str:
@@ -224,8 +229,8 @@ def headline(found: Check) -> str:
     """Say in one sentence what is to be done, or that nothing is."""
     wrong = sum(item.kind == "wrong" for item in found.findings)
     missing = sum(item.kind == "missing" for item in found.findings)
-    seen, every = len(found.revealed), len(found.effects)
-    can = f"the records to fit can reveal {seen} of {every} effects"
+    seen, every = len(found.revealed), len(found.judged)
+    can = f"the records to fit can reveal {seen} of the {every} effects judged"
     if not every:
         can = "which effects the records can reveal was not asked"
     if wrong:

@@ -51,6 +51,8 @@ class SmallestSeen:
     infinite where never. The nearest first."""
     why: str = ""
     """Why it is not revealed; empty where it is."""
+    judged: bool = True
+    """Whether it was simulated here. A force inside the dynamics is not."""
 
     @property
     def revealed(self) -> bool:
@@ -106,7 +108,7 @@ def seen_effects(
         rest = [item for item in measured if item.shape.effect != name]
         found.append(judge.seen(mine, rest))
     for name, why in declined.items():
-        found.append(SmallestSeen(name, why=f"not tried: {why}"))
+        found.append(SmallestSeen(name, why=why, judged=False))
     return tuple(sorted(found, key=lambda item: (item.seen_from, item.effect)))
 
 
