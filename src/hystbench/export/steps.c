@@ -60,6 +60,11 @@ static double hb_exponential(double curvature, double z)
     return curvature == 0 ? z : expm1(curvature * z) / curvature;
 }
 
+static double hb_two_slopes(double difference, double z)
+{
+    return z + difference * fabs(z);
+}
+
 static double hb_magnitude(double scale, double z)
 {
     return scale * fabs(z);

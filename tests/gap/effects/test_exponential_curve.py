@@ -43,6 +43,22 @@ def test_it_is_named_with_its_curvature(curvature):
     assert abs(found["value"] - curvature) < 4 * found["standard_error"]
 
 
+def test_a_drive_that_gives_more_one_way_has_two_slopes():
+    base = Model("pipe", OPENING, FLOW, (PIPE,))
+    random, given = np.random.default_rng(9), []
+    for k in range(2):
+        u = np.repeat(random.uniform(-1.0, 1.0, COUNT // 40), 40)
+        bent = np.where(u > 0.0, 1.2 * u, 0.8 * u)
+        y = PIPE.simulate(bent, bent, DT) + NOISE * random.standard_normal(COUNT)
+        given.append(Record(f"run-{k}", DT, u, y, OPENING, FLOW, "measured", "fit"))
+    answer = search("rod", tuple(given), base, "zero-order", vocabulary=CURVES)
+    (effect,) = answer.content["effects"]
+    assert (effect["name"], effect["blocks"]) == ("asymmetry", ["two-slopes"])
+    found = effect["parameters"]["difference"]
+    assert found["value"] == pytest.approx(0.2, abs=4 * found["standard_error"])
+    assert found["value"] == pytest.approx(0.2, rel=0.05)
+
+
 def test_without_curvature_it_is_a_straight_line():
     z = np.linspace(-3.0, 3.0, 7)
     straight = ExponentialCurve(curvature=0.0).simulate(z, z, 1.0)

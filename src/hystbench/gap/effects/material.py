@@ -132,20 +132,20 @@ def _is_static(simulation: Simulation) -> bool:
     return all(isinstance(block, Gain) for block in simulation.chain)
 
 
-EXPONENTIAL = "exponential-curve"
+EXPONENTIAL, SLOPES = "exponential-curve", "two-slopes"
 
 
 class Asymmetry(Effect):
     """An even term behind the hysteresis, before it or beside it, or a field bias.
 
-    Before a base that holds no hysteresis a square or an exponential curve.
+    Before a base that holds no hysteresis a square, an exponential curve or two slopes.
     """
 
     name = "asymmetry"
     shows = "amplitude"
     place = "material"
     offsets: ClassVar = {"bias": (("bias", "U"), ("zero", "Y"))}
-    laws: ClassVar = ("butterfly", EXPONENTIAL)
+    laws: ClassVar = ("butterfly", EXPONENTIAL, SLOPES)
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the square behind the hysteresis, and three laws of the field.
@@ -164,11 +164,20 @@ class Asymmetry(Effect):
             yield self._butterfly(simulation, known)
         if loop is None:
             yield from self._exponential(simulation)
+            yield self.inserted(
+                simulation,
+                0,
+                law=SLOPES,
+                form="two slopes",
+                unit={"difference": 1e-3},
+                limits={"difference": (-1.0, 1.0)},
+            )
 
     def around(self, passed: Passed) -> Iterator[Law]:
-        """Offer two curves before the host.
+        """Offer three curves before the host.
 
-        The square, as of a force by the square of a current, and an exponential curve.
+        The square, as of a force by the square of a current, an exponential curve, and
+        two slopes.
         """
         for size in (0.1, -0.1, 10.0, -10.0):  # a little of a square, hardly else
             yield self.curve("before", "square", coefficient=size / passed.given)
@@ -177,6 +186,9 @@ class Asymmetry(Effect):
             yield self.curve(
                 "before", "exponential", law=EXPONENTIAL, curvature=curvature
             )
+
+        for size in (0.1, -0.1):
+            yield self.curve("before", "two slopes", law=SLOPES, difference=size)
 
     def _squares(
         self, simulation: Simulation, place: int, form: str
