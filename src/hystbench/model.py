@@ -196,6 +196,10 @@ class Model:
         )
         return replace(self, chain=chain)
 
+    def begun_on(self, record: Record) -> Model:
+        """Return the model as it begins on a record: only whole periods repeat."""
+        return self if record.repeats else self.begun_once()
+
     def begun_once(self) -> Model:
         """Return the model on a record that does not repeat: nothing ``repeating``."""
         return replace(self, chain=tuple(map(begun_once, self.chain)))

@@ -107,7 +107,8 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
         q, v = np.ascontiguousarray(np.moveaxis(motion, 2, 0))
         with np.errstate(over="ignore", invalid="ignore"):  # it may have run away
             curved = (p - damping * v - stiffness * q - force) / mass
-            force += slope * q
+            if slope:
+                force += slope * q
         return [
             [
                 Motion(*(x[k, own] for x in (q, v, curved, force)))

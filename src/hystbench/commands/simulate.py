@@ -65,7 +65,7 @@ def simulate(
         system = system.with_hold(taken)
     if task.record is not None:
         system = system.with_records([task.record], task.column)
-        system = system if task.record.repeats else system.begun_once()
+        system = system.begun_on(task.record)
     y = system.simulate(task.u, task.dt)
     check_bounded(str(model), y, task.dt, str(record))
     time = np.arange(len(y)) * task.dt

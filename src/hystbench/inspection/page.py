@@ -43,8 +43,6 @@ LOOPS_IN_ROW = 4
 """Loops in a row."""
 LEAST_STRENGTH = 1e-4
 """Share of the output below which the axis of strength ends."""
-WHY = {Heading("effect"): attrgetter("effect"), Heading("why"): attrgetter("why")}
-"""Columns of the effects that are not revealed, or not judged."""
 RIVALS_TOLD = 2
 """Rivals that are named."""
 
@@ -68,8 +66,10 @@ def page(found: Check) -> str:
         pictures=_pictures(found),
         chart=_chart(found),
         revealed=_revealed(found),
-        hidden=_hidden(found),
-        unjudged=_unjudged(found),
+        hidden=_why_not("hidden", "Not revealed", found.hidden, len(found.judged)),
+        unjudged=_why_not(
+            "unjudged", "Not judged here", found.unjudged, len(found.effects)
+        ),
     )
     return one_micro(made)
 
@@ -175,22 +175,14 @@ def _revealed(found: Check) -> PageTable:
     )
 
 
-def _hidden(found: Check) -> PageTable:
+def _why_not(
+    name: str, said: str, effects: Sequence[SmallestSeen], every: int
+) -> PageTable:
     return table_of(
-        "hidden",
-        f"Not revealed: {len(found.hidden)} of {len(found.judged)} effects.",
-        found.hidden,
-        WHY,
-        cards=True,
-    )
-
-
-def _unjudged(found: Check) -> PageTable:
-    return table_of(
-        "unjudged",
-        f"Not judged here: {len(found.unjudged)} of {len(found.effects)} effects.",
-        found.unjudged,
-        WHY,
+        name,
+        f"{said}: {len(effects)} of {every} effects.",
+        effects,
+        {Heading("effect"): attrgetter("effect"), Heading("why"): attrgetter("why")},
         cards=True,
     )
 

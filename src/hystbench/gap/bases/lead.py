@@ -128,8 +128,7 @@ def _without(record: Record, base: Model, asked: Model, most: float) -> Record:
     lead = len(free)
     if lead == 0:
         return record
-    begun = asked if record.repeats else asked.begun_once()
-    rest = record.y - begun.simulate(record.u, record.dt)
+    rest = record.y - asked.begun_on(record).simulate(record.u, record.dt)
     first, behind = rest[:lead], rest[lead:][record.counted[lead:]]
     measured = record.counted[:lead]
     first, free = first[measured], free[measured]

@@ -297,19 +297,17 @@ class Stop(InsideEffect):
         stiffness = moved.force / moved.reach
         numbers = ("contact_stiffness", "gap")
         for sides in () if moved.anywhere else SIDES:
+            apart = ("centre",) if sides == "both" else ()
             for share in (0.3, 0.8):
                 block = StopBlock(
                     contact_stiffness=stiffness, gap=share * moved.reach, sides=sides
                 )
                 yield Law(_form(sides), block, numbers)
-                if sides == "both":
-                    yield Law(UNEVEN, block, (*numbers, "centre"))
+                if apart:
+                    yield Law(UNEVEN, block, (*numbers, *apart))
             lossy = replace(block, loss=LOSS / moved.speed)
-            more: tuple[str, ...] = ("loss",)
-            form = _form(sides)
-            if sides == "both":
-                form, more = UNEVEN, ("centre", *more)
-            yield Law(f"{form}, lossy", lossy, (*numbers, *more))
+            form = UNEVEN if apart else _form(sides)
+            yield Law(f"{form}, lossy", lossy, (*numbers, *apart, "loss"))
 
     def vanishing(self, form: str) -> Mapping[str, float]:
         """Without its clearance a stop on both sides is a linear spring."""

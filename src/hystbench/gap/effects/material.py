@@ -186,7 +186,6 @@ class Asymmetry(Effect):
             yield self.curve(
                 "before", "exponential", law=EXPONENTIAL, curvature=curvature
             )
-
         for size in (0.1, -0.1):
             yield self.curve("before", "two slopes", law=SLOPES, difference=size)
 

@@ -60,7 +60,7 @@ def starting(chain: Sequence[Block], start: str) -> tuple[Block, ...]:
     Where the dynamics are at rest, a lag that is not is settled.
     """
 
-    def started(block: Any) -> Any:
+    def begun(block: Any) -> Any:
         wanted = own = getattr(block, "start", "rest")
         if isinstance(block, Mechanism):
             may = block.stiffness > 0.0 or start in free_starts(block.output)
@@ -72,7 +72,7 @@ def starting(chain: Sequence[Block], start: str) -> tuple[Block, ...]:
             wanted = at_rest if start == "rest" else start
         return block if wanted == own else replace(block, start=wanted)
 
-    return tuple(map(started, chain))
+    return tuple(map(begun, chain))
 
 
 @dataclass(frozen=True)

@@ -161,7 +161,7 @@ class Moving:
         moved = f"stays (it moves by {by} %)"
         if frequency:
             moved = f"{'rises' if frequency > 0 else 'falls'} by {by} %"
-        rates = 2 * np.pi * self.numbers[:, 0] * self.numbers[:, 2]
+        rates = 2 * np.pi * self.told[0][:, 1]
         low, *_, high = (
             _with_error(rate, rate * float(error))
             for rate, error in zip(rates.tolist(), self.errors[:, 2], strict=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar, Literal, cast
@@ -17,7 +17,7 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.blocks.starts import begun_once
+from hystbench.blocks.starts import started
 from hystbench.blocks.stiffness_hardening import StiffnessHardening
 from hystbench.blocks.store import Store
 from hystbench.blocks.structure import Structure
@@ -90,11 +90,11 @@ class Simulation:
         """Send signals through blocks, from rest."""
         found = list(signals)
         finely = self.steps == "fine" and self.hold == LIMITED
-        for begun, places in self._begun_alike(blocks):
+        for places in self._begun_alike(blocks):
             records = [self.records[k] for k in places]
             own = tuple(signals[k] for k in places)
             dts = [record.dt for record in records]
-            for step in self._steps([begun(block) for block in blocks]):
+            for step in self._begun(blocks, records[0]):
                 if hasattr(step, "simulate_records"):
                     own = tuple(step.simulate_records(own, dts))
                     continue
@@ -106,20 +106,17 @@ class Simulation:
                 found[k] = z
         return tuple(found)
 
-    def _begun_alike(
-        self, blocks: Sequence[Block]
-    ) -> list[tuple[Callable[[Block], Block], list[int]]]:
-        """Tell how blocks begin on records, and on which of them: by their places."""
+    def _begun_alike(self, blocks: Sequence[Block]) -> Iterable[list[int]]:
+        """Give the places of records on which blocks begin alike."""
         repeating = any(getattr(block, "start", "") == "repeating" for block in blocks)
-        whole = [
-            k
-            for k, record in enumerate(self.records)
-            if record.repeats or not repeating
-        ]
-        others = [k for k in range(len(self.records)) if k not in whole]
-        begun: list[tuple[Callable[[Block], Block], list[int]]]
-        begun = [(_as_it_is, whole), (begun_once, others)]
-        return [(how, places) for how, places in begun if places]
+        alike: dict[bool, list[int]] = {}
+        for k, record in enumerate(self.records):
+            alike.setdefault(repeating and record.repeats, []).append(k)
+        return alike.values()
+
+    def _begun(self, blocks: Sequence[Block], record: Record) -> list[Any]:
+        """Give the steps of blocks as they begin on a record."""
+        return self._steps([started(block, record) for block in blocks])
 
     def _sent(self, step: Any, z: FloatArray, record: Record, finely: bool) -> Any:
         """Send one signal through one step."""
@@ -151,12 +148,9 @@ class Simulation:
             One a record: the chain's own output first.
         """
         found: dict[int, FloatArray] = {}
-        for begun, places in self._begun_alike(self.chain):
-            steps = [
-                self._steps([begun(block) for block in chain])
-                for chain in (self.chain, *chains)
-            ]
+        for places in self._begun_alike(self.chain):
             records = [self.records[k] for k in places]
+            steps = [self._begun(chain, records[0]) for chain in (self.chain, *chains)]
             us, dts = zip(*((record.u, record.dt) for record in records), strict=True)
             every = zip(*through_near(steps, us, dts), strict=True)
             found.update(zip(places, map(np.column_stack, every), strict=True))
@@ -333,10 +327,6 @@ class _InLongSteps:
 
 
 @lru_cache(maxsize=1024)
-def _as_it_is(block: Block) -> Block:
-    return block
-
-
 def _quick(block: Block) -> Block | _InLongSteps:
     if isinstance(block, StiffnessHardening):
         return _InLongSteps(block)
