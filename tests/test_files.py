@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hystbench.command_files import check_writable
 from hystbench.compare.rows import read_rows
 from hystbench.errors import InputError
 from hystbench.files import (
@@ -19,7 +20,7 @@ from hystbench.files import (
     write_text,
 )
 from hystbench.record import load_record
-from hystbench.written import ENTRIES, check_writable, entry_of, is_ours
+from hystbench.written import ENTRIES, entry_of, is_ours
 from tests.gap.made import record
 
 OURS = ("result.txt", "page.txt", "parts/*.csv")

@@ -5,17 +5,11 @@ import os
 import pytest
 from click.testing import CliRunner
 
+from hystbench.command_files import check_replaceable
 from hystbench.commands.clean import clean
 from hystbench.errors import InputError
 from hystbench.files import write_text
-from hystbench.written import (
-    TEMPORARY,
-    check_replaceable,
-    claim_logs,
-    entry_of,
-    is_ours,
-    remove,
-)
+from hystbench.written import TEMPORARY, claim_logs, entry_of, is_ours, remove
 
 
 @pytest.fixture

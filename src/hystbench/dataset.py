@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from hystbench.command_files import reads
 from hystbench.device_kinds import DEVICE_KINDS, DeviceKind
 from hystbench.errors import InputError, nearest, short
 from hystbench.formats import SUFFIXES, Column, Table, read_table
@@ -27,7 +28,7 @@ from hystbench.samples import (
 )
 from hystbench.schema import check_against_schema
 from hystbench.units import check_known, check_same_unit, plain, seconds
-from hystbench.written import reads, sha256
+from hystbench.written import sha256
 from hystbench.yaml_files import load_yaml
 
 #: Names of records: they name results, and braces are Snakemake's own.

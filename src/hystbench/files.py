@@ -13,17 +13,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TextIO
 
+from hystbench.command_files import check_free, check_writable, is_input
 from hystbench.errors import InputError
 from hystbench.interrupt import held
 from hystbench.scratch import remove_tree, scratch_folder
 from hystbench.written import (
     ENTRIES,
     TEMPORARY,
-    check_free,
     check_unchanged,
-    check_writable,
     forget,
-    is_input,
     is_ours,
     will_write,
 )

@@ -30,7 +30,7 @@ from typing import (
 
 import click
 
-from hystbench import written
+from hystbench import command_files
 from hystbench.errors import InputError
 from hystbench.files import read_json
 
@@ -62,7 +62,7 @@ class GuardedPath(click.Path):
         path = super().convert(value, param, ctx)
         if ctx is not None and __name__ not in ctx.meta:
             ctx.meta[__name__] = True
-            ctx.with_resource(written.one_run())
+            ctx.with_resource(command_files.one_run())
         try:
             self.take(Path(os.fsdecode(path)))
         except InputError:
@@ -75,7 +75,7 @@ class GuardedPath(click.Path):
 def held_safe(path: Path) -> None:
     """Hold a file safe that is read; what a folder holds is held safe as it is read."""
     if not path.is_dir():
-        written.reads(path)
+        command_files.reads(path)
 
 
 class SettingsType(click.ParamType[dict[str, Any]]):
@@ -107,8 +107,8 @@ class JsonFile(GuardedPath):
 FILE = GuardedPath(held_safe, exists=True, dir_okay=False)
 #: A dataset.yaml or its folder; what it refers to is held safe as it is read.
 DATASET = GuardedPath(held_safe)
-NEW_FILE = GuardedPath(written.writes)
-NEW_FOLDER = GuardedPath(written.check_writable)
+NEW_FILE = GuardedPath(command_files.writes)
+NEW_FOLDER = GuardedPath(command_files.check_writable)
 Settings = Annotated[dict[str, Any], SettingsType(), "Settings of the job."]
 In = Annotated[Path, FILE, "File to read."]
 Json = Annotated[

@@ -16,10 +16,7 @@ import os
 import re
 import stat
 import tempfile
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
-from contextvars import ContextVar
-from dataclasses import dataclass, field
+from collections.abc import Iterable
 from pathlib import Path
 
 from hystbench.errors import InputError
@@ -56,10 +53,10 @@ def is_ours(path: str | Path) -> bool:
         If what stands in the place of its entry is none.
     """
     path = Path(path)
-    if not _is_ordinary(path):
+    if not is_ordinary(path):
         return False
-    described = _described(path)
-    return bool(described) and sha256(path) in described
+    known = described(path)
+    return bool(known) and sha256(path) in known
 
 
 def check_unchanged(path: str | Path) -> None:
@@ -74,7 +71,7 @@ def check_unchanged(path: str | Path) -> None:
         If it was changed.
     """
     path = Path(path)
-    if _described(path) and path.exists() and not is_ours(path):
+    if described(path) and path.exists() and not is_ours(path):
         raise InputError(
             f"{path}: changed since hystbench wrote it; move it away, and the run "
             "makes it again"
@@ -91,7 +88,7 @@ def will_write(path: Path, content: Path) -> None:
     content : Path
         The file itself, where it stands until then.
     """
-    kept = _described(path)[-KEPT:]
+    kept = described(path)[-KEPT:]
     if is_ours(path):
         kept.append(sha256(path))
     entry = entry_of(path)
@@ -130,7 +127,7 @@ def remove(path: str | Path) -> bool:
 def forget(path: Path) -> None:
     """Remove the entry of a file that is gone, and the folder of the last entry."""
     entry = entry_of(path)
-    if _described(path):
+    if described(path):
         entry.unlink()
     if entry.parent.is_dir() and not any(entry.parent.iterdir()):
         entry.parent.rmdir()
@@ -160,7 +157,7 @@ def remove_below(folder: str | Path) -> list[Path]:
             is_log = file.suffix in LOG_SUFFIXES and any(
                 file.is_relative_to(known) for known in logs
             )
-            if file.name in NOTED or (is_log and _is_ordinary(file)):
+            if file.name in NOTED or (is_log and is_ordinary(file)):
                 file.unlink()
             elif not remove(file):
                 left.append(file)
@@ -172,37 +169,6 @@ def remove_below(folder: str | Path) -> list[Path]:
         if not here.is_symlink() and not any(here.iterdir()):
             here.rmdir()
     return left
-
-
-def check_replaceable(outputs: Iterable[str], inputs: Iterable[str]) -> None:
-    """Refuse what a workflow would remove or replace, as all that is told is its own.
-
-    Parameters
-    ----------
-    outputs : iterable of str
-        Files and folders. Of a folder all goes, so all in it has to be hystbench's own.
-    inputs : iterable of str
-        Files that are read and that no job makes.
-
-    Raises
-    ------
-    InputError
-        With the first file that hystbench did not write, or that is an input.
-    """
-    with one_run():
-        for source in inputs:
-            reads(source)
-        for path in map(Path, outputs):
-            if path.is_symlink() or not path.is_dir():
-                check_free(path)
-                continue
-            for place, folders, files in os.walk(path):
-                here = Path(place)
-                links = [name for name in folders if (here / name).is_symlink()]
-                hidden = [name for name in folders if name.startswith(ENTRIES)]
-                folders[:] = sorted({*folders} - {*links, *hidden})
-                for name in sorted({*files, *links} - NOTED):
-                    check_free(here / name)
 
 
 def claim_logs(folder: str | Path, logs: Iterable[str]) -> None:
@@ -222,7 +188,7 @@ def claim_logs(folder: str | Path, logs: Iterable[str]) -> None:
     """
     mark = Path(folder, ENTRIES, LOGS)
     for log in map(Path, logs):
-        if os.path.lexists(log) and not (mark.is_file() and _is_ordinary(log)):
+        if os.path.lexists(log) and not (mark.is_file() and is_ordinary(log)):
             raise InputError(
                 f"{log}: no log of this workflow, or of one that kept no list; "
                 "move it away"
@@ -232,151 +198,15 @@ def claim_logs(folder: str | Path, logs: Iterable[str]) -> None:
         mark.write_text("The logs in this folder are replaced and removed.\n")
 
 
-@dataclass
-class CommandFiles:
-    """What one command reads and writes."""
-
-    inputs: dict[tuple[int, int], Path] = field(default_factory=dict)
-    """Files that it reads, by device and number of the file."""
-    outputs: dict[Path, Path] = field(default_factory=dict)
-    """Files that it will write, as they were given, by where they are."""
-
-
-_run: ContextVar[CommandFiles | None] = ContextVar("run", default=None)
-
-
-@contextmanager
-def one_run() -> Iterator[None]:
-    """Begin a command: what it reads must not be what it writes."""
-    before = _run.set(CommandFiles())
-    try:
-        yield
-    finally:
-        _run.reset(before)
-
-
-def reads(path: str | Path) -> None:
-    """Tell that a file is an input of this command; outside of one nothing is done.
-
-    Raises
-    ------
-    InputError
-        If it is an output as well.
-    """
-    run, path = _run.get(), Path(path)
-    if run is None:
-        return
-    try:
-        found = path.stat()
-    except OSError:
-        return  # whoever reads it says so
-    run.inputs[found.st_dev, found.st_ino] = path
-    for output in run.outputs.values():
-        _refuse_input(output)
-
-
-def is_input(path: str | Path) -> bool:
-    """Tell whether this command reads a file, by this name or another."""
-    run, found = _run.get(), Path(path).stat()
-    return run is not None and (found.st_dev, found.st_ino) in run.inputs
-
-
-def writes(*paths: str | Path) -> None:
-    """Tell which files a command will write, before its work is paid.
-
-    Parameters
-    ----------
-    *paths : str or Path
-        Files; a folder's one by one.
-
-    Raises
-    ------
-    InputError
-        If something stands in the way of one, or two are the same.
-    """
-    run = _run.get()
-    for path in map(Path, paths):
-        check_free(path)
-        if run is None:
-            continue
-        place = path.parent.resolve() / path.name
-        if place in run.outputs:
-            raise InputError(f"{path}: two outputs in one place; expected one each")
-        run.outputs[place] = path
-
-
-def check_free(path: str | Path) -> None:
-    """Refuse a place where hystbench may not write a file.
-
-    Raises
-    ------
-    InputError
-        If an input of the command stands there, or something that hystbench did not
-        write; if a folder is missing above it and cannot be made.
-    """
-    path = Path(path)
-    check_writable(path.parent)
-    described = _described(path)
-    if not os.path.lexists(path):
-        return
-    _refuse_input(path)
-    if path.is_dir() and not path.is_symlink():
-        raise InputError(f"{path}: a folder; expected a file or nothing")
-    if is_ours(path):
-        return
-    if not _is_ordinary(path):
-        what = "a link" if path.is_symlink() else "no ordinary file"
-    elif described:
-        what = "changed since hystbench wrote it"
-    else:
-        what = "not written by hystbench, or by one that kept no list"
-    raise InputError(f"{path}: {what}; move it away, or name another place to write to")
-
-
-def check_writable(folder: str | Path) -> None:
-    """Refuse a folder that could not be made or written into, before work is paid.
-
-    Raises
-    ------
-    InputError
-        If a file stands where it or a folder above it has to be, or writing is not
-        allowed.
-    """
-    place = Path(folder).absolute()
-    while not os.path.lexists(place):
-        place = place.parent
-    if not place.is_dir():
-        what = "a link to nothing" if not place.exists() else "a file"
-        raise InputError(f"{place}: {what}; expected a folder to write into")
-    if not os.access(place, os.W_OK | os.X_OK):
-        raise InputError(f"{place}: not writable; expected a folder to write into")
-
-
-def _refuse_input(output: Path) -> None:
-    """Refuse an output that is an input by another name, or by the same."""
-    run = _run.get()
-    if run is None:
-        return
-    try:
-        found = output.stat()
-    except OSError:
-        return
-    source = run.inputs.get((found.st_dev, found.st_ino))
-    if source is not None:
-        also = "" if source == output else f" (it is {source})"
-        raise InputError(
-            f"{output}: an input of this command{also}; name another place to write to"
-        )
-
-
-def _is_ordinary(path: Path) -> bool:
+def is_ordinary(path: Path) -> bool:
+    """Tell whether a file is there, and is no link, folder or device."""
     try:
         return stat.S_ISREG(path.lstat().st_mode)
     except OSError:
         return False
 
 
-def _described(path: Path) -> list[str]:
+def described(path: Path) -> list[str]:
     """Give the digests in a file's entry; none where there is no entry."""
     entry = entry_of(path)
     if not os.path.lexists(entry):
@@ -388,7 +218,7 @@ def _described(path: Path) -> list[str]:
     found = []
     lines = (
         entry.read_text(encoding="utf-8", errors="replace").splitlines()
-        if _is_ordinary(entry)
+        if is_ordinary(entry)
         else [""]
     )
     for line in lines:

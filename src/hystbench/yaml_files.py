@@ -6,9 +6,9 @@ from collections.abc import Hashable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from hystbench.command_files import reads
 from hystbench.errors import InputError
 from hystbench.text_files import read_text
-from hystbench.written import reads
 
 if TYPE_CHECKING:
     from yaml import Node

@@ -16,7 +16,8 @@ from hystbench.filters import filter_class, registry
 from hystbench.registered import with_installed
 from hystbench.settings import read_settings
 from hystbench.waveforms import waveforms
-from hystbench.written import check_replaceable, claim_logs
+from hystbench.command_files import check_replaceable
+from hystbench.written import claim_logs
 
 # Jobs call `hystbench`: the one of the interpreter that runs Snakemake.
 shell.prefix(f"PATH={shlex.quote(str(Path(sys.executable).parent))}:$PATH; ")

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import click
 
 from hystbench import options
+from hystbench.command_files import writes
 from hystbench.errors import InputError
 from hystbench.files import write_text
 from hystbench.inspection.columns import Flags
@@ -16,7 +17,6 @@ from hystbench.inspection.draft import Draft, draft
 from hystbench.inspection.entries import yaml_text
 from hystbench.inspection.input_summary import summary_of
 from hystbench.options import In, command, of_class
-from hystbench.written import writes
 
 PLACE = "dataset.yaml"
 

@@ -4,10 +4,10 @@ from pathlib import Path
 from typing import Annotated
 
 from hystbench import options
+from hystbench.command_files import writes
 from hystbench.entrants.rivals import RIVALS, read, write
 from hystbench.errors import refuse_unknown
 from hystbench.options import DatasetFile, OutFolder, command
-from hystbench.written import writes
 
 
 @command

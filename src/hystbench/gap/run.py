@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.command_files import writes
 from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.lead import without_leads
@@ -36,7 +37,6 @@ from hystbench.gap.search import search
 from hystbench.gap.vocabulary import Vocabulary, say_in_words, with_device
 from hystbench.model import Model
 from hystbench.record import Channel, Record
-from hystbench.written import writes
 
 DECISIVE = ("gap.json", "model.yaml")
 """Written when the hold-out records were read, as these may take names back."""

@@ -98,13 +98,20 @@ def together(
     best = least(every)
     if not of_stores(best):
         every += with_one_fewer(best, every, score)
-        every += _with_another(best, offer, score, alone, say)
+        if _pays(best, every):
+            every += _with_another(best, offer, score, alone, say)
     return best_of_each(every)
 
 
 def least(found: Sequence[Fitted]) -> Fitted:
     """Give the hypothesis that scores least."""
     return min(found, key=lambda item: item.score)
+
+
+def _pays(best: Fitted, every: Sequence[Fitted]) -> bool:
+    """Tell whether the last of several effects is worth having."""
+    fewer = least([x for x in every if len(x.effects) < max(len(best.effects), 1)])
+    return fewer.score - best.score > FURTHER
 
 
 def _in_vain(every: Sequence[Fitted], pairs: Sequence[Fitted]) -> bool:

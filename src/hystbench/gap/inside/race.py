@@ -38,7 +38,8 @@ def raced(
 
     Successive halving [1]_: the same time is spent on all starts of a round together.
     The best start of each law stays for a round more: some laws take longer to come
-    near. Of laws that cannot be told apart it is the one of the fewest numbers.
+    near. It also stays while it cannot be told apart from the best of all. Of laws that
+    cannot be told apart it is the one of the fewest numbers.
 
     Parameters
     ----------
@@ -53,19 +54,18 @@ def raced(
     .. [1] K. Jamieson, A. Talwalkar, "Non-stochastic best arm identification and
        hyperparameter optimization", AISTATS 2016, 240-248.
     """
-    best_of_law = {_law(item): item for item, _ in reversed(running)}
+    as_likely = np.inf
     while len(running) > 1 and evaluations < most:
         half = ceil(len(running) / 2)
+        best_of_law = {_law(item): item for item, _ in reversed(running)}
         kept = [
             (item, own)
             for k, (item, own) in enumerate(running)
-            if k < half
-            or best_of_law.get(_law(item)) is item
-            or own.score <= running[0][1].score + SCALE
+            if k < half or (best_of_law[_law(item)] is item and own.score <= as_likely)
         ]
-        best_of_law = {}
         evaluations = min(2 * evaluations, most)
         running = further(kept, score, evaluations)
+        as_likely = running[0][1].score + SCALE
     most_likely = running[0][1].score + SCALE
     near = [pair for pair in running if pair[1].score <= most_likely] or running
     return min(near, key=lambda pair: (pair[1].state.freedom, pair[1].score))
