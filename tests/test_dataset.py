@@ -35,6 +35,15 @@ def test_reads_what_was_written(write_dataset):
     )
 
 
+@pytest.mark.parametrize("unit", ["Nm", "N*m"])
+def test_a_name_lacks_its_unit_in_any_spelling(write_dataset, unit):
+    text = csv_text(TIME, U, Y).replace("current_A", "torque_Nm")
+    about = HEADER.replace("current_A, unit: A", f"torque_Nm, unit: {unit}")
+    about += "records:\n  - {file: slow.csv}\n"
+    dataset = load_dataset(write_dataset({"slow.csv": text}, about))
+    assert dataset.read("slow").input.name == "torque"
+
+
 @given(
     count=st.integers(2, 40),
     dt=st.floats(1e-6, 10),

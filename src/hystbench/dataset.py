@@ -382,8 +382,8 @@ def _name(channel: Mapping[str, str]) -> str:
     """Name of a channel: as given, or its column without the unit behind it."""
     if "name" in channel:
         return channel["name"]
-    suffix = "_" + plain(channel["unit"]).replace("/", "_per_")
-    column = channel["column"]
-    if plain(column).endswith(suffix):
-        column = column[: -len(suffix)]
+    unit, column = plain(channel["unit"]), channel["column"]
+    for spelt in (unit.replace("/", "_per_"), unit.replace("*", "")):
+        if plain(column).endswith(f"_{spelt}"):
+            return column[: -len(spelt) - 1].replace("_", " ")
     return column.replace("_", " ")

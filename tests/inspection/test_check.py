@@ -291,3 +291,31 @@ def test_a_lightly_clipped_input_is_a_note_unless_it_is_real(tmp_path):
     (text,) = told({})
     assert text.startswith("sine-5: current is exactly 0.588 A for ")
     assert told({"sine-5": ", stands_still: [input]"}) == []
+
+
+def about_levels(tmp_path, made):
+    found = check(load_dataset(write(tmp_path, made, roles=HELD)), False)
+    return {key: any(key in x.text for x in found.findings) for key in ONE}
+
+
+ONE = ("one amplitude", "one rate")
+
+
+def test_records_of_one_amplitude_or_rate_are_told(tmp_path):
+    alike = {f"sine-{hz}": (u := sine(hz, 0.9), noisy(loop(u))) for hz in (5, 10, 20)}
+    assert about_levels(tmp_path, alike) == dict(zip(ONE, (True, False), strict=True))
+    slow = {
+        name: (u := sine(10, a), noisy(loop(u)))
+        for name, a in (("sine-10", 1.0), ("a", 0.9), ("b", 1.0))
+    }
+    assert about_levels(tmp_path / "slow", slow) == dict.fromkeys(ONE, True)
+
+
+def test_amplitudes_and_rates_inside_a_record_count(tmp_path):
+    u = sine(10) * np.where(np.arange(COUNT) < COUNT // 2, 0.4, 1.0)
+    several = {name: (u, noisy(loop(u), k)) for k, name in enumerate(("sine-10", "a"))}
+    assert about_levels(tmp_path, several) == dict.fromkeys(ONE, False) | {
+        "one rate": True
+    }
+    mixed = {name: (sine(5) + sine(40, 0.5), noisy(u)) for name in several}
+    assert not any(about_levels(tmp_path / "mixed", mixed).values())

@@ -65,3 +65,22 @@ def test_of_one_kind_the_middle_of_the_rates_is_held_out():
 def test_something_is_left_to_fit():
     held, _ = propose(kinds({"a": SINES["sine-2"], "b": CHIRP}))
     assert len(held) == 1
+
+
+@pytest.mark.parametrize(
+    ("kind", "u"),
+    [
+        ("ramps", np.interp(T, [0, 0.5, 1.5, 2.5, 4], [0, 1, -1, 0.4, -0.3])),
+        ("ramps", np.round((1 + (T > 2)) * (np.abs(T % 0.5 - 0.25) - 0.125), 5)),
+        ("ramps", np.interp(T, [0, 1, 2, 3, 4], [0, 1, 1, -1, -1])),
+        ("sine", np.sin(2 * np.pi * 0.5 * T)),
+        (
+            "sum of sines",
+            sum(np.sin(2 * np.pi * f * T + 7 * f**2) / f for f in range(1, 13)),
+        ),
+        ("sweep", np.sin(2 * np.pi * 0.5 * (np.exp(T) - 1))),
+    ],
+    ids=["one-triangle", "two-levels", "trapezoid", "slow", "tilted", "logarithmic"],
+)
+def test_kinds_that_are_alike_at_first_sight(kind, u):
+    assert summary_of(u, DT).kind == kind

@@ -27,6 +27,8 @@ from hystbench.yaml_files import load_yaml
 
 SAME_RATIO = 2.0
 """Ratio of the fastest rate to the slowest below which records are of one rate."""
+ONE_RATE = ("sine", "ramps")
+"""Kinds of input of which a record has one rate, or few."""
 UNEVEN_SHARE = 0.01
 """Of a step: a clock that is less even than that is told."""
 PLAY_OPERATORS = 10
@@ -196,11 +198,12 @@ def _findings(
     ]
     fit = [item.input for item in facts if item.use == "fit"]
     rates, spans = ([x.rate for x in fit], [round(x.span, 12) for x in fit])
+    alone = all(item.kind in ONE_RATE for item in fit)
     on_the_whole = {
         "none held out": all(item.use == "fit" for item in facts),
         "no noise": floor.method == "upper-bound",
-        "one rate": max(rates) < SAME_RATIO * min(rates),
-        "one amplitude": max(spans) < SAME_RATIO * min(spans),
+        "one rate": alone and max(rates) < SAME_RATIO * min(rates),
+        "one amplitude": max(spans) < SAME_RATIO * min(x.least_swing for x in fit),
     }
     found += [_finding(topic) for topic, holds in on_the_whole.items() if holds]
     try:

@@ -13,13 +13,21 @@ InputKind = Literal["sine", "sum of sines", "sweep", "steps", "ramps", "broadban
 STILL_SHARE = 0.8
 """Share of samples at which the input stands still, of steps."""
 RAMP_SPREAD = 0.25
-"""Spread of the slope's size over its mean, of ramps; a sine has 0.48."""
+"""Spread of the slope's size over its mean, of ramps of one slope; a sine has 0.48."""
+CORNERS = 0.05
+"""Share of samples at most at which ramps of several slopes bend..."""
+AT_CORNERS = 0.9
+"""...by so much of all that their slope changes; a sine bends by 0.08 there."""
 POWER_IN_LINES = 0.95
 """Share of the power that the lines of a sine, or of a sum of sines, have."""
 MOST_LINES = 20
 """Of a sum of sines: more are broadband."""
 LEAST_CROSSINGS = 16
 """Crossings of the mean from which the way of the frequency can be told."""
+EVEN = 0.5
+"""Spread of the times between crossings over their mean, in an eighth of a sweep."""
+SMALL_SWING = 0.1
+"""Share of the range: a way that is shorter may be noise."""
 POWER_SHARE = 0.99
 """Share of the input's power in its band."""
 
@@ -37,6 +45,8 @@ class InputSummary:
     """Range, in the input's unit."""
     rate: float
     """Rms of its rate, in its unit a second."""
+    least_swing: float
+    """Least way from one turn to the next, of those over a tenth of the range."""
 
     @property
     def span(self) -> float:
@@ -69,7 +79,18 @@ def summary_of(u: FloatArray, dt: float) -> InputSummary:
         float(u.min()),
         float(u.max()),
         rms(np.diff(u) / dt),
+        _least_swing(u),
     )
+
+
+def _least_swing(u: FloatArray) -> float:
+    moves = np.diff(u)
+    ways = np.sign(moves[moves != 0.0])
+    moved = u[np.append(True, moves != 0.0)]
+    turns = np.flatnonzero(ways[1:] != ways[:-1]) + 1
+    swings = np.abs(np.diff(moved[turns]))
+    large = swings[swings > SMALL_SWING * np.ptp(u)]
+    return float(large.min()) if len(large) else float(np.ptp(u))
 
 
 def _kind(u: FloatArray, power: FloatArray) -> InputKind:
@@ -77,7 +98,7 @@ def _kind(u: FloatArray, power: FloatArray) -> InputKind:
     reach = float(np.ptp(u))
     if np.mean(steps < 1e-6 * reach) > STILL_SHARE:
         return "steps"
-    if np.std(steps) < RAMP_SPREAD * steps.mean():
+    if np.std(steps) < RAMP_SPREAD * steps.mean() or _bends_at_corners(u):
         return "ramps"
     lines = _lines(power)
     if lines == 1:
@@ -85,6 +106,13 @@ def _kind(u: FloatArray, power: FloatArray) -> InputKind:
     if _sweeps(u):
         return "sweep"
     return "sum of sines" if lines <= MOST_LINES else "broadband"
+
+
+def _bends_at_corners(u: FloatArray) -> bool:
+    """Tell whether an input is straight but for a few corners."""
+    bends = np.sort(np.abs(np.diff(u, 2)))
+    corners = int(CORNERS * len(bends))
+    return bool(np.sum(bends[len(bends) - corners :]) > AT_CORNERS * np.sum(bends))
 
 
 def _lines(power: FloatArray) -> int:
@@ -103,7 +131,10 @@ def _sweeps(u: FloatArray) -> bool:
     crossings = np.flatnonzero(above[1:] != above[:-1])
     if len(crossings) < LEAST_CROSSINGS:
         return False
-    gaps = np.array([part.mean() for part in np.array_split(np.diff(crossings), 8)])
+    parts = np.array_split(np.diff(crossings), 8)
+    if np.median([part.std() / part.mean() for part in parts]) > EVEN:
+        return False
+    gaps = np.array([part.mean() for part in parts])
     ways = np.sign(np.diff(gaps))
     one_way = np.count_nonzero(ways == ways[0]) >= len(ways) - 1
     return bool(one_way and gaps.max() > 2 * gaps.min())

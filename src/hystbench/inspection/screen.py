@@ -171,9 +171,13 @@ def _findings(findings: Sequence[Finding], pasted: int) -> list[str]:
 
 
 def _shortened(text: str) -> str:
-    """Keep a text to two lines and a half: a list in it may be long."""
+    """Keep a text to two lines and a half, in whole sentences where there are some."""
     room = 2 * WIDTH + WIDTH // 2
-    return text if len(text) <= room else text[:room].rpartition(" ")[0] + " ..."
+    if len(text) <= room:
+        return text
+    sentences = text[:room].rpartition(". ")[0]
+    told = f"{sentences}." if sentences else text[:room].rpartition(" ")[0] + " ..."
+    return f"{told} (The page has all: --out.)"
 
 
 def _effects(found: Check) -> dict[str, list[str]]:
