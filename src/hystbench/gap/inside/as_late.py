@@ -16,7 +16,7 @@ from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import Fitted, fitted_to_the_end
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.combine_forces import best_of_each
+from hystbench.gap.inside.choose import best_of_each
 from hystbench.gap.inside.insert_law import Offer, of_stores, with_law
 
 

@@ -35,6 +35,8 @@ class Beginnings:
     kept: NDArray[np.bool_]
     """Shape (scored samples,). Which of the whole records' scored samples are left."""
     score: Score
+    cut_short: bool = False
+    """Whether records end before all that is in them was seen; whole periods do not."""
 
     @classmethod
     def of(cls, state: ModelState, score: Score) -> Beginnings:
@@ -85,7 +87,7 @@ class Beginnings:
             np.concatenate(kept),
         )
         own = Score(sample, score.directions[mask], score.floor)
-        return cls(tuple(records), sample, mask, own)
+        return cls(tuple(records), sample, mask, own, cut_short=not repeats)
 
     @classmethod
     def all_of(cls, state: ModelState, score: Score) -> Beginnings:

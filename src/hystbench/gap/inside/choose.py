@@ -157,3 +157,31 @@ def most_inside(chain: Named, floor_rms: float) -> float:
     score = Score.plain(state.sample, floor_rms**2)
     left = score_of(state, score) - score.least(state.freedom)
     return np.inf if left >= PAYS else len(state.added) - 1
+
+
+def least(found: Sequence[Fitted]) -> Fitted:
+    """Give the hypothesis that scores least."""
+    return min(found, key=lambda item: item.score)
+
+
+def best_of_each(found: Sequence[Fitted]) -> list[Fitted]:
+    """Keep of each set of effects the hypothesis that scores least, in their order.
+
+    Of laws that cannot be told apart it is the one of the fewest numbers.
+    """
+    alike: dict[frozenset[str], list[Fitted]] = {}
+    for item in found:
+        alike.setdefault(frozenset(item.effects), []).append(item)
+    best = []
+    for own in alike.values():
+        most = least(own).score + SCALE
+        near = [item for item in own if item.score <= most]
+        fewest = min(near, key=lambda item: (item.state.freedom, item.score))
+        best.append(fewest)
+    return best
+
+
+def may_gain(item: Fitted, score: Score) -> bool:
+    """Tell whether a further force could gain what it has to pay."""
+    pays = FURTHER if item.effects else PAYS
+    return item.score - score.least(item.state.freedom) > pays

@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 
-from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Changed, Law
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import (
-    EVALUATIONS,
-    QUICK,
     Fitted,
     fitted,
-    fitted_to_the_end,
     record_weights,
 )
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.average_force import evened
 from hystbench.gap.inside.beginnings import Beginnings
+from hystbench.gap.inside.choose import best_of_each, least, may_gain
 from hystbench.gap.inside.insert_law import (
     Offer,
     of_stores,
@@ -30,9 +26,9 @@ from hystbench.gap.inside.insert_law import (
     with_law,
 )
 from hystbench.gap.inside.joint import joints
-from hystbench.gap.inside.race import FEW, a_little, further, raced
+from hystbench.gap.inside.likeliest import fitted_each, fitted_likely, to_the_end
 from hystbench.gap.progress import Say, silent
-from hystbench.gap.thresholds import CERTAIN, FURTHER, PAYS, SCALE
+from hystbench.gap.thresholds import FURTHER, PAYS
 from hystbench.record import FloatArray
 
 SINGLES, PAIRS = 4, 2
@@ -103,11 +99,6 @@ def together(
     return best_of_each(every)
 
 
-def least(found: Sequence[Fitted]) -> Fitted:
-    """Give the hypothesis that scores least."""
-    return min(found, key=lambda item: item.score)
-
-
 def _pays(best: Fitted, every: Sequence[Fitted]) -> bool:
     """Tell whether the last of several effects is worth having."""
     fewer = least([x for x in every if len(x.effects) < max(len(best.effects), 1)])
@@ -142,7 +133,7 @@ def with_one_fewer(best: Fitted, found: Sequence[Fitted], score: Score) -> list[
         if frozenset(others) in tried or not any(way in tried for way in ways):
             continue
         left.append(Fitted(without_effect(best.state, number), np.inf))
-    return _to_the_end(left, score)
+    return to_the_end(left, score)
 
 
 def _with_another(
@@ -157,23 +148,6 @@ def _with_another(
     fewer = [without_effect(best.state, k) for k in range(len(best.effects))]
     carried = [fitted(state, score) for state in fewer]
     return _one_more(carried, offer, score, SINGLES, alone, say)
-
-
-def best_of_each(found: Sequence[Fitted]) -> list[Fitted]:
-    """Keep of each set of effects the hypothesis that scores least, in their order.
-
-    Of laws that cannot be told apart it is the one of the fewest numbers.
-    """
-    alike: dict[frozenset[str], list[Fitted]] = {}
-    for item in found:
-        alike.setdefault(frozenset(item.effects), []).append(item)
-    best = []
-    for own in alike.values():
-        most = least(own).score + SCALE
-        near = [item for item in own if item.score <= most]
-        fewest = min(near, key=lambda item: (item.state.freedom, item.score))
-        best.append(fewest)
-    return best
 
 
 def _one_more(
@@ -226,12 +200,6 @@ def _offered(
                 yield at, name, inside
 
 
-def may_gain(item: Fitted, score: Score) -> bool:
-    """Tell whether a further force could gain what it has to pay."""
-    pays = FURTHER if item.effects else PAYS
-    return item.score - score.least(item.state.freedom) > pays
-
-
 def starts(
     before: Fitted,
     short: ModelState,
@@ -278,126 +246,3 @@ def of_zeros(begun: ModelState) -> FloatArray:
     own = begun.added[-1].blocks
     zeros = (x for x in begun.free if x.block in own and begun.value(x) == 0.0)
     return replace(begun, free=tuple(zeros)).tangents
-
-
-def fitted_likely(
-    begun: Iterable[Fitted], beginnings: Beginnings, score: Score, count: int
-) -> list[Fitted]:
-    """Fit the hypotheses that promise most: roughly first, the best of them to the end.
-
-    Parameters
-    ----------
-    begun : iterable of Fitted
-        With the scores to be expected.
-    beginnings : Beginnings
-        What they are fitted to roughly.
-    score : Score
-        Of the whole records.
-    count : int
-        How many, each by its best start, are fitted to the end. Twice as many are
-        fitted roughly, and four times as many a little, each from twice as many starts
-        and by all its laws: what a law promises where it starts says little of where it
-        comes to.
-
-    Returns
-    -------
-    list of Fitted
-        Those that were fitted to the end, the least score first. Where the best one
-        leaves what a further effect could gain, its other starts and the other laws of
-        the rest were raced on whole records as well: a fit may end in one of several
-        minima, and not all laws act at the beginning of a record.
-    """
-    likely: dict[frozenset[str], list[Fitted]] = {}
-    for item in sorted(begun, key=lambda item: item.score):
-        likely.setdefault(frozenset(item.effects), []).append(item)
-    some = {
-        effects: _of_each_law(own, 2 * count)
-        for effects, own in list(likely.items())[: 4 * count]
-    }
-    tried = [a_little(own, beginnings) for own in some.values()]
-    tried.sort(key=lambda running: running[0][1].score)
-    rough = [
-        raced(running, beginnings.score, FEW, QUICK) for running in tried[: 2 * count]
-    ]
-    rough.sort(key=lambda pair: pair[1].score)
-    begun_well = []
-    for item, own in rough[:count]:
-        numbers = {k: own.state.value(free) for k, free in enumerate(item.state.free)}
-        begun_well.append(replace(own, state=item.state.at(numbers)))
-    done = _as_far_as_they_matter(begun_well, score)
-    if done and may_gain(done[0], score):
-        of_best, *others = (some[frozenset(item.effects)] for item in done)
-        rest = [one for own in others for one in _of_each_law(own, 0)]
-        nearest = [_on_the_whole(of_best, score, QUICK)]
-        nearest += [_on_the_whole(rest, score, FEW)] if rest else []
-        done += _to_the_end(nearest, score)
-        done = sorted(best_of_each(done), key=lambda item: item.score)
-    return done
-
-
-def _on_the_whole(starts: Sequence[Fitted], score: Score, evaluations: int) -> Fitted:
-    """Race starts on whole records; the first round takes so many evaluations."""
-    begun = further([(item, item) for item in starts], score, evaluations)
-    _, nearest = raced(begun, score, evaluations, EVALUATIONS)
-    return nearest
-
-
-def _as_far_as_they_matter(begun: Sequence[Fitted], score: Score) -> list[Fitted]:
-    """Fit hypotheses to the end, or till it is beyond doubt that they are worse.
-
-    That is so where the first leaves nothing that another effect could gain.
-    """
-    done = _to_the_end(begun[:1], score)
-    others = list(begun[1:])
-    if done and not may_gain(done[0], score):
-        most = done[0].score + CERTAIN
-        nearer = [fitted(item.state, score, QUICK) for item in others]
-        others = [item for item in nearer if item.score < most]
-        done += [item for item in nearer if most <= item.score < np.inf]
-    return sorted([*done, *_to_the_end(others, score)], key=lambda item: item.score)
-
-
-def _of_each_law(starts: Sequence[Fitted], count: int) -> list[Fitted]:
-    """Give the likeliest starts, the likeliest of each law in any case."""
-    firsts = list({item.forms: item for item in reversed(starts)}.values())
-    others = [item for item in starts if not any(item is one for one in firsts)]
-    return firsts + others[: max(count - len(firsts), 0)]
-
-
-def fitted_each(begun: Iterable[Fitted], score: Score) -> list[Fitted]:
-    """Fit all laws of all effects to the end, each from its likeliest start."""
-    likely: dict[tuple[str, ...], Fitted] = {}
-    for item in sorted(begun, key=lambda item: item.score):
-        law = tuple(sorted(map(" ".join, zip(item.effects, item.forms, strict=True))))
-        likely.setdefault(law, item)
-    return _to_the_end(likely.values(), score)
-
-
-def _to_the_end(begun: Iterable[Fitted], score: Score) -> list[Fitted]:
-    """Fit hypotheses to the end; the least score first, none that runs away."""
-    done = [fitted_to_the_end(item.state, score) for item in begun]
-    kept = (
-        item for item in done if np.isfinite(item.score) and not _vanishes(item, score)
-    )
-    return sorted(kept, key=lambda item: item.score)
-
-
-def _vanishes(item: Fitted, score: Score) -> bool:
-    """Tell whether an effect does as well without the number that makes it itself.
-
-    A slider without its clearance is dry friction, which is tried as such. The other
-    numbers may make up for what that number did.
-    """
-    state = item.state
-    for added in state.added:
-        without = effects()[added.effect].vanishing(added.form).items()
-        for place, (name, value) in product(added.blocks, without):
-            if name not in state.chain[place].parameters():
-                continue  # another law of the effect
-            chain = list(state.chain)
-            chain[place] = replace(chain[place], **{name: value})
-            others = (x for x in state.free if (x.block, x.parameter) != (place, name))
-            bare = replace(state.with_chain(tuple(chain)), free=tuple(others))
-            if fitted(bare, score, FEW).score < item.score + SCALE:
-                return True
-    return False

@@ -10,13 +10,8 @@ from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import Fitted, fitted, fitted_to_the_end
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.combine_forces import (
-    PAIRS,
-    best_of_each,
-    least,
-    singles,
-    together,
-)
+from hystbench.gap.inside.choose import best_of_each, least
+from hystbench.gap.inside.combine_forces import PAIRS, singles, together
 from hystbench.gap.inside.host_places import LINEAR, host_of, own_numbers
 from hystbench.gap.inside.insert_law import Offer, of_stores
 from hystbench.gap.progress import Say, silent

@@ -22,8 +22,15 @@ from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.as_late import with_others_as_late
-from hystbench.gap.inside.choose import as_rounds, charged, chosen, not_taken, way_to
-from hystbench.gap.inside.combine_forces import may_gain, singles, together
+from hystbench.gap.inside.choose import (
+    as_rounds,
+    charged,
+    chosen,
+    may_gain,
+    not_taken,
+    way_to,
+)
+from hystbench.gap.inside.combine_forces import singles, together
 from hystbench.gap.inside.fewer import OnAll, on_fewer
 from hystbench.gap.inside.fitted_numbers import more_for_numbers, re_tuning
 from hystbench.gap.inside.host_places import host_places
