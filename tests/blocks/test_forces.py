@@ -44,6 +44,10 @@ LAWS = {
         {"stiffness": 4.0, "reach": 0.5},
         lambda q, v: 4 * q / np.sqrt(1 + (q / 0.5) ** 2),
     ),
+    "transverse-springs": (
+        {"stiffness": 4.0, "reach": 0.5},
+        lambda q, v: 4 * q * (1 - 0.5 / np.hypot(0.5, q)),
+    ),
     "stop": (
         {"contact_stiffness": 7.0, "gap": 0.4, "centre": 0.1},
         lambda q, v: np.select(
@@ -184,26 +188,39 @@ def test_a_slider_behind_a_gap_lets_go_is_free_climbs_and_slides():
     np.testing.assert_allclose(found[401:], np.interp(way, places, forces), atol=1e-12)
 
 
+@pytest.mark.parametrize("exponent", [1.0, 2.0])
 @pytest.mark.parametrize("sharing", [0.0, 0.3, 0.5, 0.8, 1.0])
-def test_bouc_and_wen_are_the_solution_of_their_equation(sharing):
+def test_bouc_and_wen_are_the_solution_of_their_equation(sharing, exponent):
     largest, reach = 3.0, 0.2
     turns = [0.0, 0.5, 0.3, 0.45, -0.6, -0.5, -0.55, 0.02]
 
     def slope(q, z, direction):
         share = sharing + (1 - sharing) * np.sign(z * direction)
-        return (1 - np.abs(z) * share) / reach
+        return (1 - np.abs(z) ** exponent * share) / reach
 
     way, wanted = along(slope, turns)
     block = force(
-        "hysteretic-force", largest=largest, yield_distance=reach, sharing=sharing
+        "hysteretic-force",
+        largest=largest,
+        yield_distance=reach,
+        sharing=sharing,
+        exponent=exponent,
     )
     found = against(block, way)
     np.testing.assert_allclose(found, largest * wanted, atol=1e-6)
 
 
-def test_the_step_of_bouc_and_wen_does_not_matter():
+@pytest.mark.parametrize("exponent", [1.0, 2.0])
+@pytest.mark.parametrize("sharing", [0.2, 0.5, 0.7])
+def test_the_step_of_bouc_and_wen_does_not_matter(sharing, exponent):
     # Exact over a monotone piece: in one step or in many.
-    block = force("hysteretic-force", largest=1.0, yield_distance=0.1, sharing=0.7)
+    block = force(
+        "hysteretic-force",
+        largest=1.0,
+        yield_distance=0.1,
+        sharing=sharing,
+        exponent=exponent,
+    )
     fine = np.concatenate([np.linspace(0, 0.3, 301), np.linspace(0.3, -0.2, 501)[1:]])
     many, few = against(block, fine), against(block, fine[[0, 300, 800]])
     np.testing.assert_allclose(few, many[[0, 300, 800]], atol=1e-12)
@@ -235,11 +252,17 @@ PASSIVE = {
         {"contact_stiffness": 3.0, "slip_force": 0.5, "gap": 0.2},
     ),
     **{
-        f"Bouc-Wen {sharing}": (
+        f"Bouc-Wen {sharing} {exponent}": (
             "hysteretic-force",
-            {"largest": 1.0, "yield_distance": 0.4, "sharing": sharing},
+            {
+                "largest": 1.0,
+                "yield_distance": 0.4,
+                "sharing": sharing,
+                "exponent": exponent,
+            },
         )
         for sharing in (0.0, 0.3, 0.5, 0.8, 1.0)
+        for exponent in (1.0, 2.0)
     },
 }
 

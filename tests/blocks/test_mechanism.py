@@ -57,6 +57,8 @@ SMOOTH = {
               lambda q, v: 80 * (0.3 * np.sinh(q / 0.3) - q)),
     "level": ([force("saturating-stiffness", stiffness=80.0, reach=0.3)],
               lambda q, v: 80 * q / np.sqrt(1 + (q / 0.3) ** 2)),
+    "across": ([force("transverse-springs", stiffness=80.0, reach=0.3)],
+               lambda q, v: 80 * q * (1 - 0.3 / np.hypot(0.3, q))),
     "drag": ([force("drag", coefficient=0.8)], lambda q, v: 0.8 * v * abs(v)),
     "pendulum": ([force("gravity", amplitude=150.0, angle=0.5)],
                  lambda q, v: 150 * (np.sin(q + 0.5) - np.sin(0.5))),
@@ -204,6 +206,9 @@ POTENTIALS = {
     "spring that levels off": (
         "saturating-stiffness", {"stiffness": 80.0, "reach": 0.1},
         lambda q: 80 * 0.01 * (np.sqrt(1 + (q / 0.1) ** 2) - 1)),
+    "springs across": (
+        "transverse-springs", {"stiffness": 80.0, "reach": 0.1},
+        lambda q: 80 * (q**2 / 2 - 0.1 * (np.hypot(0.1, q) - 0.1))),
     "weight": ("gravity", {"amplitude": 150.0, "angle": 0.5},
                lambda q: 150 * (np.cos(0.5) - np.cos(q + 0.5) - np.sin(0.5) * q)),
     "contact": ("stop", {"contact_stiffness": 2e3, "gap": 0.3, "centre": 0.1},
@@ -276,6 +281,11 @@ DISSIPATIVE = {
     "Bouc-Wen": (
         "hysteretic-force",
         {"largest": 4.0, "yield_distance": 0.02, "sharing": 0.5},
+        0.04,
+    ),
+    "Bouc-Wen of exponent two": (
+        "hysteretic-force",
+        {"largest": 4.0, "yield_distance": 0.02, "sharing": 0.5, "exponent": 2.0},
         0.04,
     ),
     "Dahl": (

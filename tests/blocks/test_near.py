@@ -25,6 +25,7 @@ LAWS = {
     "stiffness": {"quadratic": 50.0, "cubic": 300.0},
     "exponential-stiffness": {"coefficient": 80.0, "reach": 0.3},
     "saturating-stiffness": {"stiffness": 80.0, "reach": 0.3},
+    "transverse-springs": {"stiffness": 80.0, "reach": 0.3},
     "stop": {"contact_stiffness": 300.0, "gap": 0.2, "centre": 0.05},
     "friction-force": {"coulomb": 20.0, "presliding_distance": 0.02},
     "smooth-friction": {

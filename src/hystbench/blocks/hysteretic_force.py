@@ -5,12 +5,13 @@ from hystbench.blocks.parameter import TINY, number
 
 
 class HystereticForce(Force, name="hysteretic-force", law="hysteretic"):
-    """Bouc and Wen's hysteresis of exponent one, ``F = largest z``.
+    """Bouc and Wen's hysteresis, ``F = largest z``.
 
-    ``yield_distance dz/dq = 1 - |z| (sharing + (1 - sharing) sgn(z dq))``, z between -1
-    and 1: micro-slip of joints, the fluid of a magnetorheological damper. A sharing of
-    zero is Dahl's friction; with one it unloads along the way on which it was loaded.
-    A loop that grows stiffer on loading is a ``bouc-wen-force``.
+    ``yield_distance dz/dq = 1 - |z|^exponent (sharing + (1 - sharing) sgn(z dq))``, z
+    between -1 and 1: micro-slip of joints, the fluid of a magnetorheological damper.
+    With an exponent of two it yields later and more sharply. With one a sharing of zero
+    is Dahl's friction; with a sharing of one it unloads along the way on which it was
+    loaded. A loop that grows stiffer on loading is a ``bouc-wen-force``.
     Solved exactly over every monotone piece of the way.
 
     References
@@ -30,12 +31,14 @@ class HystereticForce(Force, name="hysteretic-force", law="hysteretic"):
         1.0,
         0.5,
     )
+    exponent: float = number("-", "1 or 2", 1.0, 2.0, 1.0, whole=True)
 
     def numbers(self) -> tuple[float, ...]:
-        """Give the stiffness, and how it falls on loading and grows on unloading."""
-        softens = 1.0 / self.yield_distance
+        """Give the stiffness, how it falls on loading and grows on unloading, and n."""
+        softens = self.yield_distance**-self.exponent
         return (
-            self.largest * softens,
+            self.largest / self.yield_distance,
             softens,
             (1.0 - 2.0 * self.sharing) * softens,
+            self.exponent,
         )

@@ -73,6 +73,47 @@ static double hb_integral_of(double *x, double a, double way)
     return way * (from + slope * way * twice);
 }
 
+/* Moves x, which follows x' = 1 + a x^2, and gives its integral over the way: a tangent
+ * of the way, or a hyperbolic one. */
+static double hb_integral_of_square(double *x, double a, double way)
+{
+    const double from = *x, root = sqrt(fabs(a)), by = root * way;
+    if (by == 0 || !(1 + a * from * from > 0)) { /* straight, or it rests there */
+        *x += a == 0 ? way : 0;
+        return way * (from + *x) / 2;
+    }
+    if (a < 0 && by > 20) { /* all but at its end */
+        *x = 1 / root;
+        return (by + log((1 + root * from) / 2)) / -a;
+    }
+    const double half = a < 0 ? sinh(by / 2) : sin(by / 2);
+    const double once = a < 0 ? tanh(by) : tan(by);
+    const double also = root * from * (a < 0 ? sinh(by) : -sin(by));
+    const double turns = a < 0 ? 1 : -1;
+    *x = (from + once / root) / (1 + turns * root * from * once);
+    return log1p(turns * 2 * half * half + also) / -a;
+}
+
+/* Bouc-Wen's operator with exponent 2, as hb_bouc_wen: x moves by 1 - softens x^2 on
+ * loading and by 1 + stiffens x^2 on unloading. */
+static double hb_bouc_wen_square(double x, double way, double softens, double stiffens,
+                                 double *integral)
+{
+    const double sign = way < 0 ? -1 : 1, length = fabs(way), root = sqrt(fabs(stiffens));
+    double until = 0;
+    x *= sign;
+    *integral = 0;
+    if (x < 0) { /* unloading, until x is zero */
+        const double y = -root * x;
+        until = root == 0 ? -x : stiffens > 0 ? atan(y) / root : length;
+        if (stiffens < 0 && y < 1) until = atanh(y) / root;
+        until = fmin(until, length);
+        *integral += hb_integral_of_square(&x, stiffens, until);
+    }
+    *integral += hb_integral_of_square(&x, -softens, length - until); /* loading */
+    return sign * x;
+}
+
 /* Bouc-Wen's operator with exponent 1, solved exactly: x, the force over the stiffness
  * at rest, after a way, and its integral over the way.  x moves by 1 - softens |x| on
  * loading and by 1 + stiffens |x| on unloading, a unit of way. */
@@ -90,6 +131,12 @@ static double hb_bouc_wen(double x, double way, double softens, double stiffens,
     }
     *integral += hb_integral_of(&x, -softens, length - until); /* loading */
     return sign * x;
+}
+
+/* Bouc-Wen's operator by the numbers of a force. */
+static double hb_hysteretic(const double *f, double x, double way, double *integral)
+{
+    return (f[4] == 2 ? hb_bouc_wen_square : hb_bouc_wen)(x, way, f[2], f[3], integral);
 }
 
 /* Stribeck's curve: an excess over the force of sliding that fades with the velocity. */
@@ -152,7 +199,7 @@ static double hb_remembered(const double *f, double way, double v, double h,
     case 11: /* lugre */
         return hb_bend(memory, way, hb_friction_reach(f, h > 0 ? way / h : v), &integral);
     case 5: /* hysteretic */
-        return hb_bouc_wen(memory, way, f[2], f[3], &integral);
+        return hb_hysteretic(f, memory, way, &integral);
     case 7: /* slider */
         return hb_clip(f[2], memory + way);
     case 9: /* relaxation */
@@ -242,7 +289,7 @@ static double hb_mean_force(const double *f, double q, double way, double h,
     case 5: /* hysteretic */ {
         double integral;
         if (way == 0) return f[1] * memory;
-        hb_bouc_wen(memory, way, f[2], f[3], &integral);
+        hb_hysteretic(f, memory, way, &integral);
         return f[1] * integral / way;
     }
     case 6: { /* gravity */

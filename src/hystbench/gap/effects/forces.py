@@ -207,6 +207,8 @@ class HystereticForce(InsideEffect):
             )
             ranges = {"yield_distance": (SLIDES * moved.reach, np.inf)}
             yield Law("Bouc-Wen", block, names, ranges=ranges)
+            sharper = replace(block, exponent=2.0)
+            yield Law("Bouc-Wen, exponent 2", sharper, names, ranges=ranges)
         # Beyond such a beta it would slide on nearly all of its way.
         stiffness = max(moved.stiffness, moved.force / moved.reach)
         stiffens = {

@@ -16,6 +16,7 @@ from hystbench.blocks.exponential_stiffness import ExponentialStiffness
 from hystbench.blocks.saturating_stiffness import SaturatingStiffness
 from hystbench.blocks.stiffness import Stiffness
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.blocks.transverse_springs import TransverseSprings
 from hystbench.errors import InputError
 from hystbench.gap.effects.effect import Declined, Effect
 from hystbench.gap.effects.law import Law, Moved
@@ -126,7 +127,10 @@ class StiffnessHardening(Effect):
     name = "stiffness-hardening"
     shows = "frequency"
     place = "mechanics"
-    laws = ("stiffness", "exponential-stiffness", "saturating-stiffness")
+    laws = (
+        *("stiffness", "exponential-stiffness"),
+        *("saturating-stiffness", "transverse-springs"),
+    )
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the spring for each mode, those inside transfer functions included.
@@ -147,7 +151,8 @@ class StiffnessHardening(Effect):
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer a cube of either sign, a square beside it, and other springs.
 
-        One grows steeply; one levels off, beside a linear spring or in its place.
+        One grows steeply, one up to a stiffness; one levels off, beside a linear spring
+        or in its place.
         """
         if moved.anywhere:
             return
@@ -163,6 +168,8 @@ class StiffnessHardening(Effect):
                 yield Law("cube", replace(block, cubic=much), ("cubic",))
         steep = ExponentialStiffness(coefficient=0.03 * linear, reach=moved.reach / 2)
         yield Law("steep", steep, ("coefficient", "reach"))
+        across = TransverseSprings(stiffness=0.1 * linear, reach=moved.reach / 2)
+        yield Law("up to a stiffness", across, ("stiffness", "reach"))
         shares = (0.5, 1.0) if moved.loose else (0.5,)
         for share in shares if moved.stiffness > 0.0 else ():
             levels_off = SaturatingStiffness(

@@ -142,12 +142,14 @@ def without(signal: FloatArray, column: FloatArray) -> FloatArray:
     signal : ndarray, shape (n,) or (n, k)
     column : ndarray, shape (n, 0 or 1)
     """
-    square = float(np.sum(column**2))
-    if square == 0.0 or not np.all(np.isfinite(signal)):
+    square = float(np.vdot(column, column))
+    if square == 0.0:
         return signal
-    return signal - (
-        column @ (column.T @ signal.reshape(len(signal), -1)) / square
-    ).reshape(signal.shape)
+    with np.errstate(invalid="ignore", over="ignore"):  # a signal may run away
+        share = column.T @ signal.reshape(len(signal), -1) / square
+    if not np.all(np.isfinite(share)):
+        return signal
+    return signal - (column @ share).reshape(signal.shape)
 
 
 @dataclass(frozen=True)
