@@ -37,6 +37,7 @@ from hystbench.gap.inside.one_coordinate import Kind
 from hystbench.gap.inside.timing import better_timed, in_time_words, timed_as_named
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
 from hystbench.gap.naming.add_effects import Named, add_effects
+from hystbench.gap.naming.begun_otherwise import begun_as_named
 from hystbench.gap.naming.beside_forces import beside_forces
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.records.evidence import Evidence, own_offsets
@@ -93,6 +94,13 @@ def search(
         again = _beside(shifted, evidence, asked, quantities, found.hosts)
         found = found if _stays(found, again) else again
         asked.say("it is" if found is again else "that explains no more: it is not")
+    begun = begun_as_named(found.base, found.named.state, evidence.fit)
+    if identified and begun is not None:
+        asked.say("the records may begin otherwise: naming beside that")
+        again = _beside(begun, evidence, asked, quantities, found.hosts)
+        better = again.worth <= found.worth
+        found = again if better else found
+        asked.say("they do" if better else "that explains no more: they do not")
     about = None if identified else known_about(base, evidence.fit)
     if about is not None and found.may_be_simpler():
         asked.say("the base's numbers or timing may be off: naming beside that")
@@ -172,6 +180,11 @@ class _Searched:
         what is called missing is then its own mode with other numbers.
         """
         return -PAYS if repeats_a_mode(self.named.state) else PAYS
+
+    @property
+    def worth(self) -> float:
+        """Score it by its own samples, with what its effects have to pay."""
+        return self.value(self.score_beside(self))
 
     def value(self, score: Score, re_tuned: bool = False) -> float:
         """Score it, with what its effects and its numbers have to pay.

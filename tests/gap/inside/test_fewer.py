@@ -15,10 +15,11 @@ from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.average_force import evened
-from hystbench.gap.inside.fewer import OnAll, on_fewer, starting
+from hystbench.gap.inside.fewer import OnAll, on_fewer
 from hystbench.gap.inside.insert_law import with_law
 from hystbench.gap.records.coarser import ENOUGH
 from hystbench.gap.records.scored_samples import ScoredSamples
+from hystbench.gap.simulation.starting import starting
 from hystbench.gap.thresholds import PAYS, SCALE
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record

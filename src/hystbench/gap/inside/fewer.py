@@ -4,16 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.linear import LinearBlock
-from hystbench.blocks.mechanism import Mechanism, free_starts
-from hystbench.blocks.starts import PASTS, plainest_start, possible_starts
-from hystbench.blocks.structure import Structure
-from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.blocks.starts import plainest_start, possible_starts
 from hystbench.gap.fitting.least_squares import Fitted, fitted, judged
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
@@ -21,6 +16,7 @@ from hystbench.gap.inside.race import FEW
 from hystbench.gap.records.coarser import coarser, left_out
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
+from hystbench.gap.simulation.starting import starting
 from hystbench.gap.thresholds import PAYS
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray
@@ -52,27 +48,6 @@ def on_fewer(start: ModelState, quantities: Quantities) -> ModelState:
     return replace(
         start, chain=chain, records=records, sample=ScoredSamples.of(records)
     ).settled()
-
-
-def starting(chain: Sequence[Block], start: str) -> tuple[Block, ...]:
-    """Give linear dynamics another start; a free mass has only some.
-
-    Where the dynamics are at rest, a lag that is not is settled.
-    """
-
-    def begun(block: Any) -> Any:
-        wanted = own = getattr(block, "start", "rest")
-        if isinstance(block, Mechanism):
-            may = block.stiffness > 0.0 or start in free_starts(block.output)
-            wanted = start if may else own
-        elif isinstance(block, Structure | TransferFunction):
-            wanted = start
-        elif isinstance(block, LinearBlock):
-            at_rest = "settled" if own in PASTS else own
-            wanted = at_rest if start == "rest" else start
-        return block if wanted == own else replace(block, start=wanted)
-
-    return tuple(map(begun, chain))
 
 
 @dataclass(frozen=True)
