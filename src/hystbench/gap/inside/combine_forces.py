@@ -94,15 +94,19 @@ def together(
     best = least(every)
     if not of_stores(best):
         every += with_one_fewer(best, every, score)
-        if _pays(best, every):
-            every += _with_another(best, offer, score, alone, say)
+        every += _with_another(_that_pay(every), offer, score, alone, say)
     return best_of_each(every)
 
 
-def _pays(best: Fitted, every: Sequence[Fitted]) -> bool:
-    """Tell whether the last of several effects is worth having."""
-    fewer = least([x for x in every if len(x.effects) < max(len(best.effects), 1)])
-    return fewer.score - best.score > FURTHER
+def _that_pay(every: Sequence[Fitted]) -> Fitted:
+    """Give the best hypothesis of which the last of several effects is worth having."""
+    best = least(every)
+    while len(best.effects) > 1:
+        fewer = least([x for x in every if len(x.effects) < len(best.effects)])
+        if fewer.score - best.score > FURTHER:
+            break
+        best = fewer
+    return best
 
 
 def _in_vain(every: Sequence[Fitted], pairs: Sequence[Fitted]) -> bool:

@@ -112,6 +112,10 @@ def named_inside(
     turns = angle_in(start.records[0].output.unit)
     times = Times.of(start.records, identified)
     offer = partial(laws_for, turns=turns, offered=start.offered, times=times)
+
+    def leaves_more(item: Fitted, share: float) -> bool:
+        return item.state.power(score.floor) > share * fewer.power(score.floor)
+
     tried: list[tuple[Host, list[Fitted]]] = []
     limit, little, enough = np.inf, False, False
     about = fewer, quantities, identified, score, base.exact
@@ -124,12 +128,11 @@ def named_inside(
         found = singles(host.fitted, offer, score, say, host.other)
         tried.append((host, found))
         best = chosen(found, score.floor, share)
-        stays = best.state.power(score.floor)
-        if best.effects and stays <= MOST * fewer.power(score.floor):
+        if best.effects and not leaves_more(best, MOST):
             in_place = of_free_numbers(base, found[0].state)
             if again(augmented(in_place, best.state)):
                 return None
-        little = little or stays <= share * fewer.power(score.floor)
+        little = little or not leaves_more(best, share)
         enough = not may_gain(best, score)
         if enough:
             break  # no other host could do better
@@ -159,7 +162,7 @@ def named_inside(
 
     full = [with_more(*item) for item in cheaper]
     known = [chosen(own, score.floor, share) for _, own in full]
-    wanting = all(may_gain(item, score) for item in known)
+    wanting = all(may_gain(item, score) and leaves_more(item, share) for item in known)
     full.append(with_more(host, found) if wanting else (host, found))
     if wanting and not identified and limit - host.counts > 1:
         if host.kind == "given" and not host.charge:
