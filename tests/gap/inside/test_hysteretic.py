@@ -77,3 +77,19 @@ def test_elements_that_all_slip_at_once_are_friction_and_clearly_so():
     rival = scores.pop(("hysteretic-force",))
     assert min(scores, key=lambda effects: scores[effects]) == ("friction",)
     assert rival > scores["friction",] + 10 * SCALE
+
+
+def test_a_loop_of_exponent_two_is_one_force_and_no_friction_beside_it():
+    def yields_late(force, v):
+        """Bouc and Wen's equation: 6 N at most, in a way of 0.1, a sharing of 0.4."""
+        share = 0.4 + 0.6 * np.sign(force * v)
+        return 60.0 * v * (1.0 - (force / 6.0) ** 2 * share)
+
+    item = best(yields_late, offered=["hysteretic-force", "friction"])
+    assert item.effects == ("hysteretic-force",)
+    law = item.state.chain[1]
+    assert law.exponent == 2.0
+    assert law.largest == pytest.approx(6.0, rel=0.1)
+    assert law.yield_distance == pytest.approx(0.1, rel=0.1)
+    assert law.sharing == pytest.approx(0.4, abs=0.1)
+    assert np.sqrt(np.mean(item.state.residual**2)) < 2 * NOISE

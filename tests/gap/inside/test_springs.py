@@ -51,3 +51,19 @@ def test_a_weight_that_alone_holds_an_arm_is_gravity_and_no_softer_spring():
     assert item.state.chain[0].stiffness == 0.0
     assert item.state.chain[1].amplitude == pytest.approx(60.0, rel=0.02)
     assert item.state.freedom == 0.0  # as many numbers as a spring has
+
+
+def test_springs_across_the_motion_are_one_spring_and_no_stop_beside_it():
+    """Two of them, each 0.15 long at rest: they turn as the mass goes."""
+
+    def across(q):
+        return 60.0 * q + 90.0 * q * (1.0 - 0.15 / np.hypot(0.15, q))
+
+    item = best(nothing, across, ["stiffness-hardening", "stop", "asymmetry"])
+    assert item.effects == ("stiffness-hardening",)
+    host, law, *_ = item.state.chain
+    assert law.name == "transverse-springs"
+    assert host.stiffness == pytest.approx(60.0, rel=0.02)
+    assert law.stiffness == pytest.approx(90.0, rel=0.02)
+    assert law.reach == pytest.approx(0.15, rel=0.02)
+    assert leaves_noise(item)

@@ -94,11 +94,11 @@ def together(
     best = least(every)
     if not of_stores(best):
         every += with_one_fewer(best, every, score)
-        every += _with_another(_that_pay(every), offer, score, alone, say)
+        every += _with_another(best_that_pays(every), offer, score, alone, say)
     return best_of_each(every)
 
 
-def _that_pay(every: Sequence[Fitted]) -> Fitted:
+def best_that_pays(every: Sequence[Fitted]) -> Fitted:
     """Give the best hypothesis of which the last of several effects is worth having."""
     best = least(every)
     while len(best.effects) > 1:
