@@ -24,27 +24,30 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.as_late import with_others_as_late
 from hystbench.gap.inside.choose import (
     as_rounds,
-    charged,
     chosen,
     may_gain,
     not_taken,
     way_to,
 )
-from hystbench.gap.inside.combine_forces import singles, together
 from hystbench.gap.inside.fewer import OnAll, on_fewer
-from hystbench.gap.inside.fitted_numbers import more_for_numbers, re_tuning
+from hystbench.gap.inside.fitted_numbers import re_tuning
 from hystbench.gap.inside.host_places import host_places
 from hystbench.gap.inside.insert_law import Times, laws_for
-from hystbench.gap.inside.known_host import with_pairs_beside_free
 from hystbench.gap.inside.lags_of_base import LAGS, with_lags_of_base
 from hystbench.gap.inside.one_coordinate import Host, Kind
 from hystbench.gap.inside.possible_hosts import hosts
+from hystbench.gap.inside.try_hosts import (
+    Trial,
+    Tried,
+    best_with_several,
+    in_each_host,
+)
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.memory import may_have_hysteresis
-from hystbench.gap.thresholds import FURTHER, MOST, PARAMETER, PAYS
+from hystbench.gap.thresholds import FURTHER, PARAMETER, PAYS
 from hystbench.model import Model
 from hystbench.quantities import Quantities, angle_in
 from hystbench.sentences import finely
@@ -112,83 +115,18 @@ def named_inside(
     turns = angle_in(start.records[0].output.unit)
     times = Times.of(start.records, identified)
     offer = partial(laws_for, turns=turns, offered=start.offered, times=times)
+    trial = Trial(fewer, score, offer, share, identified, say)
 
-    def leaves_more(item: Fitted, share: float) -> bool:
-        return item.state.power(score.floor) > share * fewer.power(score.floor)
+    def begins_again(tried: Tried) -> bool:
+        in_place = of_free_numbers(base, tried.found[0].state)
+        return again(augmented(in_place, tried.best.state))
 
-    tried: list[tuple[Host, list[Fitted]]] = []
-    limit, little, enough = np.inf, False, False
     about = fewer, quantities, identified, score, base.exact
-    for host in hosts(*about, kinds=kinds):
-        if (tried or not identified) and not little:
-            limit = most()
-        if limit - host.counts < 1:
-            continue
-        say(f"inside: {host.words}; forces are tried in it")
-        found = singles(host.fitted, offer, score, say, host.other)
-        tried.append((host, found))
-        best = chosen(found, score.floor, share)
-        if best.effects and not leaves_more(best, MOST):
-            in_place = of_free_numbers(base, found[0].state)
-            if again(augmented(in_place, best.state)):
-                return None
-        little = little or not leaves_more(best, share)
-        enough = not may_gain(best, score)
-        if enough:
-            break  # no other host could do better
-    if not tried:
+    ones = in_each_host(trial, hosts(*about, kinds=kinds), most, begins_again)
+    if ones is None:
         return None
-    if not (enough or little):
-        limit = most()
-
-    # Together forces are tried in the host that does best with one.
-    def charge_of(host: Host, found: Sequence[Fitted]) -> float:
-        best = chosen(found, score.floor, share)
-        return host.charge + charged(best, found, score.floor, share)
-
-    host, found = min(tried, key=lambda item: charge_of(*item))
-    # But first in the one of the fewest numbers, and in those whose numbers are not
-    # re-tuned: several forces may do as much.
-    numbers = [len(item.fitted.state.free) for item, _ in tried]
-    cheaper = [
-        item
-        for item, count in zip(tried, numbers, strict=True)
-        if item[0].charge < host.charge
-        or count == min(numbers) < len(host.fitted.state.free)
-    ]
-
-    def with_more(host: Host, found: Sequence[Fitted]) -> tuple[Host, list[Fitted]]:
-        return host, together(found, offer, score, say, limit - host.counts)
-
-    full = [with_more(*item) for item in cheaper]
-    known = [chosen(own, score.floor, share) for _, own in full]
-    wanting = all(may_gain(item, score) and leaves_more(item, share) for item in known)
-    full.append(with_more(host, found) if wanting else (host, found))
-    if wanting and not identified and limit - host.counts > 1:
-        if host.kind == "given" and not host.charge:
-            also = (x for x in tried if x[0].charge and x[0].kind == "given")
-            full += [with_more(*item) for item in also]
-        full = [
-            (own, more)
-            if own.charge
-            else (own, with_pairs_beside_free(more, offer, score, say))
-            for own, more in full
-        ]
-    best_of = [chosen(own, score.floor, share) for _, own in full]
-    fewest = min(
-        (
-            len(best.effects)
-            for best, (own, _) in zip(best_of, full, strict=True)
-            if not own.charge
-        ),
-        default=np.inf,
-    )
-    costs = [
-        charge_of(own, more) + more_for_numbers(own, best.state, fewest)
-        for best, (own, more) in zip(best_of, full, strict=True)
-    ]
-    host, found = full[int(np.argmin(costs))]
-    best, alone = chosen(found, score.floor, share), host.alone
+    tried = best_with_several(trial, *ones)
+    host, found, best, alone = tried.host, tried.found, tried.best, tried.host.alone
     found = with_others_as_late(best, found, offer, score)
     best = chosen(found, score.floor, share)
     words = host.words
@@ -218,8 +156,8 @@ def named_inside(
     )
     if host.counts:
         square = floor_rms**2
-        share = re_tuned.share(start, square, max(start.power(square), square))
-        sentence += f"; its numbers fitted without them take {finely(share)} of the gap"
+        taken = re_tuned.share(start, square, max(start.power(square), square))
+        sentence += f"; its numbers fitted without them take {finely(taken)} of the gap"
     if not identified:
         sentence += re_tuning(alone, state)
     # The first rung is the host re-tuned, so that no effect has the credit of that.

@@ -1,0 +1,171 @@
+"""Forces tried in each host: one at a time, then several; and which host does best."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hystbench.gap.fitting.least_squares import Fitted
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.choose import charged, chosen, may_gain
+from hystbench.gap.inside.combine_forces import singles, together
+from hystbench.gap.inside.fitted_numbers import more_for_numbers
+from hystbench.gap.inside.insert_law import Offer
+from hystbench.gap.inside.known_host import with_pairs_beside_free
+from hystbench.gap.inside.one_coordinate import Host
+from hystbench.gap.progress import Say
+from hystbench.gap.thresholds import MOST
+
+
+@dataclass(frozen=True)
+class Tried:
+    """A host with hypotheses of forces in it: the host alone is the first."""
+
+    host: Host
+    found: Sequence[Fitted]
+    best: Fitted
+    """The one that is chosen."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What forces are tried on, and by what they are judged."""
+
+    start: ModelState
+    """The base, on the samples that the search takes."""
+    score: Score
+    offer: Offer
+    share: float
+    """Of the gap, that may stay unnamed."""
+    identified: bool
+    """Whether the base was identified from the records."""
+    say: Say
+
+    def of(self, host: Host, found: Sequence[Fitted]) -> Tried:
+        """Choose among the hypotheses in a host."""
+        return Tried(host, found, chosen(found, self.score.floor, self.share))
+
+    def with_one(self, host: Host) -> Tried:
+        """Try each force alone in a host."""
+        self.say(f"inside: {host.words}; forces are tried in it")
+        found = singles(host.fitted, self.offer, self.score, self.say, host.other)
+        return self.of(host, found)
+
+    def with_several(self, tried: Tried, most: float) -> Tried:
+        """Go on to several forces in a host, so many at most."""
+        host, about = tried.host, (self.offer, self.score, self.say)
+        return self.of(host, together(tried.found, *about, most - host.counts))
+
+    def with_pairs_beside_free(self, tried: Tried) -> Tried:
+        """Add pairs that do best where the host's known numbers are free."""
+        about = self.offer, self.score, self.say
+        return self.of(tried.host, with_pairs_beside_free(tried.found, *about))
+
+    def leaves_more(self, item: Fitted, share: float) -> bool:
+        """Tell whether more than a share of the gap is left."""
+        floor = self.score.floor
+        return item.state.power(floor) > share * self.start.power(floor)
+
+    def wants_more(self, tried: Tried) -> bool:
+        """Tell whether a further effect could gain what it must, and would matter.
+
+        Beside known numbers effects may leave little that stand for others.
+        """
+        best = tried.best
+        matters = not self.identified or self.leaves_more(best, self.share)
+        return matters and may_gain(best, self.score)
+
+    def cost(self, tried: Tried) -> float:
+        """Give the score of the best, with what effects and the host have to pay."""
+        about = tried.found, self.score.floor, self.share
+        return tried.host.charge + charged(tried.best, *about)
+
+
+def in_each_host(
+    trial: Trial,
+    hosts: Iterable[Host],
+    most: Callable[[], float],
+    begins_again: Callable[[Tried], bool],
+) -> tuple[list[Tried], float] | None:
+    """Try each force alone in one host after the other, till one leaves nothing.
+
+    Parameters
+    ----------
+    trial : Trial
+    hosts : iterable of Host
+    most : callable
+        Tells how many effects are looked for at most. For a first host that was
+        identified it is not asked, and not while one leaves what may stay unnamed.
+    begins_again : callable
+        Told of a host whose best force takes most of the gap. If it says so, this ends.
+
+    Returns
+    -------
+    tried : list of Tried
+    limit : float
+        How many effects are looked for at most.
+    None
+        If it begins again, or no host could do better than what is known.
+    """
+    every: list[Tried] = []
+    limit, little, enough = np.inf, False, False
+    for host in hosts:
+        if (every or not trial.identified) and not little:
+            limit = most()
+        if limit - host.counts < 1:
+            continue
+        tried = trial.with_one(host)
+        every.append(tried)
+        best = tried.best
+        if best.effects and not trial.leaves_more(best, MOST) and begins_again(tried):
+            return None
+        little = little or not trial.leaves_more(best, trial.share)
+        enough = not may_gain(best, trial.score)
+        if enough:
+            break  # no other host could do better
+    if not every:
+        return None
+    return every, limit if enough or little else most()
+
+
+def best_with_several(trial: Trial, every: Sequence[Tried], limit: float) -> Tried:
+    """Try several forces together, and give the host that does best with its forces.
+
+    That is done in the host that does best with one. But first in the one of the fewest
+    numbers, and in those whose numbers are not re-tuned: several forces may do as much.
+    """
+    best = min(every, key=trial.cost)
+    numbers = [len(tried.host.fitted.state.free) for tried in every]
+    cheaper = [
+        tried
+        for tried, count in zip(every, numbers, strict=True)
+        if tried.host.charge < best.host.charge
+        or count == min(numbers) < len(best.host.fitted.state.free)
+    ]
+    full = [trial.with_several(tried, limit) for tried in cheaper]
+    wanting = all(map(trial.wants_more, full))
+    full.append(trial.with_several(best, limit) if wanting else best)
+    if wanting and not trial.identified and limit - best.host.counts > 1:
+        if best.host.kind == "given" and not best.host.charge:
+            full += [
+                trial.with_several(tried, limit)
+                for tried in every
+                if tried.host.charge and tried.host.kind == "given"
+            ]
+        full = [
+            tried if tried.host.charge else trial.with_pairs_beside_free(tried)
+            for tried in full
+        ]
+    fewest = min(
+        (len(tried.best.effects) for tried in full if not tried.host.charge),
+        default=np.inf,
+    )
+
+    def cost(tried: Tried) -> float:
+        more = more_for_numbers(tried.host, tried.best.state, fewest)
+        return trial.cost(tried) + more
+
+    return min(full, key=cost)

@@ -1,0 +1,100 @@
+"""Which hosts forces are tried in, and when several are."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from hystbench.gap.fitting.least_squares import Fitted
+from hystbench.gap.inside import try_hosts
+from hystbench.gap.inside.try_hosts import Trial, Tried, in_each_host
+from hystbench.gap.progress import silent
+
+LEAST = -1000.0
+
+
+def hypothesis(score, left, *effects):
+    added = tuple(SimpleNamespace(effect=name, form="") for name in effects)
+    state = SimpleNamespace(added=added, freedom=0.0, power=lambda floor: left)
+    return Fitted(state, score)
+
+
+def host(counts=0):
+    return SimpleNamespace(counts=counts, words="", fitted=None, other=None, charge=0.0)
+
+
+@pytest.fixture
+def trial():
+    start = SimpleNamespace(power=lambda floor: 1.0)
+    score = SimpleNamespace(floor=0.0, least=lambda freedom: LEAST)
+    return Trial(start, score, lambda _: {}, 0.01, True, silent)
+
+
+@pytest.mark.parametrize(
+    ("score", "left", "identified", "wanted"),
+    [
+        (-500.0, 0.2, True, True),
+        (-500.0, 0.005, True, False),  # it may stay unnamed
+        (-500.0, 0.005, False, True),  # beside known numbers it may stand for others
+        (LEAST + 50.0, 0.2, True, False),  # no further effect could gain enough
+    ],
+)
+def test_several_are_tried_where_they_could_matter(
+    trial, score, left, identified, wanted
+):
+    best = hypothesis(score, left, "friction")
+    asked = replace(trial, identified=identified)
+    assert asked.wants_more(Tried(host(), [best], best)) == wanted
+
+
+def tried_in(trial, monkeypatch, lefts, most, hosts=None, begins_again=lambda _: False):
+    rest = iter(lefts)
+
+    def singles(*_):
+        left = next(rest)
+        return [hypothesis(0.0, 1.0), hypothesis(-900.0 * (1 - left), left, "friction")]
+
+    asked = []
+
+    def limit():
+        asked.append(True)
+        return most
+
+    monkeypatch.setattr(try_hosts, "singles", singles)
+    monkeypatch.setattr(try_hosts, "chosen", lambda found, *_: found[-1])
+    hosts = [host() for _ in lefts] if hosts is None else hosts
+    found = in_each_host(trial, hosts, limit, begins_again)
+    return found and (len(found[0]), found[1]), len(asked)
+
+
+def test_a_chain_is_not_searched_where_the_first_host_leaves_little(trial, monkeypatch):
+    found, asked = tried_in(trial, monkeypatch, [0.005, 0.3], 7)
+    assert (found, asked) == ((2, float("inf")), 0)
+
+
+def test_a_chain_says_how_many_effects_there_are_at_most(trial, monkeypatch):
+    found, asked = tried_in(trial, monkeypatch, [0.3, 0.3], 7)
+    assert found == (2, 7)
+    assert asked > 0
+
+
+def test_no_host_is_tried_where_a_chain_leaves_nothing(trial, monkeypatch):
+    given = replace(trial, identified=False)
+    assert tried_in(given, monkeypatch, [0.3], 0)[0] is None
+    known = [host(counts=1)]
+    assert tried_in(given, monkeypatch, [0.3], 1, known)[0] is None
+
+
+def test_a_search_ends_where_it_is_to_begin_again(trial, monkeypatch):
+    told = []
+
+    def again(tried):
+        told.append(tried.best.effects)
+        return True
+
+    lefts = [0.3, 0.3]
+    assert tried_in(trial, monkeypatch, lefts, 7, begins_again=again)[0] is None
+    assert told == [("friction",)]
+    told.clear()
+    tried_in(trial, monkeypatch, [0.8, 0.8], 7, begins_again=again)
+    assert told == []  # it takes less than half of the gap
