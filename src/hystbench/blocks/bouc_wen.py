@@ -56,6 +56,6 @@ class BoucWen(HystereticBlock, name="bouc-wen", place="material"):
 
     def step(self, sampling: Sampling) -> Step:
         """Move along the way from the sample before."""
-        _, softens, stiffens = self.law.numbers()
+        _, softens, stiffens, _ = self.law.numbers()
         constants = {"weight": self.weight, "softens": softens, "stiffens": stiffens}
         return Step("bouc_wen_beside", constants, {"before": 1, "h": 1})
