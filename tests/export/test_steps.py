@@ -147,6 +147,7 @@ def mixed():
             ("impedance", EXAMPLES["impedance"] | {"mass": 0.0, "damping": 0.0}),
             ("slider-with-gap", EXAMPLES["slider-with-gap"]),
             ("hysteretic-force", EXAMPLES["hysteretic-force"]),
+            ("hysteretic-force", EXAMPLES["hysteretic-force"] | {"exponent": 2.0}),
         ),
         "a smooth drive of forces": chain_of(
             ("mechanism",
