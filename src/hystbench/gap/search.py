@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, partial
 
 from hystbench.gap.asked import USUAL, Asked
@@ -13,17 +13,11 @@ from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.fitting.augmented_model import augmented
-from hystbench.gap.fitting.edit_chain import removable, without_effect
-from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.re_tuning_gain import (
-    charge_of_base,
-    re_tuned_score,
     re_tuned_words,
-    repeats_a_mode,
 )
-from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.choose import most_inside
 from hystbench.gap.inside.named_inside import (
@@ -36,13 +30,14 @@ from hystbench.gap.inside.named_inside import (
 from hystbench.gap.inside.one_coordinate import Kind
 from hystbench.gap.inside.timing import better_timed, in_time_words, timed_as_named
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
-from hystbench.gap.naming.add_effects import Named, add_effects
-from hystbench.gap.naming.begun_otherwise import begun_as_named
+from hystbench.gap.naming.add_effects import add_effects
+from hystbench.gap.naming.begun_otherwise import begun_as_named, paths_of
 from hystbench.gap.naming.beside_forces import beside_forces
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.records.evidence import Evidence, own_offsets
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.thresholds import FURTHER, LOOSE, PAYS
+from hystbench.gap.searched import Searched, stays
+from hystbench.gap.thresholds import LOOSE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 
@@ -92,20 +87,15 @@ def search(
     if shifted is not None:
         asked.say("the input may be taken at another time: naming beside that")
         again = _beside(shifted, evidence, asked, quantities, found.hosts)
-        found = found if _stays(found, again) else again
+        found = found if stays(found, again) else again
         asked.say("it is" if found is again else "that explains no more: it is not")
-    begun = begun_as_named(found.base, found.named.state, evidence.fit)
-    if identified and begun is not None:
-        asked.say("the records may begin otherwise: naming beside that")
-        again = _beside(begun, evidence, asked, quantities, found.hosts)
-        better = again.worth <= found.worth
-        found = again if better else found
-        asked.say("they do" if better else "that explains no more: they do not")
+    if identified:
+        found = _begun_otherwise(found, evidence, asked, quantities)
     about = None if identified else known_about(base, evidence.fit)
     if about is not None and found.may_be_simpler():
         asked.say("the base's numbers or timing may be off: naming beside that")
         again = _beside(about, evidence, asked, quantities, found.hosts)
-        if _stays(found, again, re_tuned=True):
+        if stays(found, again, re_tuned=True):
             asked.say("that explains no more: they stay as they are")
         else:
             found = again
@@ -128,123 +118,31 @@ def search(
     return replace(told, content={**told.content, "reason": "; ".join(more)})
 
 
-@dataclass(frozen=True)
-class _Searched:
-    """What was named beside a base."""
+def _begun_otherwise(
+    found: Searched, evidence: Evidence, asked: Asked, quantities: Quantities | None
+) -> Searched:
+    """Name beside another start of the base, if that may stand for records' paths.
 
-    base: Model
-    start: ModelState
-    """The same on the fit records."""
-    floor: Floor
-    chain: Named | None
-    """Effects in a chain; none where forces were enough."""
-    inside: Inside | None
-    """Forces inside the dynamics, where they do better than a chain."""
-    own: OwnValues
-    tried: Inside | None = None
-    """Forces inside that were found, whether they do better or not."""
-
-    @property
-    def named(self) -> Named:
-        """What does better."""
-        found = self.chain if self.inside is None else self.inside.named
-        assert found is not None  # noqa: S101  (one of them was looked for)
-        return found
-
-    @property
-    def hosts(self) -> tuple[Kind, ...]:
-        """What forces were found in: a further look is at that alone."""
-        return () if self.tried is None else (self.tried.host,)
-
-    @property
-    def counts(self) -> int:
-        """Effects named; numbers of a host that nobody set free count as one."""
-        host = self.inside is not None and self.inside.counts > 0
-        return len(self.named.state.added) + host
-
-    def score_beside(self, other: _Searched) -> Score:
-        """Give the score that this answer and another one are compared by.
-
-        Neither is better for what a wrong shape of the base's hysteresis leaves, unless
-        one of them names it.
-        """
-        if self.named.state.has_shape or other.named.state.has_shape:
-            return Score.plain(self.start.sample, self.floor.rms**2)
-        return make_score(self.start, self.floor.rms, forms=False)
-
-    @property
-    def margin(self) -> float:
-        """By how much a re-tuned base has to do better: the base is believed as given.
-
-        Where a mode was named that the base has about there, it may do as much worse:
-        what is called missing is then its own mode with other numbers.
-        """
-        return -PAYS if repeats_a_mode(self.named.state) else PAYS
-
-    @property
-    def worth(self) -> float:
-        """Score it by its own samples, with what its effects have to pay."""
-        return self.value(self.score_beside(self))
-
-    def value(self, score: Score, re_tuned: bool = False) -> float:
-        """Score it, with what its effects and its numbers have to pay.
-
-        A re-tuned base is to pay as an effect does.
-        """
-        state = self.named.state
-        cost = self.own.charge + _pay(self.counts + re_tuned)
-        return cost + charge_of_base(state, score) + score_of(state, score)
-
-    def may_be_simpler(self) -> bool:
-        """Tell whether there may be a better answer beside a re-tuned base.
-
-        Re-tuning may replace an effect. And where it pays for its numbers beside the
-        effects, these may stand for a base that is off.
-        """
-        if self.counts > 2:
-            return True
-        state, score = self.named.state, self.score_beside(self)
-        now = score_of(state, score)
-        count, margin = len(state.added), self.margin
-        shorter = [
-            (without_effect(state, number), now - margin)
-            for number in range(count)
-            if removable(state, number)
-        ]
-        if count > 1:  # it may stand for both, and pays as one effect
-            alone = now + _pay(count) - _pay(1) - margin
-            shorter.append((self.start, alone))
-        least = now - PAYS
-        beside = least if count else least - PAYS
-        return re_tuned_score(state, score, beside) < beside or any(
-            re_tuned_score(short, score, most) < most for short, most in shorter
-        )
-
-
-def _stays(found: _Searched, again: _Searched, re_tuned: bool = False) -> bool:
-    """Tell whether a base stays as it was, and not with other numbers or timing.
-
-    What was given is believed unless as much speaks against it as makes a gap
-    (:attr:`_Searched.margin`). Numbers that were re-tuned are charged as an effect;
-    timing is a matter of the records.
+    It does if the other effects are then named, and nothing else.
     """
-    score = found.score_beside(again)
-    alike = len(again.start.sample) == len(found.start.sample)
-    value = again.value(score, re_tuned)
-    margin = found.margin if re_tuned else PAYS
-    return not alike or value >= found.value(score) - margin
+    state = found.named.state
+    about = state, evidence.fit, found.floor.rms
+    begun = begun_as_named(found.base, *about)
+    if begun is None:
+        return found
+    asked.say("the records may begin otherwise: naming beside that")
+    again = _beside(begun, evidence, asked, quantities, found.hosts)
+    others = {item.effect for item in state.added} - paths_of(state)
+    stands = {item.effect for item in again.named.state.added} == others
+    asked.say("they do" if stands else "that explains something else: they do not")
+    return again if stands else found
 
 
-def _in_better_time(found: _Searched) -> Model | None:
+def _in_better_time(found: Searched) -> Model | None:
     """Give an identified base with the timing that effects show, if that is another."""
     tried = found.tried
     better = tried and better_timed(found.base, tried.named.state, found.floor.rms)
     return better or timed_as_named(found.base, found.named.state)
-
-
-def _pay(effects: int) -> float:
-    """Give by how much so many effects are to lower a score."""
-    return PAYS + FURTHER * (effects - 1) if effects > 0 else 0.0
 
 
 def _beside(
@@ -253,7 +151,7 @@ def _beside(
     asked: Asked,
     quantities: Quantities | None,
     kinds: tuple[Kind, ...] = (),
-) -> _Searched:
+) -> Searched:
     """Name in a chain and inside the dynamics, on the records as they are.
 
     Forces are tried in hosts of some kinds; in all by default.
@@ -296,7 +194,7 @@ def _beside(
         enough = _why_enough(inside.start, inside.named.state, floor, share)
         if enough:
             say(f"inside: {enough}, so no chain of effects is tried")
-            return _Searched(base, start, floor, None, inside, own, inside)
+            return Searched(base, start, floor, None, inside, own, inside)
     chain = in_a_chain() if start is first else add_effects(start, floor.rms, asked)
     if inside is None and chain.state.added:
         found = augmented(base, chain.state)
@@ -308,10 +206,10 @@ def _beside(
     tried = inside
     if inside is not None and not beats_chain(inside, chain, floor.rms, say):
         inside = None
-    return _Searched(base, start, floor, chain, inside, own, tried)
+    return Searched(base, start, floor, chain, inside, own, tried)
 
 
-def _apart(found: _Searched, asked: Asked) -> _Searched:
+def _apart(found: Searched, asked: Asked) -> Searched:
     """Name anew beside what records have of their own, where effects leave much."""
     if found.chain is None or found.own.records:
         return found

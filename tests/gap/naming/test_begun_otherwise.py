@@ -14,7 +14,7 @@ from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record
 from tests.gap.small import block, state_of
 
-DT, LAG = 0.01, 2.0
+DT, LAG, NOISE = 0.01, 2.0, 1e-3
 LAST = np.exp(-DT / LAG)
 
 
@@ -30,7 +30,7 @@ def records():
     given = []
     for name in ("a", "b"):
         u = 1.0 + np.cumsum(rng.standard_normal(1000)) / 30
-        y = moved(u + 0.3 * u**2) + 1e-3 * rng.standard_normal(1000)
+        y = moved(u + 0.3 * u**2) + NOISE * rng.standard_normal(1000)
         given.append(record(u, y, name=name, dt=DT))
     return tuple(given)
 
@@ -64,17 +64,28 @@ def a_path(records):
 @pytest.mark.parametrize("taken", ["moving", "settled"])
 def test_a_start_that_hid_the_curve_goes_with_it(records, taken):
     found = named(base(taken), records, a_path(records))
-    begun = begun_as_named(base(taken), found, records)
+    begun = begun_as_named(base(taken), found, records, NOISE)
     assert begun == base("rest")
 
 
 def test_a_base_that_begins_rightly_stays(records):
     found = named(base("rest"), records, a_path(records))
-    assert begun_as_named(base("rest"), found, records) is None
+    assert begun_as_named(base("rest"), found, records, NOISE) is None
+
+
+def test_a_start_is_not_taken_where_the_path_does_better(records):
+    """Records that truly drift: no start of a lag explains that."""
+    time = DT * np.arange(len(records[0].u))
+    drifting = tuple(
+        replace(item, y=item.y + sign * 0.3 * np.sin(0.9 * time))
+        for item, sign in zip(records, (1.0, -1.0), strict=True)
+    )
+    found = named(base("settled"), drifting, a_path(drifting))
+    assert begun_as_named(base("settled"), found, drifting, NOISE) is None
 
 
 def test_without_a_path_of_each_record_nothing_is_asked(records):
     found = named(base("settled"), records)
-    assert begun_as_named(base("settled"), found, records) is None
+    assert begun_as_named(base("settled"), found, records, NOISE) is None
     whole = replace(found, chain=base("settled").chain)
-    assert begun_as_named(base("settled"), whole, records) is None
+    assert begun_as_named(base("settled"), whole, records, NOISE) is None

@@ -7,7 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.blocks.starts import plainest_start, possible_starts
+from hystbench.gap.fitting.model_score import score_of
+from hystbench.gap.fitting.refit import finished
+from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.naming.with_own_values import without
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.simulation.starting import starting
 from hystbench.model import Model
@@ -15,7 +19,7 @@ from hystbench.record import Record
 
 
 def begun_as_named(
-    base: Model, found: ModelState, records: tuple[Record, ...]
+    base: Model, found: ModelState, records: tuple[Record, ...], floor_rms: float
 ) -> Model | None:
     """Give an identified base with the start that does best beside its effects.
 
@@ -30,13 +34,16 @@ def begun_as_named(
         The base with effects, among them a path of each record's own.
     records : tuple of Record
         The fit records, scored from their first sample on.
+    floor_rms : float
 
     Returns
     -------
     Model or None
-        None where no record was given a path, or the base begins so already.
+        None where no record was given a path, the base begins so already, or the other
+        effects alone score worse beside that start.
     """
-    if not any(not values for _, values in found.beside):
+    paths = paths_of(found)
+    if not paths:
         return None
 
     def left(start: str) -> float:
@@ -51,4 +58,16 @@ def begun_as_named(
     starts = possible_starts(records)
     best = starts[plainest_start([left(start) for start in starts])]
     chain = starting(base.chain, best)
-    return None if chain == base.chain else replace(base, chain=chain)
+    if chain == base.chain:
+        return None
+    score = Score.plain(found.sample, floor_rms**2)
+    laws = without(found, paths)
+    alone = replace(laws, chain=starting(laws.chain, best)).settled()
+    if finished(alone, score)[1] > score_of(found, score):
+        return None
+    return replace(base, chain=chain)
+
+
+def paths_of(found: ModelState) -> frozenset[str]:
+    """Name the effects that are a path of each record's own."""
+    return frozenset(one.effect for one, values in found.beside if not values)

@@ -1,0 +1,129 @@
+"""What was named beside a base, and what that is worth beside other answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from hystbench.gap.fitting.edit_chain import removable, without_effect
+from hystbench.gap.fitting.model_score import make_score, score_of
+from hystbench.gap.fitting.own_values import OwnValues
+from hystbench.gap.fitting.re_tuning_gain import (
+    charge_of_base,
+    re_tuned_score,
+    repeats_a_mode,
+)
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.named_inside import Inside
+from hystbench.gap.inside.one_coordinate import Kind
+from hystbench.gap.naming.add_effects import Named
+from hystbench.gap.records.floor import Floor
+from hystbench.gap.thresholds import FURTHER, PAYS
+from hystbench.model import Model
+
+
+@dataclass(frozen=True)
+class Searched:
+    """What was named beside a base."""
+
+    base: Model
+    start: ModelState
+    """The same on the fit records."""
+    floor: Floor
+    chain: Named | None
+    """Effects in a chain; none where forces were enough."""
+    inside: Inside | None
+    """Forces inside the dynamics, where they do better than a chain."""
+    own: OwnValues
+    tried: Inside | None = None
+    """Forces inside that were found, whether they do better or not."""
+
+    @property
+    def named(self) -> Named:
+        """What does better."""
+        found = self.chain if self.inside is None else self.inside.named
+        assert found is not None  # noqa: S101  (one of them was looked for)
+        return found
+
+    @property
+    def hosts(self) -> tuple[Kind, ...]:
+        """What forces were found in: a further look is at that alone."""
+        return () if self.tried is None else (self.tried.host,)
+
+    @property
+    def counts(self) -> int:
+        """Effects named; numbers of a host that nobody set free count as one."""
+        host = self.inside is not None and self.inside.counts > 0
+        return len(self.named.state.added) + host
+
+    def score_beside(self, other: Searched) -> Score:
+        """Give the score that this answer and another one are compared by.
+
+        Neither is better for what a wrong shape of the base's hysteresis leaves, unless
+        one of them names it.
+        """
+        if self.named.state.has_shape or other.named.state.has_shape:
+            return Score.plain(self.start.sample, self.floor.rms**2)
+        return make_score(self.start, self.floor.rms, forms=False)
+
+    @property
+    def margin(self) -> float:
+        """By how much a re-tuned base has to do better: the base is believed as given.
+
+        Where a mode was named that the base has about there, it may do as much worse:
+        what is called missing is then its own mode with other numbers.
+        """
+        return -PAYS if repeats_a_mode(self.named.state) else PAYS
+
+    def value(self, score: Score, re_tuned: bool = False) -> float:
+        """Score it, with what its effects and its numbers have to pay.
+
+        A re-tuned base is to pay as an effect does.
+        """
+        state = self.named.state
+        cost = self.own.charge + _pay(self.counts + re_tuned)
+        return cost + charge_of_base(state, score) + score_of(state, score)
+
+    def may_be_simpler(self) -> bool:
+        """Tell whether there may be a better answer beside a re-tuned base.
+
+        Re-tuning may replace an effect. And where it pays for its numbers beside the
+        effects, these may stand for a base that is off.
+        """
+        if self.counts > 2:
+            return True
+        state, score = self.named.state, self.score_beside(self)
+        now = score_of(state, score)
+        count, margin = len(state.added), self.margin
+        shorter = [
+            (without_effect(state, number), now - margin)
+            for number in range(count)
+            if removable(state, number)
+        ]
+        if count > 1:  # it may stand for both, and pays as one effect
+            alone = now + _pay(count) - _pay(1) - margin
+            shorter.append((self.start, alone))
+        least = now - PAYS
+        beside = least if count else least - PAYS
+        return re_tuned_score(state, score, beside) < beside or any(
+            re_tuned_score(short, score, most) < most for short, most in shorter
+        )
+
+
+def stays(found: Searched, again: Searched, re_tuned: bool = False) -> bool:
+    """Tell whether a base stays as it was, and not with other numbers or timing.
+
+    What was given is believed unless as much speaks against it as makes a gap
+    (:attr:`Searched.margin`). Numbers that were re-tuned are charged as an effect;
+    timing is a matter of the records.
+    """
+    score = found.score_beside(again)
+    alike = len(again.start.sample) == len(found.start.sample)
+    value = again.value(score, re_tuned)
+    margin = found.margin if re_tuned else PAYS
+    return not alike or value >= found.value(score) - margin
+
+
+def _pay(effects: int) -> float:
+    """Give by how much so many effects are to lower a score."""
+    return PAYS + FURTHER * (effects - 1) if effects > 0 else 0.0
