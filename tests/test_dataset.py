@@ -35,13 +35,25 @@ def test_reads_what_was_written(write_dataset):
     )
 
 
-@pytest.mark.parametrize("unit", ["Nm", "N*m"])
-def test_a_name_lacks_its_unit_in_any_spelling(write_dataset, unit):
-    text = csv_text(TIME, U, Y).replace("current_A", "torque_Nm")
-    about = HEADER.replace("current_A, unit: A", f"torque_Nm, unit: {unit}")
+@pytest.mark.parametrize(
+    ("column", "unit", "name"),
+    [
+        ("torque_Nm", "Nm", "torque"),
+        ("torque_Nm", "N*m", "torque"),
+        ("surge_m_s", "m/s", "surge"),
+        ("surge_m_per_s", "m/s", "surge"),
+        ("command [V]", "V", "command"),
+        ("Weg (µm)", "um", "Weg"),
+        ("motor_current", "A", "motor current"),
+    ],
+)
+def test_a_name_lacks_its_unit_in_any_spelling(write_dataset, column, unit, name):
+    text = csv_text(TIME, U, Y).replace("current_A", column)
+    said = f"'{column}', unit: {unit}"
+    about = HEADER.replace("current_A, unit: A", said)
     about += "records:\n  - {file: slow.csv}\n"
     dataset = load_dataset(write_dataset({"slow.csv": text}, about))
-    assert dataset.read("slow").input.name == "torque"
+    assert dataset.read("slow").input.name == name
 
 
 @given(

@@ -5,6 +5,7 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hystbench.errors import InputError
 from hystbench.yaml_files import DEEPEST, load_yaml, parse_yaml
 from tests.messages import message
 
@@ -63,3 +64,9 @@ def test_a_tag_is_not_followed(tmp_path):
     text = f"!!python/object/apply:pathlib.Path.touch [!!python/name:x {mark}]"
     message(lambda: parse_yaml(text, "x.yaml"))
     assert not mark.exists()
+
+
+def test_a_name_that_needs_quotes_is_told_to():
+    text = "a: 1\ntime: {column: time [s], unit: s}\n"
+    with pytest.raises(InputError, match=r"x\.yaml: line 2: .*'time \[s\]'"):
+        parse_yaml(text, "x.yaml")

@@ -383,7 +383,13 @@ def _name(channel: Mapping[str, str]) -> str:
     if "name" in channel:
         return channel["name"]
     unit, column = plain(channel["unit"]), channel["column"]
-    for spelt in (unit.replace("/", "_per_"), unit.replace("*", "")):
-        if plain(column).endswith(f"_{spelt}"):
-            return column[: -len(spelt) - 1].replace("_", " ")
+    for spelt in (unit.replace("/", "_per_"), unit.replace("/", "_")):
+        for end in (
+            f"_{spelt}",
+            f"_{spelt.replace('*', '')}",
+            f"[{unit}]",
+            f"({unit})",
+        ):
+            if plain(column).endswith(end):
+                return column[: -len(end)].strip(" _").replace("_", " ")
     return column.replace("_", " ")

@@ -24,6 +24,10 @@ _QUOTES = "a tab or a sign that begins no text; expected spaces, or text in quot
 _HINTS = {
     "found character '\\t' that cannot start any token": _QUOTES,
     "found character that cannot start any token": _QUOTES,
+    "did not find expected ',' or": (
+        "expected ',' or a closing bracket; a name with [ ] { } , or : needs quotes: "
+        "{column: 'time [s]', unit: s}"
+    ),
     "mapping values are not allowed in this context": (
         "a second ':' in one line; expected one key a line, or text in quotes"
     ),
