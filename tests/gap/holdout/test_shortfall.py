@@ -112,7 +112,7 @@ def test_records_that_lie_outside_alike_are_told_in_one_clause(count, told):
 
 def test_a_name_that_widens_the_gap_is_no_surer_than_even():
     names = ("eddy-diffusion", "creep", "drift", "friction")
-    found = {
+    found = content(held=0.88) | {
         "effects": [{"name": name, "confidence": 0.9} for name in names[:3]]
         + [{"name": "friction", "confidence": 0.2}],
         "ladder": [
@@ -124,3 +124,24 @@ def test_a_name_that_widens_the_gap_is_no_surer_than_even():
     }
     less = {x["name"]: x["confidence"] for x in no_surer_than_even(found)}
     assert less == dict(zip(names, (0.9, 0.5, 0.9, 0.2), strict=True))
+
+
+@pytest.mark.parametrize(
+    ("fit", "held", "expected"),
+    [
+        (0.98, 0.042, 0.5),
+        (0.98, (-0.1, 0.3), 0.5),
+        (0.98, (0.3, 0.6), 0.97),  # it may be more than half of what was promised
+        (0.98, 0.5, 0.97),
+        (0.98, None, 0.97),  # there was no gap there
+    ],
+)
+def test_laws_that_keep_less_than_half_of_their_promise_are_no_surer_than_even(
+    fit, held, expected
+):
+    """A drift is new in every record and promised nothing of others."""
+    found = content(fit=fit, held=held)
+    for item in found["effects"]:
+        item["confidence"] = 0.97
+    less = {item["name"]: item["confidence"] for item in no_surer_than_even(found)}
+    assert less == {"eddy-diffusion": expected, "drift": 0.97}

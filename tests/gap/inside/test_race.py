@@ -6,6 +6,7 @@ import pytest
 
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.inside import race
+from hystbench.gap.inside.choose import with_a_way
 from hystbench.gap.inside.combine_forces import best_that_pays
 from hystbench.gap.thresholds import FURTHER, SCALE
 
@@ -64,3 +65,11 @@ def test_others_are_put_in_the_place_of_effects_of_a_set_that_pays():
     assert best_that_pays([start(0.0), single]) is single
     far = start(-901.0 - FURTHER, "friction", "stop", "drag")
     assert best_that_pays([*every, far]) is far
+
+
+def test_a_set_without_one_of_one_effect_less_is_left_out():
+    """How the effects were found is told one after the other."""
+    alone, single = start(0.0), start(-500.0, "friction")
+    pair, apart = start(-900.0, "friction", "stop"), start(-950.0, "drag", "gravity")
+    three = start(-999.0, "drag", "gravity", "stop")
+    assert with_a_way([three, pair, alone, apart, single]) == [pair, alone, single]

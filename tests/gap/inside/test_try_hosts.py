@@ -19,8 +19,9 @@ def hypothesis(score, left, *effects):
     return Fitted(state, score)
 
 
-def host(counts=0):
-    return SimpleNamespace(counts=counts, words="", fitted=None, other=None, charge=0.0)
+def host(counts=0, kind="coordinate"):
+    about = {"words": "", "fitted": None, "other": None, "charge": 0.0}
+    return SimpleNamespace(counts=counts, kind=kind, **about)
 
 
 @pytest.fixture
@@ -98,3 +99,12 @@ def test_a_search_ends_where_it_is_to_begin_again(trial, monkeypatch):
     told.clear()
     tried_in(trial, monkeypatch, [0.8, 0.8], 7, begins_again=again)
     assert told == []  # it takes less than half of the gap
+
+
+@pytest.mark.parametrize(("left", "tried"), [(0.005, 2), (0.3, 3)])
+def test_no_host_of_many_modes_is_tried_where_little_is_left(
+    trial, monkeypatch, left, tried
+):
+    hosts = [host(), host(kind="structure"), host()]
+    found, _ = tried_in(trial, monkeypatch, [left, 0.3, 0.3], 7, hosts)
+    assert found[0] == tried

@@ -30,12 +30,16 @@ def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
         gone (None where there was none), and a ``sentence``; None where the hold-out
         records keep the promise and no effect widens the gap there.
     """
-    promised, kept = content["fit"]["explained"], content["gap"]["explained"]
-    if not isinstance(kept, int | float) and kept is not None:
-        kept = max(kept)  # a range keeps the promise if it may
+    promised, kept = content["fit"]["explained"], _kept(content)
     sentences = [_less(content, promised, kept), *_widens(content)]
     told = " ".join(sentence for sentence in sentences if sentence)
     return {"fit": promised, "hold_out": kept, "sentence": told} if told else None
+
+
+def _kept(content: Mapping[str, Any]) -> float | None:
+    """Give the share that is gone there; of a range the most, as it may be that."""
+    kept = content["gap"]["explained"]
+    return kept if kept is None or isinstance(kept, int | float) else max(kept)
 
 
 def _less(
@@ -79,10 +83,18 @@ def _steps_up(content: Mapping[str, Any]) -> list[tuple[Any, Any]]:
 
 
 def no_surer_than_even(content: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Give the effects: a name that widens the gap there is no surer than even."""
+    """Give the effects: a name that the hold-out records do not bear out is that.
+
+    It widens the gap there; or, being no signal that is new in every record, it is a
+    part of what takes less than half of the share that it takes on the fit records.
+    """
     doubtful = {
         name for _, step in _steps_up(content) for name in step["name"].split(" + ")
     }
+    promised, kept = content["fit"]["explained"], _kept(content)
+    if promised is not None and kept is not None and kept < MOST * promised:
+        names = [item["name"] for item in content["effects"]]
+        doubtful |= {name for name in names if not _is_beside(effects()[name])}
     return [
         item | {"confidence": min(item["confidence"], MOST)}
         if item["name"] in doubtful

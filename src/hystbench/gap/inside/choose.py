@@ -58,6 +58,16 @@ def way_to(item: Fitted, found: Sequence[Fitted]) -> list[Fitted]:
     return way
 
 
+def with_a_way(found: Sequence[Fitted]) -> list[Fitted]:
+    """Keep hypotheses that :func:`way_to` leads to, in their order."""
+    reached = {frozenset(item.effects) for item in found if len(item.effects) < 2}
+    for item in sorted(found, key=lambda item: len(item.effects)):
+        own = frozenset(item.effects)
+        if any(own - {name} in reached for name in own):
+            reached.add(own)
+    return [item for item in found if frozenset(item.effects) in reached]
+
+
 def chosen(
     found: Sequence[Fitted], floor: float, share: float = UNNAMED_SHARE
 ) -> Fitted:

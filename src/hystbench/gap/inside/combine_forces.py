@@ -18,7 +18,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.average_force import evened
 from hystbench.gap.inside.beginnings import Beginnings
-from hystbench.gap.inside.choose import best_of_each, least, may_gain
+from hystbench.gap.inside.choose import best_of_each, least, may_gain, with_a_way
 from hystbench.gap.inside.insert_law import (
     Offer,
     of_stores,
@@ -94,8 +94,10 @@ def together(
     best = least(every)
     if not of_stores(best):
         every += with_one_fewer(best, every, score)
-        every += _with_another(best_that_pays(every), offer, score, alone, say)
-    return best_of_each(every)
+        paying = best_that_pays(every)
+        every += with_one_fewer(paying, every, score)
+        every += _with_another(paying, offer, score, alone, say)
+    return with_a_way(best_of_each(every))
 
 
 def best_that_pays(every: Sequence[Fitted]) -> Fitted:

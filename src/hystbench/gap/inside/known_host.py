@@ -1,9 +1,10 @@
-"""Pairs of forces in a host of known numbers, found where those numbers are free."""
+"""Forces in a host of known numbers, found where those numbers are free."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.fitting.edit_chain import without_effect
@@ -20,12 +21,14 @@ from hystbench.gap.progress import Say, silent
 def with_pairs_beside_free(
     found: Sequence[Fitted], offer: Offer, score: Score, say: Say = silent
 ) -> list[Fitted]:
-    """Add the pairs of forces that do best where the host's own numbers are free.
+    """Add the forces and pairs that do best where the host's own numbers are free.
 
     Two forces that are missing each leave what a wrong spring and a wrong damper do.
     With the numbers known, a single force is then judged by how well it makes up for
     both, and the right two are not carried on. With the numbers free it is judged by
-    its own shape. The pairs that are best there are fitted beside the known numbers.
+    its own shape. And an impact turns a motion so much that numbers which are off by
+    little end in another minimum. What is best there is fitted beside the known
+    numbers, from where these were found if they have a tolerance.
 
     Parameters
     ----------
@@ -39,8 +42,8 @@ def with_pairs_beside_free(
     Returns
     -------
     list of Fitted
-        Those given, the pairs, and each of their forces alone; of each set of effects
-        the best.
+        Those given, the best single, the pairs, and each of their forces alone; of each
+        set of effects the best.
     """
     host = found[0].state
     if of_stores(found[0]):
@@ -53,11 +56,12 @@ def with_pairs_beside_free(
     begun = fitted(replace(host, free=free), score)
     say("inside: with the host's own numbers free, to see which forces belong together")
     beside_free = together(singles(begun, offer, score, say), offer, score, say, 2)
-    pairs = sorted(
-        (item for item in beside_free if len(item.effects) == 2),
-        key=lambda item: item.score,
-    )
+    likely = sorted(beside_free, key=lambda item: item.score)
+    one, *_ = (item for item in likely if len(item.effects) < 2)
+    pairs = [item for item in likely if len(item.effects) == 2]
     every = list(found)
+    if one.effects:
+        every.append(fitted_to_the_end(_beside_known(one.state, host), score))
     for pair in pairs[:PAIRS]:
         beside = fitted_to_the_end(_beside_known(pair.state, host), score)
         each = (without_effect(beside.state, k) for k in range(2))
@@ -75,10 +79,18 @@ def _known(state: ModelState, place: int) -> bool:
 
 
 def _beside_known(state: ModelState, host: ModelState) -> ModelState:
-    """Give a host of a model with forces its known numbers back."""
+    """Give a host of a model with forces its known numbers back, or about."""
     place, was = host_of(state), host_of(host)
-    chain = list(state.chain)
+    about = [x for x in host.free if x.block == was]
+    chain: list[Any] = list(state.chain)
+    found = chain[place]
     chain[place] = host.chain[was]
     others = (x for x in state.free if x.block != place)
-    own = (x._replace(block=place) for x in host.free if x.block == was)
-    return replace(state, free=(*others, *own)).with_chain(tuple(chain))
+    own = tuple(x._replace(block=place) for x in about)
+    known = replace(state, free=(*others, *own)).with_chain(tuple(chain))
+    moved = {
+        k: float(getattr(found, free.parameter))
+        for k, free in enumerate(known.free)
+        if free in own
+    }
+    return known.at(moved)

@@ -92,6 +92,8 @@ def in_each_host(
 ) -> tuple[list[Tried], float] | None:
     """Try each force alone in one host after the other, till one leaves nothing.
 
+    Where one leaves no more than may stay unnamed, none of many modes is tried.
+
     Parameters
     ----------
     trial : Trial
@@ -115,7 +117,7 @@ def in_each_host(
     for host in hosts:
         if (every or not trial.identified) and not little:
             limit = most()
-        if limit - host.counts < 1:
+        if limit - host.counts < 1 or (little and host.kind == "structure"):
             continue
         tried = trial.with_one(host)
         every.append(tried)
