@@ -10,6 +10,7 @@ from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.known_about import known_about
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import is_identified
+from hystbench.gap.beside_base import BesideBase, stays
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.fitting.augmented_model import augmented
@@ -36,7 +37,6 @@ from hystbench.gap.naming.beside_forces import beside_forces
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.records.evidence import Evidence, own_offsets
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.searched import Searched, stays
 from hystbench.gap.thresholds import LOOSE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
@@ -119,8 +119,8 @@ def search(
 
 
 def _begun_otherwise(
-    found: Searched, evidence: Evidence, asked: Asked, quantities: Quantities | None
-) -> Searched:
+    found: BesideBase, evidence: Evidence, asked: Asked, quantities: Quantities | None
+) -> BesideBase:
     """Name beside another start of the base, if that may stand for records' paths.
 
     It does if the other effects are then named, and nothing else.
@@ -138,7 +138,7 @@ def _begun_otherwise(
     return again if stands else found
 
 
-def _in_better_time(found: Searched) -> Model | None:
+def _in_better_time(found: BesideBase) -> Model | None:
     """Give an identified base with the timing that effects show, if that is another."""
     tried = found.tried
     better = tried and better_timed(found.base, tried.named.state, found.floor.rms)
@@ -151,7 +151,7 @@ def _beside(
     asked: Asked,
     quantities: Quantities | None,
     kinds: tuple[Kind, ...] = (),
-) -> Searched:
+) -> BesideBase:
     """Name in a chain and inside the dynamics, on the records as they are.
 
     Forces are tried in hosts of some kinds; in all by default.
@@ -194,7 +194,7 @@ def _beside(
         enough = _why_enough(inside.start, inside.named.state, floor, share)
         if enough:
             say(f"inside: {enough}, so no chain of effects is tried")
-            return Searched(base, start, floor, None, inside, own, inside)
+            return BesideBase(base, start, floor, None, inside, own, inside)
     chain = in_a_chain() if start is first else add_effects(start, floor.rms, asked)
     if inside is None and chain.state.added:
         found = augmented(base, chain.state)
@@ -206,10 +206,10 @@ def _beside(
     tried = inside
     if inside is not None and not beats_chain(inside, chain, floor.rms, say):
         inside = None
-    return Searched(base, start, floor, chain, inside, own, tried)
+    return BesideBase(base, start, floor, chain, inside, own, tried)
 
 
-def _apart(found: Searched, asked: Asked) -> Searched:
+def _apart(found: BesideBase, asked: Asked) -> BesideBase:
     """Name anew beside what records have of their own, where effects leave much."""
     if found.chain is None or found.own.records:
         return found

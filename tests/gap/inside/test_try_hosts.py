@@ -7,7 +7,7 @@ import pytest
 
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.inside import try_hosts
-from hystbench.gap.inside.try_hosts import Trial, Tried, in_each_host
+from hystbench.gap.inside.try_hosts import HostTrial, Tried, in_each_host
 from hystbench.gap.progress import silent
 
 LEAST = -1000.0
@@ -28,7 +28,7 @@ def host(counts=0, kind="coordinate"):
 def trial():
     start = SimpleNamespace(power=lambda floor: 1.0)
     score = SimpleNamespace(floor=0.0, least=lambda freedom: LEAST)
-    return Trial(start, score, lambda _: {}, 0.01, True, silent)
+    return HostTrial(start, score, lambda _: {}, 0.01, True, silent)
 
 
 @pytest.mark.parametrize(

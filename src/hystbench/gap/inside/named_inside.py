@@ -37,7 +37,7 @@ from hystbench.gap.inside.lags_of_base import LAGS, with_lags_of_base
 from hystbench.gap.inside.one_coordinate import Host, Kind
 from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.inside.try_hosts import (
-    Trial,
+    HostTrial,
     Tried,
     best_with_several,
     in_each_host,
@@ -115,7 +115,7 @@ def named_inside(
     turns = angle_in(start.records[0].output.unit)
     times = Times.of(start.records, identified)
     offer = partial(laws_for, turns=turns, offered=start.offered, times=times)
-    trial = Trial(fewer, score, offer, share, identified, say)
+    trial = HostTrial(fewer, score, offer, share, identified, say)
 
     def begins_again(tried: Tried) -> bool:
         in_place = of_free_numbers(base, tried.found[0].state)

@@ -31,7 +31,7 @@ class Tried:
 
 
 @dataclass(frozen=True)
-class Trial:
+class HostTrial:
     """What forces are tried on, and by what they are judged."""
 
     start: ModelState
@@ -85,7 +85,7 @@ class Trial:
 
 
 def in_each_host(
-    trial: Trial,
+    trial: HostTrial,
     hosts: Iterable[Host],
     most: Callable[[], float],
     begins_again: Callable[[Tried], bool],
@@ -96,7 +96,7 @@ def in_each_host(
 
     Parameters
     ----------
-    trial : Trial
+    trial : HostTrial
     hosts : iterable of Host
     most : callable
         Tells how many effects are looked for at most. For a first host that was
@@ -133,7 +133,7 @@ def in_each_host(
     return every, limit if enough or little else most()
 
 
-def best_with_several(trial: Trial, every: Sequence[Tried], limit: float) -> Tried:
+def best_with_several(trial: HostTrial, every: Sequence[Tried], limit: float) -> Tried:
     """Try several forces together, and give the host that does best with its forces.
 
     That is done in the host that does best with one. But first in the one of the fewest

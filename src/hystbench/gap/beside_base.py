@@ -23,7 +23,7 @@ from hystbench.model import Model
 
 
 @dataclass(frozen=True)
-class Searched:
+class BesideBase:
     """What was named beside a base."""
 
     base: Model
@@ -56,7 +56,7 @@ class Searched:
         host = self.inside is not None and self.inside.counts > 0
         return len(self.named.state.added) + host
 
-    def score_beside(self, other: Searched) -> Score:
+    def score_beside(self, other: BesideBase) -> Score:
         """Give the score that this answer and another one are compared by.
 
         Neither is better for what a wrong shape of the base's hysteresis leaves, unless
@@ -110,11 +110,11 @@ class Searched:
         )
 
 
-def stays(found: Searched, again: Searched, re_tuned: bool = False) -> bool:
+def stays(found: BesideBase, again: BesideBase, re_tuned: bool = False) -> bool:
     """Tell whether a base stays as it was, and not with other numbers or timing.
 
     What was given is believed unless as much speaks against it as makes a gap
-    (:attr:`Searched.margin`). Numbers that were re-tuned are charged as an effect;
+    (:attr:`BesideBase.margin`). Numbers that were re-tuned are charged as an effect;
     timing is a matter of the records.
     """
     score = found.score_beside(again)
