@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.challenge import machine
 from hystbench.challenge.machine import draw_machine
 from hystbench.challenge.make import make, write_folder
 from hystbench.challenge.plant.effects import IN_MACHINE, MACHINES
@@ -168,3 +169,19 @@ def test_effects_of_actuators_are_refused_in_machines():
         case_of("tank", "friction")
     with pytest.raises(InputError, match="of the family 'tank'"):
         draw_spec(1, "triple", "tank", 20.0)
+
+
+def test_a_step_at_which_the_fit_of_a_base_runs_away_explains_nothing(monkeypatch):
+    drawn = draw_machine("mass-spring", np.random.default_rng(3), closed=False)
+    own, simulated = np.array(machine._own_numbers(drawn)), machine._simulated
+
+    def left(self, numbers, u):
+        y = simulated(self, numbers, u)
+        return np.full(len(y), np.nan) if np.any(numbers > 1.02 * own) else y
+
+    rng = np.random.default_rng(4)
+    inputs = [np.cumsum(rng.standard_normal(400)) for _ in range(2)]
+    truth = [simulated(drawn, 1.1 * own, machine._between(u))[:400] for u in inputs]
+    monkeypatch.setattr(machine, "_simulated", left)
+    found = machine.linear_parts(drawn, list(zip(inputs, truth, strict=True)))
+    assert all(np.isfinite(model).all() for _, model in found)

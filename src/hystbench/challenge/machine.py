@@ -282,6 +282,8 @@ def linear_parts(machine: Machine, signals: InputsAndOutputs) -> InputsAndOutput
 
     def solved(logs: FloatArray) -> tuple[FloatArray, FloatArray]:
         x = np.concatenate(modelled(logs))
+        if not np.all(np.isfinite(x)):
+            x = np.zeros(len(x))  # it runs away: such a step explains nothing
         design = np.stack([x, np.ones_like(x)], axis=1)
         return design, np.asarray(np.linalg.lstsq(design, pooled)[0])
 
