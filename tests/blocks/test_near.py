@@ -11,6 +11,7 @@ import pytest
 from hystbench.blocks import registry
 from hystbench.blocks.attached import attached, near, through_near
 from hystbench.blocks.drive_lag import DriveLag
+from hystbench.blocks.force import Force
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.blocks.impedance import Impedance
@@ -37,9 +38,28 @@ LAWS = {
     "drag": {"coefficient": 0.8},
     "velocity-limit": {"rate": 0.5, "damping": 20.0},
     "hysteretic-force": {"largest": 30.0, "yield_distance": 0.1, "sharing": 0.3},
+    "bouc-wen-force": {"stiffness": 100.0, "beta": 3.0, "gamma": -1.0},
+    "iwan-force": {"stiffness": 100.0, "slip_distance": 0.3, "exponent": -0.5},
+    "lugre-force": {
+        "coulomb": 20.0,
+        "presliding_distance": 0.05,
+        "static_excess": 8.0,
+        "stribeck_velocity": 0.9,
+    },
+    "relaxation-force": {"stiffness": 50.0, "relaxation_time_s": 0.1},
+    "attached-mass": {"mass": 0.5, "damping": 1.0, "stiffness": 60.0},
     "gravity": {"amplitude": 50.0, "angle": 0.5},
     "slider-with-gap": {"contact_stiffness": 300.0, "slip_force": 20.0, "gap": 0.1},
 }
+
+OTHER_FORMS = {"hysteretic-force": {"exponent": 2.0}}
+"""Numbers that choose another formula, and are no derivative's."""
+EVERY = [(law, {}) for law in LAWS] + list(OTHER_FORMS.items())
+
+
+def test_every_force_is_among_them():
+    forces = (name for name, block in registry().items() if issubclass(block, Force))
+    assert set(forces) == set(LAWS)
 
 
 def drive():
@@ -88,9 +108,9 @@ def check(chain, u, names, most=2e-4):
 
 
 @pytest.mark.parametrize("host", [MACHINE, MOVED], ids=["mechanism", "impedance"])
-@pytest.mark.parametrize("law", LAWS)
-def test_differences_of_motions_near_are_derivatives(law, host):
-    force = registry()[law].from_mapping(LAWS[law])
+@pytest.mark.parametrize(("law", "form"), EVERY)
+def test_differences_of_motions_near_are_derivatives(law, form, host):
+    force = registry()[law].from_mapping(LAWS[law] | form)
     chain = (DriveLag(time_constant_s=0.05), host, force, Gain(value=2.0, offset=1.0))
     names = [(0, "time_constant_s"), (3, "value"), (3, "offset")]
     names += [(1, name) for name in ("mass", "damping", "stiffness", "bias")]

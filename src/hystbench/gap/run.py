@@ -238,7 +238,7 @@ def write_next_experiment(decision: Decision, channel: Channel, path: Path) -> s
 BASE = "stages/base.yaml"
 DECISION = "stages/decision.json"
 NAMED = "stages/named.json"
-DECIDED = ("curves.json", BASE, NAMED, DECISION)
+DECIDED_FILES = ("curves.json", BASE, NAMED, DECISION)
 """What the first of the two writes."""
 
 
@@ -246,7 +246,7 @@ def decide_in(
     folder: Path, evidence: Evidence, base: Model, asked: Asked = USUAL
 ) -> Decision:
     """Decide on the fit records; write the decision and the curves to a folder."""
-    writes(*(folder / name for name in DECIDED))
+    writes(*(folder / name for name in DECIDED_FILES))
     decision, decided = decide(evidence, base, asked)
     built_in = decided.built_in
     kept = {
@@ -262,7 +262,7 @@ def decide_in(
         "with": list(decided.vocabulary.fixed),
         "built_in": None if built_in is None else built_in.mapping(),
     }
-    with whole_folder(folder, DECIDED) as fresh:
+    with whole_folder(folder, DECIDED_FILES) as fresh:
         write_json(fresh / "curves.json", decision.curves)
         decision.base.save(fresh / BASE)
         write_json(fresh / NAMED, kept)

@@ -26,10 +26,12 @@ PAYS = 40.0
 """The first effect, and whatever is to replace an answer that stands: a re-tuned base,
 another timing, another host, values of single records."""
 FURTHER = 100.0
-"""A further effect, which must also take more of the gap than may stay unnamed."""
+"""A further effect. In a chain it must also take more of the gap than may stay unnamed;
+a force that takes less must be beyond doubt. And a host whose known numbers are
+refitted to the records."""
 CERTAIN = 2 * FURTHER
-"""Beyond doubt: what bends to much, beside a law of fewer numbers; on folds, an
-effect whose size is not known."""
+"""A gain that is beyond doubt: of a law of many numbers over one of fewer; on folds, of
+an effect whose size is not known; of a further force that takes little."""
 SCALE = 4.0
 """One name is e times likelier than another: by less they cannot be told apart."""
 BY_CHANCE = 0.05
@@ -97,8 +99,9 @@ takes little of the whole."""
 # The vocabulary.
 
 SLIDES = AS_GOOD
-"""A force that gives way within this share of the range of motion is dry friction: it
-slides on nearly all of its way. What yields on a longer way is a hysteretic force."""
+"""A force that gives way within this share of the amplitude of the motion, half of its
+range, is dry friction: it slides on nearly all of its way. What yields on a longer way
+is a hysteretic force."""
 
 ABOUT = 0.1
 """Share of itself by which a number of a base that nobody calls exact may be off, as in

@@ -1,4 +1,4 @@
-"""A decision after the hold-out records were read: they lead its reason, or take back.
+"""The decision after the hold-out records: they open its reason, or take names back.
 
 They choose nothing. A model that is worse on them than the base goes as a whole: to
 keep those of its effects that do better there would be to choose by hold-out records.

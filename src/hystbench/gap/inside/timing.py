@@ -1,4 +1,4 @@
-"""Timing of an identified base's input, which effects show better than the base does.
+"""A timing of an identified base that shows only once effects are beside it.
 
 A base is identified with the gap in it. What follows too late by part of a sample is
 then taken up by its poles and zeros, and stays beside the effects.

@@ -74,7 +74,7 @@ class Unnamed:
     """Of it, what may stay."""
     changing: float | None = None
     """What goes if the effects' strength and numbers may differ between the halves of
-    each run, a record or the windows that were cut from it; None where no effect acts
+    each recording, a record or all windows cut from one; None where no effect acts
     on the input. It is told and decides nothing: what changes in time is structure
     too."""
     unrelated: float = 0.0

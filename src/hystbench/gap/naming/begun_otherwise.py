@@ -1,4 +1,4 @@
-"""The start of an identified base, which effects show better than the base does."""
+"""A start of an identified base that shows only once effects are beside it."""
 
 from __future__ import annotations
 
