@@ -140,9 +140,10 @@ class Drag(InsideEffect):
     shows = "rate"
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Offer it weak."""
-        block = DragBlock(coefficient=0.03 * moved.force / moved.speed**2)
-        yield Law("", block, ("coefficient",))
+        """Offer it weak, and so strong that it takes a third of the drive."""
+        for share in (0.03, 0.3):
+            block = DragBlock(coefficient=share * moved.force / moved.speed**2)
+            yield Law("", block, ("coefficient",))
 
 
 BESIDE = 2.0
