@@ -383,13 +383,9 @@ def _name(channel: Mapping[str, str]) -> str:
     if "name" in channel:
         return channel["name"]
     unit, column = plain(channel["unit"]), channel["column"]
-    for spelt in (unit.replace("/", "_per_"), unit.replace("/", "_")):
-        for end in (
-            f"_{spelt}",
-            f"_{spelt.replace('*', '')}",
-            f"[{unit}]",
-            f"({unit})",
-        ):
-            if plain(column).endswith(end):
-                return column[: -len(end)].strip(" _").replace("_", " ")
+    per, over = unit.replace("/", "_per_"), unit.replace("/", "_")
+    spelt = (per, over, per.replace("*", ""), over.replace("*", ""))
+    for end in (*(f"_{each}" for each in spelt), f"[{unit}]", f"({unit})"):
+        if plain(column).endswith(end):
+            return column[: -len(end)].strip(" _").replace("_", " ")
     return column.replace("_", " ")

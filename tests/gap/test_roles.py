@@ -79,7 +79,7 @@ def spoilt(folder):
     return closed(folder, load_evidence(folder / "case" / "dataset"), "spoilt")
 
 
-def without_confidence(content, other):
+def with_confidence_of(content, other):
     """Give the effects the confidence that they have in another answer.
 
     A law that the hold-out records do not bear out is no surer than even.
@@ -94,7 +94,7 @@ def test_noise_for_hold_out_outputs_changes_nothing_that_is_decided(told, spoilt
     (content, model, _), (other, other_model, _) = told, spoilt
     decided, again = (
         {key: value for key, value in item.items() if key not in READ_LAST}
-        for item in (content, without_confidence(other, content))
+        for item in (content, with_confidence_of(other, content))
     )
     assert decided == again
     assert all(item["confidence"] <= MOST for item in other["effects"])

@@ -1,13 +1,11 @@
 """Block ``transverse-springs``: springs across the motion, which stiffen it."""
 
-import numpy as np
-
-from hystbench.blocks.force import LAWS, ROW, Force
+from hystbench.blocks.force import Force, less_stiff
 from hystbench.blocks.parameter import TINY, number
 from hystbench.record import FloatArray
 
 
-class TransverseSprings(Force, name="transverse-springs"):
+class TransverseSprings(Force, name="transverse-springs", law="saturating"):
     """Springs across the motion, ``F = stiffness q (1 - 1 / sqrt(1 + (q / reach)^2))``.
 
     They turn as the coordinate moves: it meets nothing of them near rest, a cube first,
@@ -23,9 +21,10 @@ class TransverseSprings(Force, name="transverse-springs"):
     stiffness: float = number("U/Q", "of the springs, far beyond the reach", 0.0)
     reach: float = number("Q", "length of the springs at rest", TINY)
 
+    def numbers(self) -> tuple[float, ...]:
+        """Give a spring that levels off, as much as it holds back of a linear one."""
+        return (-self.stiffness, self.reach)
+
     def rows(self) -> FloatArray:
-        """Give a linear spring, and one that levels off taken from it."""
-        found = np.zeros((2, ROW))
-        found[0, [0, 3]] = LAWS.index("stiffness"), self.stiffness
-        found[1, :3] = LAWS.index("saturating"), -self.stiffness, self.reach
-        return found
+        """Give the linear spring, and the one that levels off taken from it."""
+        return less_stiff(super().rows(), -self.stiffness)

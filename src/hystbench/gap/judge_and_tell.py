@@ -234,7 +234,7 @@ def _predicts_nothing(state: ModelState) -> str:
 
     A tone has one, its frequency.
     """
-    names = sorted({beside.effect for beside, values in state.beside if not values})
+    names = sorted(state.paths)
     if not names:
         return ""
     return f"{' and '.join(names)} of each record's own predicts no other record"

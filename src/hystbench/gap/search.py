@@ -32,7 +32,7 @@ from hystbench.gap.inside.one_coordinate import Kind
 from hystbench.gap.inside.timing import better_timed, in_time_words, timed_as_named
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
 from hystbench.gap.naming.add_effects import add_effects
-from hystbench.gap.naming.begun_otherwise import begun_as_named, paths_of
+from hystbench.gap.naming.begun_otherwise import begun_as_named
 from hystbench.gap.naming.beside_forces import beside_forces
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.records.evidence import Evidence, own_offsets
@@ -132,7 +132,7 @@ def _begun_otherwise(
         return found
     asked.say("the records may begin otherwise: naming beside that")
     again = _beside(begun, evidence, asked, quantities, found.hosts)
-    others = {item.effect for item in state.added} - paths_of(state)
+    others = {item.effect for item in state.added} - state.paths
     stands = {item.effect for item in again.named.state.added} == others
     asked.say("they do" if stands else "that explains something else: they do not")
     return again if stands else found

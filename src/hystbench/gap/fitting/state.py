@@ -139,6 +139,11 @@ class ModelState:
         """Whether another shape of the base's hysteresis was added."""
         return any(item.effect == SHAPE for item in self.added)
 
+    @property
+    def paths(self) -> frozenset[str]:
+        """Effects that are a path of each record's own."""
+        return frozenset(one.effect for one, values in self.beside if not values)
+
     @cached_property
     def places_added(self) -> frozenset[int]:
         """Places of the blocks that the added effects have in the chain."""

@@ -18,7 +18,7 @@ from hystbench.gap.inside.insert_law import Offer, of_stores
 from hystbench.gap.progress import Say, silent
 
 
-def with_pairs_beside_free(
+def with_best_beside_free(
     found: Sequence[Fitted], offer: Offer, score: Score, say: Say = silent
 ) -> list[Fitted]:
     """Add the forces and pairs that do best where the host's own numbers are free.

@@ -14,7 +14,7 @@ from hystbench.gap.inside.choose import charged, chosen, may_gain
 from hystbench.gap.inside.combine_forces import singles, together
 from hystbench.gap.inside.fitted_numbers import more_for_numbers
 from hystbench.gap.inside.insert_law import Offer
-from hystbench.gap.inside.known_host import with_pairs_beside_free
+from hystbench.gap.inside.known_host import with_best_beside_free
 from hystbench.gap.inside.one_coordinate import Host
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import MOST
@@ -59,10 +59,10 @@ class HostTrial:
         host, about = tried.host, (self.offer, self.score, self.say)
         return self.of(host, together(tried.found, *about, most - host.counts))
 
-    def with_pairs_beside_free(self, tried: Tried) -> Tried:
-        """Add pairs that do best where the host's known numbers are free."""
+    def with_best_beside_free(self, tried: Tried) -> Tried:
+        """Add what does best where the host's known numbers are free."""
         about = self.offer, self.score, self.say
-        return self.of(tried.host, with_pairs_beside_free(tried.found, *about))
+        return self.of(tried.host, with_best_beside_free(tried.found, *about))
 
     def leaves_more(self, item: Fitted, share: float) -> bool:
         """Tell whether more than a share of the gap is left."""
@@ -158,7 +158,7 @@ def best_with_several(trial: HostTrial, every: Sequence[Tried], limit: float) ->
                 if tried.host.charge and tried.host.kind == "given"
             ]
         full = [
-            tried if tried.host.charge else trial.with_pairs_beside_free(tried)
+            tried if tried.host.charge else trial.with_best_beside_free(tried)
             for tried in full
         ]
     fewest = min(

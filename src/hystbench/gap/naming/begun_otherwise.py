@@ -42,8 +42,7 @@ def begun_as_named(
         None where no record was given a path, the base begins so already, or the other
         effects alone score worse beside that start.
     """
-    paths = paths_of(found)
-    if not paths:
+    if not found.paths:
         return None
 
     def left(start: str) -> float:
@@ -61,13 +60,8 @@ def begun_as_named(
     if chain == base.chain:
         return None
     score = Score.plain(found.sample, floor_rms**2)
-    laws = without(found, paths)
+    laws = without(found, found.paths)
     alone = replace(laws, chain=starting(laws.chain, best)).settled()
     if finished(alone, score)[1] > score_of(found, score):
         return None
     return replace(base, chain=chain)
-
-
-def paths_of(found: ModelState) -> frozenset[str]:
-    """Name the effects that are a path of each record's own."""
-    return frozenset(one.effect for one, values in found.beside if not values)

@@ -63,7 +63,7 @@ def named_apart(
     """
     found = (start, named, NONE)
     square, share, say = floor_rms**2, asked.unnamed_share, asked.say
-    paths = any(not values for _, values in named.state.beside)
+    paths = bool(named.state.paths)
     if not paths and named.state.power(square) <= share * start.power(square):
         return found
     score = make_score(start, floor_rms, forms=False)
@@ -139,8 +139,7 @@ def beside_offsets(state: ModelState, start: ModelState, score: Score) -> ModelS
     A slow law and an offset look alike: one after the other, each takes what is the
     other's. Paths stand for the offsets, so they go.
     """
-    paths = {one.effect for one, values in state.beside if not values}
-    laws = on_records(without(state, paths), start.records)
+    laws = on_records(without(state, state.paths), start.records)
     level: tuple[Beside, Values] = Drift.levels(), {}
     fitted, _ = finished(replace(laws, beside=(*laws.beside, level)).settled(), score)
     return replace(fitted, beside=fitted.beside[:-1])
