@@ -107,6 +107,38 @@ def test_growing_thresholds(v):
     close(chain(GPI, GROWING).simulate(v, DT), expected)
 
 
+@pytest.mark.parametrize("knee", [0.0, 3.0])
+@pytest.mark.parametrize("form", ["growing-thresholds", "excess-field"])
+def test_along_straight_lines_the_rate_is_that_of_the_line(form, knee):
+    """As with a grid so fine that steps no longer matter: slow up and fast down."""
+    coefficient = 0.05 if form == "growing-thresholds" else 0.01
+    numbers = {"coefficient": coefficient, "exponent": 0.7, "form": form, "knee": knee}
+    v = np.interp(np.arange(80), [0, 9, 12, 25, 27, 60, 79], [0, 2, -1, 1, -2, 2, 0])
+    found = chain(GPI, RateDependentHysteresis(**numbers, hold="linear"))
+    fine, steps = np.repeat(np.diff(v) / DT, 200), np.arange(79 * 200 + 1) / 200
+    rate = np.append(0.0, fine)  # of the line that leads to each point
+    if knee:
+        effect = coefficient * knee**0.7 * np.arcsinh((abs(rate) / knee) ** 0.7)
+    else:
+        effect = coefficient * abs(rate) ** 0.7
+    path = np.interp(steps, np.arange(80), v)
+    if form == "excess-field":
+        path, growth = path - effect * np.sign(rate), np.ones(len(path))
+    else:
+        growth = 1.0 + effect
+    expected = plain_gpi(GPI, path, growth)[::200]
+    np.testing.assert_allclose(
+        found.simulate(v, DT)[1:], expected[1:], atol=2e-3 * np.ptp(expected)
+    )
+
+
+def test_a_knee_needs_a_rate_that_is_known():
+    with pytest.raises(InputError, match="knee: none with 'form: acting-field'"):
+        RateDependentHysteresis(
+            coefficient=0.1, exponent=0.5, form="acting-field", knee=1.0
+        )
+
+
 @given(inputs)
 def test_excess_field(v):
     effect = [

@@ -102,6 +102,13 @@ def mixed():
         "shape inside growth": chain_of(
             gpi, ("hysteresis-shape", shape), faster("growing-thresholds", "linear")
         ),
+        "growth by a logarithm": chain_of(
+            gpi,
+            (
+                "rate-dependent-hysteresis",
+                {"coefficient": 0.02, "exponent": 1.0, "knee": 5.0, "hold": "linear"},
+            ),
+        ),
         "growth inside growth": chain_of(
             gpi,
             faster("growing-thresholds", "linear"),
@@ -327,6 +334,7 @@ def test_the_object_calls_mathematics_and_nothing_else(described, tmp_path):
     )
     called = {line.split()[-1] for line in told.stdout.splitlines() if " U " in line}
     known = {
+        "asinh",
         "atan",
         "atanh",
         "exp",

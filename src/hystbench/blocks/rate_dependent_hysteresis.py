@@ -17,6 +17,7 @@ from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
 from hystbench.blocks.wrapping import Growth, Wrappable, WrappingBlock
+from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 FORMS = ("growing-thresholds", "excess-field", "acting-field")
@@ -27,7 +28,9 @@ class RateDependentHysteresis(
 ):
     """Hysteresis that depends on the rate of what enters it, v.
 
-    With ``e = coefficient |dv/dt|^exponent``:
+    With ``e = coefficient |dv/dt|^exponent``, or, with a ``knee``, ``e = coefficient
+    knee^exponent asinh((|dv/dt| / knee)^exponent)``, which beyond it grows with the
+    logarithm of the rate [3]_:
 
     - ``growing-thresholds`` [1]_: each threshold is ``r_i (1 + e)`` at each sample;
     - ``excess-field``: the hysteresis is driven by ``v - e sign(dv/dt)``;
@@ -38,7 +41,9 @@ class RateDependentHysteresis(
     The rate is a central difference, one-sided at the ends. Where v turns it is zero
     for an instant only, and the thresholds are narrow for as long: with a band-limited
     hold all are computed on a grid that is ``SHORT_STEPS`` times finer, the rate of
-    the curve that leads up to each sample.
+    the curve that leads up to each sample. With ``hold: linear`` v moves straight from
+    sample to sample, and turns without ever being slow: the rate is that of the line.
+    At the first sample none is known, and it is zero.
 
     References
     ----------
@@ -47,6 +52,12 @@ class RateDependentHysteresis(
        17 (2008) 035026.
     .. [2] G. Bertotti, "General properties of power losses in soft ferromagnetic
        materials", IEEE Transactions on Magnetics 24 (1988) 621-630.
+    .. [3] H. Eyring, "Viscosity, plasticity, and diffusion as examples of absolute
+       reaction rates", J. Chemical Physics 4 (1936) 283-291: friction that is
+       activated by heat. M. Al Janaideh, P. Krejci, "Inverse rate-dependent
+       Prandtl-Ishlinskii model for feedforward compensation of hysteresis in a
+       piezomicropositioning actuator", IEEE/ASME Trans. Mechatronics 18 (2013)
+       1498-1507, has thresholds that grow with a logarithm of the rate.
     """
 
     smooths = False
@@ -58,6 +69,17 @@ class RateDependentHysteresis(
     )
     exponent: float = number("-", "power of the rate", 0.01, 10.0)
     form: str = choice("what the rate changes", FORMS, FORMS[0])
+    knee: float = number(
+        "U/s",
+        "rate beyond which the growth is logarithmic; with 0 it is a power throughout",
+        0.0,
+        default=0.0,
+    )
+
+    def check(self) -> None:
+        """Refuse a knee where the field that acts is sought."""
+        if self.knee and self.form == "acting-field":
+            raise InputError("knee: none with 'form: acting-field'; expected 0")
 
     def check_inner(self, inner: Wrappable) -> None:
         """Refuse hysteresis without thresholds where thresholds are to grow."""
@@ -68,11 +90,12 @@ class RateDependentHysteresis(
         self, inner: Wrappable, v: FloatArray, u: FloatArray, dt: float, growth: Growth
     ) -> FloatArray:
         """Drive the hysteresis with larger thresholds or with less field."""
-        fine = SHORT_STEPS if self.holding == "band-limited" and len(v) > 2 else 1
+        fine = self._fine if len(v) > 2 else 1
         given = v
         if fine > 1:
             place = np.arange((len(v) - 1) * fine + 1) / fine
-            v, u = finer(v, fine), np.interp(place, np.arange(len(u)), u)
+            v = np.repeat(v, 2)[:-1] if self._straight else finer(v, fine)
+            u = np.interp(place, np.arange(len(u)), u)
             if growth is not None:
                 growth = np.interp(place, np.arange(len(growth)), growth)
         if self.form == "acting-field":
@@ -80,15 +103,39 @@ class RateDependentHysteresis(
         else:
             if fine == 1:
                 rate = np.gradient(v, dt)
+            elif self._straight:
+                rate = np.append(0.0, np.repeat(np.diff(given) / dt, 2))
             else:
                 rates = weighed(given, _rate_weights(POINTS, AHEAD, fine))
                 rate = np.concatenate([rates[-1:, 0], rates.T[1:].ravel()]) / dt
-            effect = self.coefficient * np.abs(rate) ** self.exponent
+            effect = self._effect(np.abs(rate))
             if self.form == "excess-field":
                 v = v - np.copysign(effect, rate)
             else:
                 growth = 1.0 + effect if growth is None else (1.0 + effect) * growth
         return inner.grow(v, u, dt / fine, growth)[::fine].copy()
+
+    @property
+    def _straight(self) -> bool:
+        """Whether the rate is that of straight lines between samples.
+
+        Where no hold is set v comes smoothly out of dynamics: it only looks straight.
+        """
+        return self.hold == "linear" and self.form != "acting-field"
+
+    @property
+    def _fine(self) -> int:
+        """Steps of an interval; of a line its two ends, both with its rate."""
+        if self._straight:
+            return 2
+        return SHORT_STEPS if self.holding == "band-limited" else 1
+
+    def _effect(self, speed: FloatArray) -> FloatArray:
+        """Give e of magnitudes of a rate."""
+        if not self.knee:
+            return np.asarray(self.coefficient * speed**self.exponent)
+        most = self.coefficient * self.knee**self.exponent
+        return np.asarray(most * np.arcsinh((speed / self.knee) ** self.exponent))
 
     def _acting(self, v: FloatArray, dt: float) -> FloatArray:
         """Give the field that acts behind the one that is applied."""
@@ -105,34 +152,39 @@ class RateDependentHysteresis(
         It gives the inner points of a band-limited field, and the sample after the
         newest, which a central difference needs.
         """
-        points = sampling.curve_points
-        fine = SHORT_STEPS if self.holding == "band-limited" else 1
-        ahead = sampling.ahead
-        places = np.arange(1 - fine, 1) / fine - ahead
-        rates = _rate_weights(points, ahead, fine)
+        points, fine, ahead = sampling.curve_points, self._fine, sampling.ahead
+        samples = np.eye(points)
+        if self._straight:
+            values = samples[[ahead + 1, ahead]]
+            rates = np.tile(samples[ahead] - samples[ahead + 1], (2, 1))
+        else:
+            places = np.arange(1 - fine, 1) / fine - ahead
+            values = np.array([value_at(points, place) for place in places])
+            rates = _rate_weights(points, ahead, fine)
         constants = {
             "form": FORMS.index(self.form),
-            **self.constants("coefficient", "exponent"),
+            **self.constants("coefficient", "exponent", "knee"),
             "dt": sampling.dt / fine,
             "fine": fine,
             "points": points,
             "ahead": ahead,
-            "values": np.array([value_at(points, place) for place in places]).ravel(),
+            "values": values.ravel(),
             "rates": rates.ravel() / sampling.dt,
         }
         states = {"history": 1 + points, "growth_before": 1, "field": 2}
         function = "rate_dependent_hysteresis"
-        told = [smooth_curve(points, ahead)] if fine > 1 else []
-        if self.form != "acting-field":
-            told.append(foretold(CENTRAL, points, ahead))
+        curved = fine > 1 and not self._straight
+        central = self.form != "acting-field" and not self._straight
+        told = [smooth_curve(points, ahead)] if curved else []
+        told += [foretold(CENTRAL, points, ahead)] if central else []
         return Step(
             function,
             constants,
             states,
             grows=True,
             drives=fine,
-            gains=AHEAD if fine > 1 else int(self.form != "acting-field"),
-            rates=int(self.form != "acting-field"),
+            gains=AHEAD if curved else int(central),
+            rates=int(central),
             differs="; ".join(filter(None, told)),
         )
 

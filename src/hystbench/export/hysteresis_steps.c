@@ -89,10 +89,18 @@ static double hb_acting_field(double c, double a, double dt, double *field, doub
     return field[0];
 }
 
+/* By how much thresholds grow with a rate: a power of it, or beyond a knee its
+ * logarithm. */
+static double hb_growth(double coefficient, double exponent, double knee, double rate)
+{
+    if (knee == 0) return coefficient * pow(fabs(rate), exponent);
+    return coefficient * pow(knee, exponent) * asinh(pow(fabs(rate) / knee, exponent));
+}
+
 /* Fields and growths that what is inside gets, one after the other; gives how many.
  * form: 0 growing thresholds, 1 excess field, 2 acting field. */
 static int hb_rate_dependent_hysteresis(int form, double coefficient, double exponent,
-                                        double dt, int fine, int points, int ahead,
+                                        double knee, double dt, int fine, int points, int ahead,
                                         const double *values, const double *rates,
                                         double *history, double *growth_before,
                                         double *field, double v, double growth,
@@ -110,7 +118,7 @@ static int hb_rate_dependent_hysteresis(int form, double coefficient, double exp
         const int row = first ? fine - 1 : i;
         const double *taps = rates + row * points, *samples = history + 1;
         const double rate = history[0] > 1 ? hb_weighted(points, taps, samples) : 0;
-        const double effect = coefficient * pow(fabs(rate), exponent);
+        const double effect = hb_growth(coefficient, exponent, knee, rate);
         double now = row == fine - 1 ? v : hb_weighted(points, values + row * points, samples);
         double factor = *growth_before + (growth - *growth_before) * (row + 1) / fine;
         if (form == 0)

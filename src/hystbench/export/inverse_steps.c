@@ -5,13 +5,14 @@
  * it had moved. pace: how many inputs were kept, up to two; both, the newest first; and
  * the growth of thresholds by the rate between them. */
 static double hb_undo(double near, double low, double high, double way,
-                      double coefficient, double exponent, double dt, double *at,
+                      double coefficient, double exponent, double knee,
+                      double dt, double *at,
                       double *pace, double (*output)(void *, double), void *model,
                       double z)
 {
 #define HB_OFF(v) (way * hb_dead_zone(near, output(model, v) - z))
     const double rate = pace[0] < 2 ? 0 : (pace[1] - pace[2]) / dt;
-    pace[3] = 1 + coefficient * pow(fabs(rate), exponent);
+    pace[3] = 1 + hb_growth(coefficient, exponent, knee, rate);
     double one = hb_most(low, hb_least(high, at[0])), other = one;
     const double began = one;
     double off_one = HB_OFF(one), off_other = off_one;

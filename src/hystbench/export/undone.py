@@ -109,7 +109,7 @@ def hysteresis(
     way = 1.0 if moved.sum() > 0 else -1.0
     if reach == 0 or (way * moved < -1e-9 * reach).any():
         raise CannotBe("its output does not rise or fall throughout with its input")
-    rate = (by.coefficient, by.exponent) if by else (0.0, 1.0)
+    rate = (by.coefficient, by.exponent, by.knee) if by else (0.0, 1.0, 0.0)
 
     def making(sampling: Sampling) -> Step:
         constants = {
@@ -119,6 +119,7 @@ def hysteresis(
             "way": way,
             "coefficient": rate[0],
             "exponent": rate[1],
+            "knee": rate[2],
             "dt": sampling.dt,
         }
         told = "takes the rate of the interval before, which is one sample old"

@@ -56,3 +56,16 @@ def test_a_ratio_whose_derivatives_run_away_is_left_as_it_is(monkeypatch):
     found = task.refined(SLOW, masks, 5)
     assert (found.a == SLOW.a).all()
     assert (found.b == SLOW.b).all()
+
+
+def test_a_ratio_that_no_block_takes_costs_without_bound():
+    """Slow poles are unstable by rounding: as of a drive that turns freely."""
+    t = 0.1 * np.arange(300)
+    task = OutputError((record(np.sin(0.7 * t), dt=0.1),), "linear", 1.0, "rest")
+    masks = [np.ones(300, dtype=bool)]
+    poles = [1e-6 + 1e-3j, 1e-6 - 1e-3j, -5.0]
+    ratio = Ratio(np.poly(poles).real[:0:-1], np.array([1.0]), 0.0, 0.0)
+    assert task.squares(ratio, masks) == np.inf
+    found = task.refined(ratio, masks, 5)
+    assert (found.a == ratio.a).all()
+    assert found.cost == np.inf

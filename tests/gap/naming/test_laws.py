@@ -1,11 +1,18 @@
 """Laws of one name: each is found under it, before what can imitate any."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
+from scipy.signal import sawtooth
 
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.refit import finished
 from hystbench.gap.naming.rank import rank
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import PAYS, SHAPE
+from tests.gap.made import record
 from tests.gap.small import block, hysteresis, measured, records, state_of
 
 NOISE = 0.01
@@ -131,3 +138,35 @@ def test_friction_that_bends_late_is_found_with_its_scale():
     (found,) = [x for x in first.state.chain if x.name == "friction"]
     assert found.velocity_scale == pytest.approx(0.6 * fastest, rel=0.1)
     assert found.coulomb == pytest.approx(3.0, rel=0.1)
+
+
+def test_thresholds_that_grow_with_a_logarithm_are_found_along_straight_lines():
+    """Eyring's law: of triangles at rates of one to a hundred, with its numbers."""
+    t = np.arange(1200) / 1000
+    given = tuple(
+        record(0.8 * sawtooth(2 * np.pi * pace * t + np.pi / 2, 0.5), name=f"{pace}")
+        for pace in (0.9, 6.3, 80.0)
+    )
+    law = block(
+        "rate-dependent-hysteresis",
+        coefficient=0.1,
+        exponent=1.0,
+        knee=3.0,
+        hold="linear",
+    )
+    noise = np.random.default_rng(3).standard_normal((3, 1200)) * NOISE
+    outputs = Simulation((LOOP, law), given, "linear").output
+    told = tuple(
+        replace(one, y=y + rest)
+        for one, y, rest in zip(given, outputs, noise, strict=True)
+    )
+    state = state_of((LOOP,), told, hold="linear")
+    score = make_score(state, NOISE)
+    known = [effects()[item] for item in ("rate-dependent-hysteresis", "sensor-lag")]
+    first = rank(state, score, known, folds=False)[0]
+    assert first.effect == "rate-dependent-hysteresis"
+    found = finished(first.state, score)[0]
+    assert found.chain[1].knee == pytest.approx(3.0, rel=0.2)
+    assert found.chain[1].coefficient == pytest.approx(0.1, rel=0.2)
+    gap = state.power(NOISE**2)
+    assert found.share(state, NOISE**2, gap) > 0.99

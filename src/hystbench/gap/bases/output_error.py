@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Protocol, TypeVar
 
@@ -114,11 +113,15 @@ class OutputError:
     def squares(self, ratio: Ratio, masks: Sequence[Mask]) -> float:
         """Sum of squares of the error over the masked samples.
 
-        With offsets of their own, those that fit the masked samples best.
+        With offsets of their own, those that fit the masked samples best. Infinite for
+        a ratio that no block takes, as where rounding makes slow poles unstable.
         """
         with np.errstate(over="ignore", invalid="ignore"):  # of one that runs away
-            error = self._masked(self.left(ratio), masks)
-            return float(sum(np.sum(part**2) for part in error))
+            try:
+                left = self.left(ratio)
+            except InputError:
+                return np.inf
+            return float(sum(np.sum(part**2) for part in self._masked(left, masks)))
 
     def _masked(
         self, columns: Sequence[FloatArray], masks: Sequence[Mask]
@@ -146,6 +149,8 @@ class OutputError:
             return lambda damping: self._moved(ratio, _step(triangle, damping), masks)
 
         ratio = replace(ratio, cost=self.squares(ratio, masks))
+        if not np.isfinite(ratio.cost):
+            return ratio
         ratio = descended(ratio, steps, rounds, 1e-6)
         offset = ratio.offset
         if self.own_offsets:
@@ -158,10 +163,7 @@ class OutputError:
         a = stable(ratio.a + step[:k])
         a[: self.held] = ratio.a[: self.held]  # not what its pole's margin makes of it
         moved = Ratio(a, ratio.b + step[k:-1], ratio.offset + step[-1], np.inf)
-        # No number is no step, nor is one so far that the block refuses it.
-        with suppress(InputError), np.errstate(over="ignore", invalid="ignore"):
-            moved = replace(moved, cost=self.squares(moved, masks))
-        return moved
+        return replace(moved, cost=self.squares(moved, masks))
 
     def _triangle(self, ratio: Ratio, masks: Sequence[Mask]) -> FloatArray:
         """Triangle of the derivatives, and of the error as its last column."""

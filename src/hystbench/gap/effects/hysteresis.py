@@ -203,10 +203,11 @@ class RateDependentHysteresis(Effect):
     place = "material"
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
-        """Offer three laws around the hysteresis.
+        """Offer three laws around the hysteresis, and thresholds with a logarithm.
 
         The coefficient is searched by what it does at the fastest rate of the records,
-        from one exponent or another, which the refit moves.
+        from one exponent or another, which the refit moves. A logarithm begins far
+        below that rate, or near it, and the refit moves where.
         """
         if simulation.hysteresis is None:
             raise Declined("the chain has no hysteresis that could widen")
@@ -233,8 +234,25 @@ class RateDependentHysteresis(Effect):
                     zero={"coefficient": 0.0},
                     charge=2.0,
                 )
+        fastest = simulation.fastest()
+        for share in KNEES if can_grow(simulation) else ():
+            yield self.inserted(
+                simulation,
+                simulation.hysteresis + 1,
+                partial(_bent, share * fastest),
+                form=f"growing-thresholds, logarithm from {share:g}",
+                grids={
+                    "coefficient": sizes["growing-thresholds"]
+                    / (share * fastest * np.arcsinh(1 / share))
+                },
+                free=("coefficient", "knee"),
+                zero={"coefficient": 0.0},
+                charge=2.0,
+            )
 
 
+KNEES = (0.01, 0.3)
+"""Share of the fastest rate beyond which thresholds grow with the logarithm."""
 EXPONENTS = {
     "growing-thresholds": (0.5, 1.0),
     "excess-field": (0.5, 1.0),
@@ -246,6 +264,10 @@ EXPONENTS = {
 
 def _widened(form: str, exponent: float, given: Values) -> dict[str, Any]:
     return {"exponent": exponent, **given, "form": form}
+
+
+def _bent(knee: float, given: Values) -> dict[str, Any]:
+    return {"exponent": 1.0, "knee": knee, **given}
 
 
 def can_grow(simulation: Simulation) -> bool:
