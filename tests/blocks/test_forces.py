@@ -71,6 +71,10 @@ LAWS = {
             * np.maximum(1 + 0.2 * np.sign(q) * v, 0)
         ),
     ),
+    "stop of round bodies": (
+        {"contact_stiffness": 7.0, "gap": 0.4, "exponent": 1.5},
+        lambda q, v: 7 * np.sign(q) * np.maximum(np.abs(q) - 0.4, 0) ** 1.5,
+    ),
     "drag": ({"coefficient": 0.3}, lambda q, v: 0.3 * v * np.abs(v)),
     "velocity-limit": (
         {"rate": 0.4, "damping": 3.0},

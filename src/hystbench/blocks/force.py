@@ -22,7 +22,7 @@ LAWS = (
     *("attached", "lugre", "faster", "saturating"),
 )
 """Laws of the kernel, by the number that they have in kernels/forces.c."""
-ROW = 6
+ROW = 7
 """Numbers of a row of the kernel."""
 
 
@@ -175,7 +175,7 @@ class Force(AttachedBlock, place="inside"):
 
 
 def rows(forces: tuple[Force, ...]) -> FloatArray:
-    """Give the kernel's rows of some forces, shape (rows, 6); one or more a force."""
+    """Give the kernel's rows of some forces, shape (rows, 7); one or more a force."""
     return np.vstack([np.zeros((0, ROW)), *(item.rows() for item in forces)])
 
 

@@ -70,7 +70,7 @@ class DriveLines:
         drives : ndarray, shape (motions, count)
         tables : ndarray
             Of :func:`tables_of`.
-        laws : ndarray, shape (motions, forces, 6)
+        laws : ndarray, shape (motions, forces, 7)
         motion : ndarray, shape (motions, count, 2 modes)
             Positions and velocities; is filled from the first row of each record on.
 

@@ -14,11 +14,13 @@ from hystbench.gap.beside_base import BesideBase, stays
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.fitting.augmented_model import augmented
+from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.re_tuning_gain import (
     re_tuned_words,
 )
+from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.choose import most_inside
 from hystbench.gap.inside.named_inside import (
@@ -34,6 +36,7 @@ from hystbench.gap.judge_and_tell import Decision, judge_and_tell
 from hystbench.gap.naming.add_effects import add_effects
 from hystbench.gap.naming.begun_otherwise import begun_as_named
 from hystbench.gap.naming.beside_forces import beside_forces
+from hystbench.gap.naming.poles_of_base import named_beside_them, with_poles_named
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.records.evidence import Evidence, own_offsets
 from hystbench.gap.records.floor import Floor
@@ -91,6 +94,7 @@ def search(
         asked.say("it is" if found is again else "that explains no more: it is not")
     if identified:
         found = _begun_otherwise(found, evidence, asked, quantities)
+        found = _of_more_poles(found, evidence, asked)
     about = None if identified else known_about(base, evidence.fit)
     if about is not None and found.may_be_simpler():
         asked.say("the base's numbers or timing may be off: naming beside that")
@@ -136,6 +140,29 @@ def _begun_otherwise(
     stands = {item.effect for item in again.named.state.added} == others
     asked.say("they do" if stands else "that explains something else: they do not")
     return again if stands else found
+
+
+def _of_more_poles(found: BesideBase, evidence: Evidence, asked: Asked) -> BesideBase:
+    """Give poles that were named beside an identified base to the base.
+
+    Its numbers are those that leave least without any effect.
+    """
+    if found.inside is not None or found.own.records:
+        return found
+    base = with_poles_named(found.base, found.named.state)
+    if base is None:
+        return found
+    records, offered = found.start.records, found.start.offered
+    about = evidence.input_hold, evidence.noise_rms, offered
+    start, floor = start_state(records, base, *about)
+    alone, _ = finished(start, make_score(start, floor.rms))
+    base = replace(base, chain=alone.chain)
+    start, floor = start_state(records, base, *about)
+    chain = named_beside_them(found.named, start, floor.rms, asked.say)
+    if chain is None:
+        return found
+    asked.say("the base may have the poles that were named: they are no effect")
+    return replace(found, base=base, start=start, floor=floor, chain=chain)
 
 
 def _in_better_time(found: BesideBase) -> Model | None:

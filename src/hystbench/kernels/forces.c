@@ -1,6 +1,6 @@
 /* Forces against one coordinate: their laws, and the way of a step against them.
  *
- * A force is a row of six numbers: its law's number, and those of the law. It remembers
+ * A force is a row of seven numbers: its law's number, and those of the law. It remembers
  * one number; an attached mass two, the second that of a row of zeros behind. structure.c
  * includes this file, and `hystbench export` copies what a model needs of it into C99
  * that stands alone: so no type of its own, and nothing but mathematics.
@@ -29,6 +29,24 @@ static double hb_mean_dead_zone(double from, double to, double gap)
 {
     const double a = hb_dead_zone(gap, from), b = hb_dead_zone(gap, to);
     return a * b > 0 || from == to ? (a + b) / 2 : (b - a) / (to - from) * (b + a) / 2;
+}
+
+/* Of a dead zone with a sign, a power that is at least one. */
+static double hb_pressed(double power, double into)
+{
+    return power == 1 ? into : copysign(pow(fabs(into), power), into);
+}
+
+/* Mean of a power of a dead zone between two places: near one another, where a difference
+ * would be rounding, by Simpson's rule. */
+static double hb_mean_pressed(double from, double to, double gap, double power)
+{
+    if (power == 1) return hb_mean_dead_zone(from, to, gap);
+    const double a = hb_dead_zone(gap, from), b = hb_dead_zone(gap, to);
+    if (from == to || (a * b > 0 && fabs(b - a) < 1e-2 * fabs(a + b)))
+        return (hb_pressed(power, a) + 4 * hb_pressed(power, (a + b) / 2) +
+                hb_pressed(power, b)) / 6;
+    return (pow(fabs(b), power + 1) - pow(fabs(a), power + 1)) / ((power + 1) * (to - from));
 }
 
 /* Mean of a dead zone over a way on which z moves along until its reach holds it. */
@@ -219,7 +237,8 @@ static double hb_force(const double *f, double q, double v, const double *memori
         return f[1] * (f[2] * sinh(q / f[2]) - q);
     case 2: /* stop */ {
         const double way = q - f[3];
-        return f[4] * way < 0 ? 0 : f[1] * hb_lossy(f[5], hb_dead_zone(f[2], way), v);
+        if (f[4] * way < 0) return 0;
+        return f[1] * hb_lossy(f[5], hb_pressed(f[6], hb_dead_zone(f[2], way)), v);
     }
     case 3: /* friction */
     case 11: /* lugre */
@@ -267,7 +286,7 @@ static double hb_mean_force(const double *f, double q, double way, double h,
             from = f[4] * fmax(0, f[4] * from);
             end = f[4] * fmax(0, f[4] * end);
         }
-        const double mean = hb_mean_dead_zone(from, end, f[2]);
+        const double mean = hb_mean_pressed(from, end, f[2], f[6]);
         return f[1] * hb_lossy(f[5], way == 0 ? mean : mean * ((end - from) / way), v);
     }
     case 3: /* friction */
@@ -317,7 +336,7 @@ static void hb_move_memories(int count, const double *forces, double v, double w
                              double h, double *memory)
 {
     for (int i = 0; i < count; i++) {
-        const double *f = forces + 6 * i;
+        const double *f = forces + 7 * i;
         if ((int)f[0] == 10 && h > 0) {
             const double gained = h / f[1] * hb_attached(f, way, h, memory + i);
             memory[i] += way - h * (memory[i + 1] + gained / 2);
@@ -331,7 +350,7 @@ static double hb_sum_of_forces(int count, const double *forces, double q, double
                                const double *memory)
 {
     double sum = 0;
-    for (int i = 0; i < count; i++) sum += hb_force(forces + 6 * i, q, v, memory + i);
+    for (int i = 0; i < count; i++) sum += hb_force(forces + 7 * i, q, v, memory + i);
     return sum;
 }
 
@@ -343,7 +362,7 @@ static double hb_miss(int count, const double *forces, const double *memory, dou
 {
     double sum = 0;
     for (int i = 0; i < count; i++) {
-        const double *f = forces + 6 * i;
+        const double *f = forces + 7 * i;
         sum += h > 0 ? hb_mean_force(f, q, way, h, memory + i)
                      : hb_force(f, q + way, 0, memory + i);
     }
@@ -375,7 +394,7 @@ static double hb_way_near(int count, const double *forces, const double *memory,
 static int hb_falls(int count, const double *forces)
 {
     for (int i = 0; i < count; i++) {
-        const double *f = forces + 6 * i;
+        const double *f = forces + 7 * i;
         if (((int)f[0] == 3 || (int)f[0] == 11) && f[2] > 0) return 1;
         if ((int)f[0] == 8 && f[3] > 0 && f[4] > 0) return 1;
     }
@@ -432,7 +451,7 @@ static double hb_way_of(int count, const double *forces, const double *memory, d
 static int hb_turns(int count, const double *forces)
 {
     for (int i = 0; i < count; i++) {
-        const int kind = (int)forces[6 * i];
+        const int kind = (int)forces[7 * i];
         if (kind == 3 || kind == 5 || kind == 7 || kind == 11) return 1;
     }
     return 0;

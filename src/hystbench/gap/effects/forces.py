@@ -282,6 +282,11 @@ class SliderWithGap(InsideEffect):
         return {"gap": 0.0}
 
 
+SLACK = 0.9
+"""Of a linear spring that a contact stands for, as of a shaft with play: it carries
+nothing within the clearance. A rest of the spring stays, for a fit to take or leave."""
+HERTZ = 1.5
+"""Power of the way in, of round bodies."""
 LOSS = 0.3
 """Of a contact's force that a start adds at the largest speed."""
 
@@ -295,7 +300,8 @@ class Stop(InsideEffect):
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer both sides, and either one, met early and late, and one that loses.
 
-        Of both sides one may be nearer than the other.
+        Of both sides one may be nearer than the other. Where there is a spring the
+        clearance may also be in it.
         """
         stiffness = moved.force / moved.reach
         numbers = ("contact_stiffness", "gap")
@@ -308,6 +314,17 @@ class Stop(InsideEffect):
                 yield Law(_form(sides), block, numbers)
                 if apart:
                     yield Law(UNEVEN, block, (*numbers, *apart))
+            # Round bodies are soft at first: as stiff as others half as far in.
+            softer = (0.5 * (1 - share) * moved.reach) ** (1 - HERTZ)
+            round_ = replace(
+                block, contact_stiffness=stiffness * softer, exponent=HERTZ
+            )
+            yield Law(f"{_form(sides)}, round", round_, numbers)
+            if apart and moved.stiffness > 0.0:
+                slack = replace(
+                    block, contact_stiffness=moved.stiffness, gap=0.1 * moved.reach
+                )
+                yield Law(_form(sides), slack, numbers, stands_for=SLACK)
             lossy = replace(block, loss=LOSS / moved.speed)
             form = UNEVEN if apart else _form(sides)
             yield Law(f"{form}, lossy", lossy, (*numbers, *apart, "loss"))

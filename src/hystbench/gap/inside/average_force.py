@@ -119,9 +119,8 @@ def relieved(
         if free is None:
             continue
         own = np.array(getattr(host, name))
-        left = np.clip(
-            np.maximum(own - less * shape**2, REMAINS * own), free.low, free.high
-        )
+        remains = np.maximum(own - less * shape**2, REMAINS * own)
+        left = np.clip(remains, *state.range_of(free))
         values[name] = (
             tuple(left.tolist()) if isinstance(host, Structure) else float(left[0])
         )

@@ -41,10 +41,12 @@ from zero no fit could tell which way it does."""
 def structure(
     start: ModelState, output: str, others_too: bool = False
 ) -> ModelState | None:
-    """Give a linear model as a structure; None if it has fewer than two modes.
+    """Give a linear model as a structure; None if one coordinate is all it has.
 
-    The model does what it did. Each mode moves its drive and its sensor alike, as where
-    both are at one place; where the joint is is not known.
+    A structure has two modes, or one beside real poles: those of a drive that turns
+    freely, whose shaft swings. The model does what it did. Each mode moves its drive
+    and its sensor alike, as where both are at one place; where the joint is is not
+    known.
 
     Parameters
     ----------
@@ -75,7 +77,7 @@ def structure(
         modes.append(one[0])
         through += one[1]
         taken |= np.isin(poles, (poles[k], poles[k].conj()))
-    if len(modes) < 2:
+    if not modes or (len(modes) == 1 and np.all(taken)):
         return None
     whole = direct_of(block)
     direct = whole - through

@@ -117,7 +117,7 @@ def hosts(
             if wanted("loose mass"):
                 yield from _loose(best.state, score, words)
             # Two masses that both swing are a structure that is driven at its joint.
-            if wanted("two masses") and modes() is None:
+            if wanted("two masses") and not _of_two_modes(modes()):
                 yield from _of_two(best, further_modes_of(start), score)
     if not identified and all(isinstance(block, Store) for block in start.chain):
         words = "the base is stores already"
@@ -142,6 +142,12 @@ def hosts(
     elif whole_base is not None:
         own = whole_base, whole_base, score, words, start.free, exact
         yield from as_given("structure", *own)
+
+
+def _of_two_modes(state: ModelState | None) -> bool:
+    """Tell whether a model is a structure of two modes or more."""
+    found = [] if state is None else [x for x in state.chain if x.name == "structure"]
+    return any(len(block.stiffness) > 1 for block in found)  # type: ignore[attr-defined]
 
 
 def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
