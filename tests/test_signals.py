@@ -1,3 +1,5 @@
+"""Signals against their formulas; a bad definition is one line."""
+
 import numpy as np
 import pytest
 from hypothesis import given
