@@ -11,7 +11,7 @@ from hystbench.entrants import rivals
 from hystbench.entrants.rivals import Answer, read, write
 from hystbench.files import read_json
 from hystbench.gap.schema import SCHEMA
-from hystbench.plain_fits import Task, effects, fit, within_noise
+from hystbench.plain_fits import Task, effects, fit
 from hystbench.schema import check_against_schema
 
 LEFT_OUT = {"group": 2}
@@ -97,39 +97,6 @@ def test_a_rival_that_runs_away_has_closed_nothing(folder, tmp_path, beyond):
     gap = read_json(tmp_path / "gap.json")
     check_against_schema(gap, SCHEMA, "gap.json")
     assert (gap["gap"]["after"], gap["gap"]["explained"]) == (None, 0.0)
-
-
-def test_every_effect_of_the_vocabulary_can_be_fitted(case):
-    records = [r for r in case.records if r.use == "fit"][:2]
-    task = Task(case.model, records)
-    base = float(np.mean((task.base - task.measured) ** 2))
-    found = {name: fit(task, name) for name in effects()}
-    assert len(found) == 22
-    assert [name for name, item in found.items() if item is None] == ["hysteresis"]
-    # a fit of squares with the base inside its bounds, or at them, is no worse
-    for name in ("thermal-drift", "creep", "calibration-error", "drift"):
-        assert found[name].mean_square <= base
-
-
-@pytest.mark.parametrize("effect", ["sensor-lag", "stiffness-hardening"])
-def test_a_plain_fit_finds_what_is_hidden(effect):
-    case = make_case(CaseSpec(150_002, "single", (effect,), "gpi", 20.0, **LEFT_OUT))
-    records = [r for r in case.records if r.use == "fit"]
-    found = fit(Task(case.model, records), effect)
-    # the noise, and at most a tenth of the effect's power
-    gap = case.truth["effects"][0]["rms"] ** 2
-    assert found.mean_square <= case.truth["noise_rms"] ** 2 + 0.1 * gap
-
-
-def test_a_set_of_the_judge_holds_what_mimics_and_not_what_does_not(case):
-    records = [r for r in case.records if r.use == "fit"]
-    noise = case.truth["noise_rms"]
-    names = ("thermal-drift", "backlash", "no-effect-at-all")
-    given = (case.model, records, names, "thermal-drift", noise**2, noise)
-    assert within_noise(*given) == ("thermal-drift",)
-    # where anything is within the noise, all that can be fitted is
-    loud = (*given[:-1], 1e3)
-    assert within_noise(*loud) == ("thermal-drift", "backlash")
 
 
 def test_no_rival_knows_the_plant_the_truth_or_the_solver():
