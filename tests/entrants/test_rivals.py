@@ -7,8 +7,8 @@ import pytest
 from hystbench.challenge.case import make_case
 from hystbench.challenge.make import write_folder
 from hystbench.challenge.spec import CaseSpec
-from hystbench.entrants import rivals
-from hystbench.entrants.rivals import Answer, read, write
+from hystbench.entrants.rivals import RIVALS, naive
+from hystbench.entrants.rivals.base import Answer, read, write
 from hystbench.files import read_json
 from hystbench.gap.schema import SCHEMA
 from hystbench.plain_fits import Task, effects, fit
@@ -33,7 +33,7 @@ def folder(case, tmp_path_factory):
 
 def solved(name, folder, out):
     given = read(folder / "dataset", folder / "model.yaml")
-    write(given, rivals.RIVALS[name](given), out)
+    write(given, RIVALS[name]().answer(given), out)
     gap = read_json(out / "gap.json")
     check_against_schema(gap, SCHEMA, "gap.json")
     return gap
@@ -44,7 +44,7 @@ def few_effects(monkeypatch):
     """Fit a handful of effects alone: all of them take a minute."""
     few = ("thermal-drift", "drive-lag", "saturation", "calibration-error", "drift")
     assert set(few) < set(effects())
-    monkeypatch.setattr(rivals, "effects", lambda: few)
+    monkeypatch.setattr(naive, "effects", lambda: few)
 
 
 @pytest.mark.usefixtures("few_effects")
@@ -63,7 +63,7 @@ def test_the_naive_ranker_goes_on_with_what_is_left(tmp_path):
     gap = solved("naive", tmp_path, tmp_path / "out")
     names = [item["name"] for item in gap["effects"]]
     assert set(hidden) <= set(names)
-    assert len(set(names)) == len(names) <= rivals.MOST_EFFECTS
+    assert len(set(names)) == len(names) <= naive.MOST_EFFECTS
     # the drift of a record that was not fitted is not known: what the lag did is gone
     assert gap["gap"]["after"] < gap["gap"]["before"]
 
@@ -73,7 +73,7 @@ def test_what_an_effect_explains_is_taken_off(folder):
     task = Task(given.model, given.fit)
     for name in ("calibration-error", "drift", "hysteresis-shape"):
         found = fit(task, name)
-        left = rivals.without(task, found)
+        left = naive.without(task, found)
         error = found.output - task.measured
         np.testing.assert_allclose(left.base - left.measured, error, atol=1e-9)
         assert found.mean_square == pytest.approx(np.mean(error**2))
