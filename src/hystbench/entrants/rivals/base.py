@@ -29,7 +29,7 @@ class Given:
     fit: tuple[Record, ...]
     hold_out: tuple[Record, ...]
     model_file: Path = Path()
-    """Where the model was read."""
+    """File from which the model was read."""
 
     def base(self, record: Record) -> FloatArray:
         """Give the base's output."""
@@ -54,7 +54,7 @@ class Answer:
     verdict: str = "unnamed"
     reason: str = "Nothing is named."
     named: Sequence[NamedEffect] = ()
-    """In their order."""
+    """Effects that are named, in their order."""
 
 
 class PythonSolver(ABC):
