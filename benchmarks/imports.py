@@ -7,6 +7,7 @@ import sys
 
 from benchmarks.timing import interleaved, least_and_median, write_table
 from hystbench.cli import COMMANDS
+from hystbench.group import job_lines
 
 COLUMNS = (
     *("command", "seconds", "median_seconds", "modules"),
@@ -18,17 +19,14 @@ DEAREST = 3  # packages named in the last column
 
 
 def main() -> None:
-    """Write imports.csv: a row for each command, and what they are weighed against."""
+    """Write imports.csv: a row a command or job, and what they are weighed against."""
     commands = {
         "(python alone)": "pass",
         "(numpy)": "import numpy",
         "(numpy, our kernels)": "import hystbench.kernels",
         "(numpy, numba)": "import numba",
         "--help": "import hystbench.cli",
-        **{
-            name: f"import hystbench.commands.{name.replace('-', '_')}"
-            for name in COMMANDS
-        },
+        **imported(),
     }
     seconds = interleaved(
         {name: lambda code=code: start(code) for name, code in commands.items()},  # type: ignore[misc]
@@ -42,6 +40,16 @@ def main() -> None:
         told = " ".join(f"{each}:{packages[each] / 1000:.0f}ms" for each in dearest)
         rows.append((name, *least_and_median(seconds[name]), modules, *heavy, told))
     write_table("imports.csv", COLUMNS, rows)
+
+
+def imported() -> dict[str, str]:
+    """Give the line that imports each command, and each job of the workflow."""
+    commands = {name: f"hystbench.commands.{name}" for name in COMMANDS}
+    jobs = {f"job {name}": f"hystbench.commands.jobs.{name}" for name in job_lines()}
+    return {
+        name: f"import {module.replace('-', '_')}"
+        for name, module in (commands | jobs).items()
+    }
 
 
 def start(code: str) -> None:

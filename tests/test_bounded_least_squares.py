@@ -1,10 +1,19 @@
+"""Steps within bounds end where other solvers do, and a descent says what it did."""
+
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
-from hystbench.bounded_least_squares import damped_step, minimize
+from hystbench.bounded_least_squares import (
+    LeastSquaresPoint,
+    damped_step,
+    descend,
+    minimize,
+)
 
 WIDE = np.full(3, 1e6)
 
@@ -50,3 +59,17 @@ def test_a_point_whose_error_is_not_finite_is_never_taken():
     point, cost = minimize(error, np.array([1.0]), np.array([0.1]), np.array([9.0]))
     assert point[0] < 4
     assert np.isfinite(cost)
+
+
+def test_a_descent_tells_each_step_and_last_the_one_that_wins_nothing():
+    a, b = linear_problem(1)
+
+    def at(point):
+        return LeastSquaresPoint(point, a @ point - b)
+
+    start = at(np.zeros(3))
+    told = list(descend(start, at, lambda _: a, -WIDE, WIDE, least_gain=0.0))
+    costs = [start.cost, *(step.cost for step in told)]
+    assert len(told) > 2
+    assert all(after < before for before, after in pairwise(costs[:-1]))
+    assert told[-1] is told[-2]

@@ -1,3 +1,5 @@
+"""Every command and job is there, is imported late, and tells errors in one line."""
+
 import errno
 import sys
 

@@ -1,3 +1,5 @@
+"""dataset.yaml and its files are read as written; a bad one is one line."""
+
 import re
 from dataclasses import replace
 

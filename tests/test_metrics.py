@@ -1,3 +1,5 @@
+"""Error measures against values by hand and against each other."""
+
 import numpy as np
 import pytest
 

@@ -1,3 +1,5 @@
+"""Compiled operators against the paper's equations, written out plainly."""
+
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,3 +1,5 @@
+"""A record comes back from its file, and cannot be changed."""
+
 from dataclasses import replace
 
 import numpy as np

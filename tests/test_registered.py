@@ -1,24 +1,30 @@
-"""What every filter and waveform owes, over all that are registered."""
+"""What every filter, waveform and solver owes, over all that are registered."""
 
 import importlib.metadata
 import math
 import re
 import sys
-from dataclasses import MISSING, FrozenInstanceError
+from dataclasses import MISSING, FrozenInstanceError, replace
 
 import numpy as np
 import pytest
 
 from hystbench import filters, waveforms
 from hystbench.adaptive import make_filter
+from hystbench.entrants import rivals
+from hystbench.entrants.rivals.base import read, write
 from hystbench.errors import InputError
 from hystbench.figures import style
+from hystbench.files import read_json
 from hystbench.filters.keys import keys_of
 from hystbench.gap.cache import code_digest
+from hystbench.gap.schema import SCHEMA
 from hystbench.record import Channel, Record
 from hystbench.registered import with_installed
+from hystbench.schema import check_against_schema
 from hystbench.signals import make_signal
 from tests.figures.palette import PALETTE
+from tests.gap.tiny import write_tiny
 
 #: A name of a file and of a key.
 NAME = re.compile(r"[a-z0-9][a-z0-9-]*")
@@ -160,6 +166,30 @@ def test_a_waveform_makes_its_example(name):
         without = {name: {k: v for k, v in waveform.example.items() if k != key}}
         with pytest.raises(InputError, match=f"misses the key '{key}'"):
             make_signal("example", without, COMMON)
+
+
+@pytest.fixture(scope="module")
+def smallest(tmp_path_factory):
+    """A dataset of some seconds, and its model file."""
+    return write_tiny(tmp_path_factory.mktemp("smallest"))
+
+
+@pytest.mark.parametrize("name", list(rivals.registry()))
+def test_a_solver_writes_a_gap_json_that_keeps_the_schema(name, smallest, tmp_path):
+    solver = rivals.registry()[name]
+    assert NAME.fullmatch(solver.name)
+    given = read(*smallest)
+    answer = solver().answer(given)
+    write(given, answer, tmp_path)
+    gap = read_json(tmp_path / "gap.json")
+    check_against_schema(gap, SCHEMA, "gap.json")
+    assert (gap["dataset"], gap["model"]) == ("tiny", "tiny-base")
+    assert gap["verdict"] == answer.verdict
+    assert [x["name"] for x in gap["effects"]] == [x.name for x in answer.named]
+    # Measured outputs of the hold-out records decide nothing.
+    blind = [replace(record, y=0.0 * record.y) for record in given.hold_out]
+    again = solver().answer(replace(given, hold_out=tuple(blind)))
+    assert [*again.named] == [*answer.named]
 
 
 class Point:

@@ -1,3 +1,5 @@
+"""Errors and convergence of a filter's run by hand, also of one that diverged."""
+
 import json
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""The config is checked before the first job, and a job gets only its own part."""
+
 import copy
 
 import pytest

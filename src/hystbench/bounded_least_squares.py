@@ -1,6 +1,8 @@
 """Nonlinear least squares with a few unknowns between bounds."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -10,6 +12,8 @@ STEPS = 40
 """Most steps of a descent."""
 LEAST_GAIN = 1e-4
 """Share of the sum of squares; a descent ends when two steps in a row win less."""
+TRIALS = 8
+"""A step is damped so many times before a descent ends."""
 _TINY = float(np.finfo(np.float64).tiny)
 
 
@@ -58,6 +62,78 @@ def damped_step(
     return np.clip(point + move, lower, upper)
 
 
+@dataclass(frozen=True)
+class LeastSquaresPoint:
+    """A point and the error there."""
+
+    point: FloatArray
+    """Shape (p,)."""
+    error: FloatArray
+    """Shape (n,)."""
+
+    @property
+    def cost(self) -> float:
+        """Sum of squares."""
+        return float(self.error @ self.error)
+
+
+AtPoint = TypeVar("AtPoint", bound=LeastSquaresPoint)
+
+
+def descend(
+    start: AtPoint,
+    at: Callable[[FloatArray], AtPoint],
+    slopes: Callable[[AtPoint], FloatArray],
+    lower: FloatArray,
+    upper: FloatArray,
+    steps: int = STEPS,
+    least_gain: float = LEAST_GAIN,
+) -> Iterator[AtPoint]:
+    """Go down a sum of squares, step by step.
+
+    It ends after so many steps, when two in a row have each won less than the least
+    gain, or with a step that wins nothing.
+
+    Parameters
+    ----------
+    start : LeastSquaresPoint
+        Where to start.
+    at : callable
+        Gives the error at a point, shape (p,).
+    slopes : callable
+        Gives the derivative of the error, shape (n, p).
+    lower, upper : ndarray, shape (p,)
+        Bounds of the point.
+    steps : int
+        Most steps.
+    least_gain : float
+        Share of the sum of squares.
+
+    Yields
+    ------
+    LeastSquaresPoint
+        Where each step leads; after a step that wins nothing, where it began.
+    """
+    now, damping, small_gains = start, 1e-2, 0
+    for _ in range(steps):
+        jacobian = slopes(now)
+        for _ in range(TRIALS):
+            point = damped_step(jacobian, now.error, now.point, lower, upper, damping)
+            trial = at(point)
+            if trial.cost < now.cost:
+                break
+            damping *= 5.0
+        else:
+            yield now
+            return
+        small = 1 - trial.cost / now.cost < least_gain
+        small_gains = small_gains + 1 if small else 0
+        now, damping = trial, max(damping * 0.2, 1e-9)
+        yield now
+        if small_gains == 2:
+            return
+
+
 def minimize(
     error: Callable[[FloatArray], FloatArray],
     point: FloatArray,
@@ -80,27 +156,19 @@ def minimize(
     cost : float
         Its sum of squares.
     """
-    now = error(point)
-    damping, small_gains = 1e-2, 0
-    for _ in range(STEPS):
+
+    def at(point: FloatArray) -> LeastSquaresPoint:
+        return LeastSquaresPoint(point, error(point))
+
+    def slopes(now: LeastSquaresPoint) -> FloatArray:
         columns = []
-        for k in range(len(point)):
-            moved = point.copy()
-            moved[k] += 1e-6 if point[k] + 1e-6 <= upper[k] else -1e-6
-            columns.append((error(moved) - now) / (moved[k] - point[k]))
-        jacobian = np.column_stack(columns)
-        cost = float(now @ now)
-        for _ in range(8):
-            trial = damped_step(jacobian, now, point, lower, upper, damping)
-            after = error(trial)
-            if after @ after < cost:
-                break
-            damping *= 5.0
-        else:
-            break
-        point, now, damping = trial, after, max(damping * 0.2, 1e-9)
-        small = float(after @ after) > (1 - LEAST_GAIN) * cost
-        small_gains = small_gains + 1 if small else 0
-        if small_gains == 2:
-            break
-    return point, float(now @ now)
+        for k, value in enumerate(now.point):
+            moved = now.point.copy()
+            moved[k] += 1e-6 if value + 1e-6 <= upper[k] else -1e-6
+            columns.append((error(moved) - now.error) / (moved[k] - value))
+        return np.column_stack(columns)
+
+    best = at(point)
+    for step in descend(best, at, slopes, lower, upper):
+        best = step
+    return best.point, best.cost

@@ -25,10 +25,10 @@ class CommonPiece(NamedTuple):
     """Samples that stand in a row in two records."""
 
     samples: int
-    """Of the record with fewer of them there."""
+    """Samples of the shared piece, in the record that has fewer of them there."""
     first: int
     other_first: int
-    """Where they begin in each."""
+    """First sample of the piece in each record."""
     exact: bool
     """Whether they are equal, and not only up to rounding."""
 

@@ -25,8 +25,8 @@ SHORTEST_STEP_S = 1e-7
 THOUSAND = 1000 / 10**0.5
 """A factor that is nearer to a thousand than to a hundred."""
 JUMPS, JUMP = 10, 0.02
-"""So many lone steps, most of them of more than this share of the range, make a
-staircase."""
+"""Fewest lone steps of a staircase, and the share of the range that most of them
+exceed."""
 LEVELS = 5
 """A slow signal that a coarse encoder reads goes through more levels, a step each."""
 IN_BAND = 0.99

@@ -10,14 +10,15 @@ from hystbench.record import FloatArray
 APPROACH = 3
 """Samples of a flat stretch, and of the motion on either side, that tell anything."""
 ALIKE = 1 / 3
-"""Of the faster flank's rate, that the slower one has: a backlash stands still behind
-its turn, where it came to rest, and not in the middle of it."""
+"""Least rate of the slower flank, as a share of the faster one's. A backlash stands
+still behind its turn, where it came to rest, and not in the middle of it."""
 AT_ONCE = 2 / 3
 """A channel stops at once if its rate next to the flat is more than this share of its
 rate farther out. It is half where the channel comes to rest smoothly, and five sixths
 or more where a parabola is cut off."""
 BEYOND = 0.01
-"""Of the range, that the flanks of a flat stretch would have reached beyond it."""
+"""Share of the range by which the flanks of a flat stretch would have gone beyond
+it."""
 CHANCE = 0.01
 """Stretches that a whole record would have by chance, below which one is none: readings
 of few digits are alike now and then."""
@@ -31,12 +32,12 @@ class Flat:
 
     kind: Literal["clipped", "stuck"]
     value: float
-    """Of the first stretch."""
+    """Value of the first stretch."""
     first: int
     """Its first sample, counted from 0."""
     samples: int
     stretches: int
-    """Of all stretches of this kind and, where clipped, of this end."""
+    """Count of all stretches of this kind and, where clipped, of this end."""
 
 
 @dataclass(frozen=True)

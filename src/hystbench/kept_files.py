@@ -48,7 +48,7 @@ class KeptFiles:
         except OSError as error:
             self._give_up(error)
         self._sizes = {file: size for _, file, size in sorted(there)}
-        """By file, the oldest first."""
+        """Size of each file, the oldest first."""
 
     def read(self, file: Path) -> bytes | None:
         """Give what a file holds; None where there is none to be read."""

@@ -10,12 +10,13 @@ AS_GOOD = 4.0
 EXACT = 1e-8
 """A mean square difference, of the variance, below which two periods are the same."""
 ALIKE = 0.1
-"""Of the standard deviation: periods that differ by more, rms, are not the same."""
+"""Share of the standard deviation: periods that differ by more, rms, are not the
+same."""
 RISEN = 0.5
 """Half of the variance: within a period an input differs from itself by more."""
 BY_NOISE = 0.5
-"""Of what differs from one period to the next, the share that has to be new in each.
-The rest is the input itself, grown, or moved by a part of a sample."""
+"""Share of what differs from one period to the next that has to be new in each. The
+rest is the input itself, grown, or moved by a part of a sample."""
 
 
 def find_period(u: FloatArray) -> int | None:

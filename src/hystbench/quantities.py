@@ -70,7 +70,7 @@ class Quantities:
 
 
 NONE_KNOWN = Quantities()
-"""Of a device of which nothing is told."""
+"""Quantities of a device of which nothing is told."""
 
 
 def angle_in(unit: str) -> str:

@@ -1,3 +1,5 @@
+"""``hystbench docs`` fills pages from results, and leaves a page that lacks any."""
+
 import pytest
 
 from tests.conftest import run_hystbench

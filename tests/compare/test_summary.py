@@ -18,6 +18,7 @@ from hystbench.compare.summary import (
     eq19_finding,
     nearness,
     orderings,
+    pairs_in_order,
     rms_error_percent,
     summarise,
 )
@@ -310,3 +311,17 @@ def test_every_claim_is_told_once():
     others = counts["claims_elsewhere"].values()
     told = len(counts["claims_on_held_out"]) + sum(sum(x.values()) for x in others)
     assert told == counts["claims_total"] == len(listed)
+
+
+def test_pairs_in_the_order_of_the_paper_by_hand():
+    published = {(s, m): v for s in "abc" for m, v in (("gpo", 1.0), ("delayed", 2.0))}
+    mse = {
+        ("a", "gpo"): 1.0,
+        ("a", "delayed"): 4.0,
+        ("b", "gpo"): 3.0,
+        ("b", "delayed"): 2.0,
+        # both diverged: they have no order
+        ("c", "gpo"): np.inf,
+        ("c", "delayed"): np.inf,
+    }
+    assert pairs_in_order(mse, published) == (1, 3)

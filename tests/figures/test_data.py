@@ -1,3 +1,5 @@
+"""What figures draw of a long record keeps its periods, ends and extremes."""
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st

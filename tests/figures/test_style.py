@@ -1,3 +1,5 @@
+"""Units, names and colours of figures, and that the reader's own style stays."""
+
 import subprocess
 import sys
 

@@ -1,3 +1,5 @@
+"""Units and channels are read off the names of columns."""
+
 import pytest
 
 from hystbench.inspection.names import choose, is_time, split_unit

@@ -1,3 +1,5 @@
+"""The kind of an input, and which records are proposed for hold-out."""
+
 import numpy as np
 import pytest
 

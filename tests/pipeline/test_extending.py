@@ -69,9 +69,9 @@ def configured(tmp_path_factory) -> Workflow:
     config = small_config()
     for text in CONFIG.findall(PAGE):
         config = merged(config, yaml.safe_load(text))
-    # The page's own solver alone: those that hystbench has are entered elsewhere.
+    # The page's own solvers alone: those that hystbench has are entered elsewhere.
     solvers = config["blind"]["solvers"]
-    config["blind"]["solvers"] = {"silent": solvers["silent"]}
+    config["blind"]["solvers"] = {x: solvers[x] for x in ("silent", "one-gain")}
     config["blind"]["only"] = ["saturation"]
     workflow = Workflow(tmp_path_factory.mktemp("extended"), package)
     # A cylinder that loses 15 % of its force where it pulls.
@@ -134,16 +134,31 @@ def test_they_compute_what_the_page_says(extended):
     assert run["mse"] == pytest.approx(np.mean(np.square(errors)), rel=1e-9)
 
 
-def test_the_solver_enters_the_contest_and_names_nothing(configured):
+def test_the_solvers_enter_the_contest_with_the_names_they_know(configured):
     assert configured.run("results/blind/summary.json")
     folder = configured.folder / "results" / "blind"
     summary = json.loads((folder / "summary.json").read_text())
     assert summary["cases"] == len(plan("small", only=["saturation"])) > 0
     assert summary["lost"] == 0
-    (case,) = rows(folder / "cases.csv")
-    assert (case["truth"], case["verdict"], case["named"]) == (
+    cases = {case["solver"]: case for case in rows(folder / "cases.csv")}
+    silent, one_gain = cases.pop("silent"), cases.pop("one-gain")
+    assert cases == {}
+    assert (silent["truth"], silent["verdict"], silent["named"]) == (
         *("saturation", "no-gap", ""),
     )
+    # A saturation lowers the gain, and of names this solver knows no other.
+    assert (one_gain["named"], one_gain["top1"]) == ("calibration-error", "False")
+    assert one_gain["confidence"] == "0.5"
+
+
+def test_an_edited_solver_answers_again(configured):
+    target = "results/blind/summary.json"
+    configured.run(target)
+    assert configured.would_run(target, "--rerun-triggers", "mtime") == {}
+    file = configured.packages / "extra" / "one_gain.py"
+    file.write_text(file.read_text() + "\n# edited\n")
+    planned = configured.would_run(target, "--rerun-triggers", "mtime")
+    assert "blind_solve" in planned
 
 
 @pytest.fixture(scope="module")
@@ -183,14 +198,14 @@ def test_an_edited_effect_is_searched_again(searched):
 
 
 def test_all_of_the_package_keeps_the_contracts(configured):
-    """Those that hystbench's own filters, waveforms, blocks and effects keep."""
+    """Those that hystbench's own filters, signals, blocks, effects and solvers keep."""
     path = map(str, filter(None, (configured.packages, os.environ.get("PYTHONPATH"))))
     files = ("blocks/test_contract.py", "gap/effects/test_effects.py")
     contracts = ("test_registered.py", *files)
     ran = subprocess.run(
         [
             *(sys.executable, "-m", "pytest", "-v", "-p", "no:cacheprovider"),
-            *("-k", "power or triangle or unequal"),
+            *("-k", "power or triangle or unequal or one-gain"),
             *(f"tests/{name}" for name in contracts),
         ],
         cwd=ROOT,
@@ -202,6 +217,7 @@ def test_all_of_the_package_keeps_the_contracts(configured):
     for contract in (
         "test_a_filter_is_the_lms_of_its_regressor",
         "test_a_waveform_makes_its_example[triangle]",
+        "test_a_solver_writes_a_gap_json_that_keeps_the_schema[one-gain]",
         "test_it_is_causal[unequal-gain]",
         "test_a_variant_builds_a_model_that_runs",
         "test_bounds_come_from_the_records_alone[unequal-gain]",

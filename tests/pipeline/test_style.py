@@ -1,6 +1,4 @@
-"""`snakemake --lint` has nothing to say but for the environment; scheduling."""
-
-import sys
+"""`snakemake --lint` asks for an environment only; the cluster profile fits rules."""
 
 import yaml
 
@@ -16,15 +14,6 @@ def test_snakemake_lint(finished):
     told = [line for line in result.stderr.splitlines() if line.startswith("    * ")]
     titles = {line.removeprefix("    * ").removesuffix(":") for line in told}
     assert titles == ACCEPTED
-
-
-def test_no_job_waits_for_a_limit_on_submissions(workflow):
-    """Snakemake tells how many jobs more may start: with a limit that is the limit."""
-    one = ["--verbose", "--force", "results/signals/sine-100hz.npz"]
-    assert f"'_job_count': {sys.maxsize}" in (told := workflow.snakemake(*one).stderr)
-    assert "'_job_count': 100" not in told
-    asked = workflow.snakemake(*one, "--max-jobs-per-timespan", "50/1s")
-    assert "'_job_count': 50" in asked.stderr
 
 
 def test_the_cluster_profile_names_rules_and_groups_that_exist(workflow):

@@ -124,6 +124,10 @@ def blind_solver_code(wildcards):
     if command[0] == "hystbench":
         called = f"hystbench.commands.{command[1].replace('-', '_')}"
         modules += [called] if called in GRAPH.modules else []
+        if command[1] == "rival":
+            # Rivals are found by name too.
+            known = rivals(command[2])
+            return code_with([known[x] for x in command[2:3] if x in known], *modules)
         if command[1] == "gap":
             # Effects are found by name, so that no import tells of them.
             modules += sorted(GRAPH.find_descendants("hystbench.gap"))

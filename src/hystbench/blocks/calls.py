@@ -41,7 +41,7 @@ class Calls:
     bound: int | None = None
     """Calls that may be made at most."""
     reserve: int = 0
-    """Of these, calls that are kept back, until it is set to zero."""
+    """Calls of the bound that are kept back, until it is set to zero."""
     kept: KeptOutputs | None = None
     """Outputs on disk, of this run and of earlier ones."""
     say: Callable[[str], None] = lambda _: None

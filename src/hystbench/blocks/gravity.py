@@ -6,7 +6,7 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.parameter import choice, number
 
 RADIANS = {"rad": 1.0, "deg": math.pi / 180}
-"""Of a unit of q."""
+"""Radians in a unit of q."""
 
 
 class Gravity(Force, name="gravity", law="gravity"):

@@ -8,8 +8,9 @@ from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 ELEMENTS = 12
-"""So many stand for a density: the force of the first loading is within some tenths of
-a percent of the largest, and within one where nearly all slip at once or soon."""
+"""Elements that stand for a density: the force of the first loading is within some
+tenths of a percent of the largest, and within one where nearly all slip at once or
+soon."""
 
 
 LEAST_EXPONENT = -0.95

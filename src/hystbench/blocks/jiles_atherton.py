@@ -14,7 +14,7 @@ from hystbench.record import FloatArray
 STEPS = 8
 """Steps of the integration over the shorter of ``shape`` and ``pinning``."""
 LARGEST_COUPLING = 2.9
-"""In units of ``shape``: at 3 the slope is infinite."""
+"""Largest coupling, in units of ``shape``: at 3 the slope is infinite."""
 
 
 class JilesAtherton(HystereticBlock, name="jiles-atherton", place="material"):

@@ -33,9 +33,9 @@ class Sampling:
     delay: int = 0
     """Samples by which the output may be late: so many to come are then known."""
     ahead: int = 0
-    """Of a block: samples that are known beyond the one that it is asked for."""
+    """Samples that a block needs to know beyond the one that it is asked for."""
     late: int = 0
-    """Of a block: samples by which what it is asked for is behind the model's input."""
+    """Samples by which what a block is asked for is behind the model's input."""
 
     @property
     def curve_points(self) -> int:
@@ -50,7 +50,7 @@ class Step:
     function: str
     """Name of the function, without the prefix that it has in C."""
     constants: Mapping[str, Any] = field(default_factory=dict)
-    """In the order of the function's arguments."""
+    """Constants, in the order of the function's arguments."""
     states: Mapping[str, int] = field(default_factory=dict)
     """Name and length of each state, an array of numbers; zero at the start."""
     watches: bool = False
@@ -87,7 +87,7 @@ class Lines(NamedTuple):
     """Straight lines between two samples, along which a step's function moves."""
 
     segments: int
-    """Of an interval."""
+    """Segments of an interval."""
     constants: dict[str, Any]
     """What the function takes: corners are weights of samples, the oldest first."""
     states: dict[str, int]

@@ -15,7 +15,8 @@ PART = 0.1
 MOST = 64
 """Steps of one interval, at most."""
 STARTS = ("given", "settled")
-"""At the level that is given, or where it rests under the first inflow."""
+"""Level at the start: the one that is given, or where it rests under the first
+inflow."""
 
 
 class Store(HeldBlock, name="store", place="base"):

@@ -53,7 +53,7 @@ class Case:
     model: Model | None
     """The base model; None where the solver is to identify a linear one."""
     truth: dict[str, Any] = field(repr=False)
-    """As docs/challenge.md tells."""
+    """What is hidden, as docs/challenge.md tells."""
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,8 @@ TURNING_UNITS = {
 }
 
 InputsAndOutputs = list[tuple[FloatArray, FloatArray]]
-"""Of each record; of a linear fit each output and that of the model."""
+"""Input and output of each record; for a linear fit each output and that of the
+model."""
 
 
 @dataclass(frozen=True)
@@ -59,9 +60,9 @@ class Machine:
     output: str
     """A motion, ``force`` or ``level``."""
     size: float
-    """Of the records' unit: newtons, millimetres or, for tanks, volts."""
+    """Factor to the records' unit: newtons, millimetres or, for tanks, volts."""
     gains: tuple[float, float]
-    """Of a controller, the records being its reference; zeros for none."""
+    """Gains of a controller, where the records are its reference; zeros for none."""
     records: tuple[RecordCommand, ...]
     """Those to fit first."""
 

@@ -22,7 +22,7 @@ from hystbench.record import FloatArray, column_name
 from hystbench.samples import read_input
 
 PERIODS = 4
-"""Of each sine; the first two may still show how it began."""
+"""Periods of each sine; the first two may still show how it began."""
 PER_DECADE = 6
 """Frequencies of the table."""
 HOLDS = 0.01

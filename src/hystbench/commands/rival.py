@@ -5,7 +5,8 @@ from typing import Annotated
 
 from hystbench import options
 from hystbench.command_files import writes
-from hystbench.entrants.rivals import RIVALS, read, write
+from hystbench.entrants.rivals import rivals
+from hystbench.entrants.rivals.base import read, write
 from hystbench.errors import refuse_unknown
 from hystbench.options import DatasetFile, OutFolder, command
 
@@ -20,9 +21,11 @@ def rival(
 ) -> None:
     """Let the rival NAME write a gap.json for DATASET.
 
-    naive fits every effect by itself; random draws a name.
+    naive fits every effect by itself; random draws a name. Installed packages may have
+    added others.
     """
-    refuse_unknown(name, RIVALS, f"rival: no {name!r}")
+    known = rivals(name)
+    refuse_unknown(name, known, f"rival: no {name!r}")
     writes(out / "gap.json")
     given = read(dataset, model)
-    write(given, RIVALS[name](given), out)
+    write(given, known[name]().answer(given), out)

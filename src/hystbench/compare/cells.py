@@ -46,7 +46,7 @@ class ComparedCell:
     half: Half
     """Whether the twin was fitted to the published errors of the signal."""
     published: str
-    """As printed."""
+    """The number as printed."""
     ours: float | None
     """None where it was not run or diverged. Of a signal that was drawn many times the
     median over the draws."""

@@ -64,7 +64,8 @@ class Run:
     """Unit of the MSE."""
     largest_eigenvalue: float | None = None
     spread: float | None = None
-    """Of the input correlation matrix R; the spread is over nonzero eigenvalues."""
+    """Largest eigenvalue of the input correlation matrix R, and the spread of its
+    nonzero eigenvalues."""
     convergence_s: float | None = None
     """Time after which the smoothed squared error stays near its end."""
     transient_fraction: float = 0.0

@@ -54,7 +54,8 @@ class Solver:
 
     name: str
     command: tuple[str, ...]
-    """With ``{dataset}``, ``{model}`` and ``{out}`` where the paths are to stand."""
+    """Words of the command, with ``{dataset}``, ``{model}`` and ``{out}`` where the
+    paths are to stand."""
     time_limit_s: float
     """Seconds on the clock for one case."""
 

@@ -100,9 +100,9 @@ class Off:
 
     largest: float
     rms: float
-    """As shares of the simulated output's range."""
+    """Largest and rms difference, as shares of the simulated output's range."""
     time_s: float
-    """Where in the record it is largest."""
+    """Time in the record at which it is largest."""
 
     @property
     def words(self) -> str:

@@ -26,7 +26,7 @@ Making = Callable[[Sampling], Step]
 """Makes a step for what is known of the signal at its place."""
 
 KNOTS = 1001
-"""Of the table that stands for a curve turned about."""
+"""Knots of the table that stands for an inverted curve."""
 FINER_TIMES = 20
 """Times as many points, by which the curve is sampled and the table judged."""
 ROUNDING = 1e-13

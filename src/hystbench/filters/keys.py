@@ -17,7 +17,8 @@ class Key:
     meaning: str
     """What it means, in one sentence."""
     default: Any
-    """Where config.yaml leaves it out; ``dataclasses.MISSING`` where it must not."""
+    """Value where config.yaml leaves it out; ``dataclasses.MISSING`` where it must
+    not."""
     least: float = -math.inf
     most: float = math.inf
     """Closed bounds of a number."""

@@ -56,7 +56,7 @@ class Result:
     diverged_at: int | None
     """First sample whose error was beyond the limit or not a number."""
     state: State
-    """Where to go on with the next chunk."""
+    """State from which the next chunk goes on."""
 
 
 def positive(name: str, value: float) -> None:

@@ -34,14 +34,14 @@ class Column:
     """One column of a file."""
 
     name: str
-    """As dataset.yaml names it. What lies in a group of the file has the group before a
-    slash."""
+    """Name by which dataset.yaml calls it. What lies in a group of the file has the
+    group before a slash."""
     values: FloatArray
     """Shape (n,); NaN where the file has no number."""
     unit: str | None = None
-    """As the file tells it."""
+    """Unit, as the file tells it."""
     sampling_frequency_hz: float | None = None
-    """Of this column alone, as the file tells it."""
+    """Sampling frequency of this column alone, as the file tells it."""
     group: str = ""
     """The group of the file that it lies in; empty at the top."""
 

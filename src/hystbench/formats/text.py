@@ -48,7 +48,7 @@ class Layout:
     names: tuple[str, ...]
     """Names of the columns."""
     units: tuple[str, ...] | None
-    """Of the columns, where a row of units stands below their names."""
+    """Units of the columns, where a row of units stands below their names."""
     first: int
     """Index of the first line of numbers."""
 

@@ -25,7 +25,7 @@ NAME = "twin"
 WRITTEN = ("base.yaml", "dataset/dataset.yaml", "dataset/*.csv")
 """Files of the example, as names or patterns."""
 EXCITED = 1e-3
-"""Of the largest line: a smaller one is the noise of the input's measurement."""
+"""Share of the largest line: a smaller one is the noise of the input's measurement."""
 
 
 def write_example(

@@ -16,51 +16,53 @@ SHAPE = "hysteresis-shape"
 RECORD_WEIGHT = 50.0
 """Independent samples that a record counts as."""
 LEAST_WEIGHT = 6 * RECORD_WEIGHT
-"""Of all records together, where there are few: as of six."""
+"""Independent samples that all records together count as, where there are few: as six
+records."""
 PARAMETER = 4.0
 """Charge for a fitted parameter."""
 
 # What is named: by how much an effect must lower the score.
 
 PAYS = 40.0
-"""The first effect, and whatever is to replace an answer that stands: a re-tuned base,
-another timing, another host, values of single records."""
+"""Gain that the first effect must reach, and whatever is to replace an answer that
+stands: a re-tuned base, another timing, another host, values of single records."""
 FURTHER = 100.0
-"""A further effect. In a chain it must also take more of the gap than may stay unnamed;
-a force that takes less must be beyond doubt. And a host whose known numbers are
-refitted to the records."""
+"""Gain that a further effect must reach, and a host whose known numbers are refitted to
+the records. In a chain a further effect must also take more of the gap than may stay
+unnamed; a force that takes less must be beyond doubt."""
 CERTAIN = 2 * FURTHER
 """A gain that is beyond doubt: of a law of many numbers over one of fewer; on folds, of
 an effect whose size is not known; of a further force that takes little."""
 SCALE = 4.0
 """One name is e times likelier than another: by less they cannot be told apart."""
 BY_CHANCE = 0.05
-"""Level of tests: what is likelier than this by chance counts as chance."""
+"""Significance level of tests: what chance gives more often than this counts as
+chance."""
 UNKNOWN = 1 / 1.96
 """Standard error of an effect's size, as a share of it, from which its interval of 95 %
 holds zero."""
 DOUBT = 0.02
-"""That none of the vocabulary is right though one fits well."""
+"""Probability that no name of the vocabulary is right though one fits well."""
 
 # Shares of a power: of the gap, of what is left, or of what a lesser model leaves.
 
 UNNAMED_SHARE = 0.01
-"""Of structure that no name accounts for: a tenth of the rms. A user may set it.
+"""Largest share of the gap's power that may stay unexplained: a tenth of the rms.
 
-An effect that takes less does not matter, and where no more is left in all nothing
-further is looked for.
+A user may set it. An effect that takes less does not matter, and the search ends where
+no more is left.
 """
 AS_GOOD = UNNAMED_SHARE
-"""By no more two models differ that do the same.
+"""Two models that differ by no more than this are equally good.
 
-It is the default of what may stay unnamed, and stays where a user allows more or less.
-It compares a host with the base that it stands for, a law with one of fewer numbers,
-and the base with a model that leaves more on hold-out records.
+It equals the default of `UNNAMED_SHARE`, and stays where a user sets another. It
+compares a host with the base that it stands for, a law with one of fewer numbers, and
+the base with a model that leaves more on hold-out records.
 """
 WORTH_A_WORD = 0.1
-"""What is told beside the verdict: a third of the rms."""
+"""Share that is told beside the verdict: a third of the rms."""
 LOOSE = 0.25
-"""Too much to leave, or enough to matter: half of the rms.
+"""Share that is too much to leave, or enough to matter: half of the rms.
 
 - A name does not stand where more than this of the gap is left.
 - An effect may not widen the gap by more, as it can where a wrong shape hides it.
@@ -71,7 +73,7 @@ LOOSE = 0.25
 - What differs from period to period is noise only if no more than this of it repeats.
 """
 MOST = 0.5
-"""More than half: the larger part, of a power or of a probability."""
+"""A majority: of a power or of a probability."""
 
 # With nothing named: whether there is a gap.
 

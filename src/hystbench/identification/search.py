@@ -2,11 +2,17 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import cast
 
 import numpy as np
 
-from hystbench.bounded_least_squares import damped_step
+from hystbench.bounded_least_squares import (
+    LEAST_GAIN,
+    STEPS,
+    LeastSquaresPoint,
+    descend,
+)
 from hystbench.envelope import Envelope, thresholds
 from hystbench.identification import shape
 from hystbench.identification.weights import Samples, Start, lead_in, reduced, solve
@@ -27,17 +33,11 @@ class FeasiblePoint:
 
 
 @dataclass(frozen=True)
-class _Fit:
+class _Fit(LeastSquaresPoint):
     """A point with its best weights on the samples of a search."""
 
-    point: FloatArray
     outputs: FloatArray
     weights: FloatArray
-    error: FloatArray
-
-    @property
-    def cost(self) -> float:
-        return float(self.error @ self.error)
 
 
 class Search:
@@ -84,8 +84,8 @@ class Search:
         point: FloatArray,
         start: Start,
         count: int,
-        steps: int = 40,
-        least_gain: float = 1e-4,
+        steps: int = STEPS,
+        least_gain: float = LEAST_GAIN,
     ) -> None:
         """Go down J from a point, on the record thinned to ``count`` samples.
 
@@ -96,27 +96,14 @@ class Search:
         fit = self._fit(samples, point)
         self._offer(fit, samples, start)
         self._note()
-        damping, small_gains = 1e-2, 0
-        for _ in range(steps):
-            if self.ended or small_gains == 2:
-                return
-            jacobian = self._jacobian(samples, fit)
-            for _ in range(8):
-                step = damped_step(
-                    jacobian, fit.error, fit.point, shape.LOWER, shape.UPPER, damping
-                )
-                trial = self._fit(samples, step)
-                if trial.cost < fit.cost:
-                    break
-                damping *= 5.0
-            gain = 1 - trial.cost / fit.cost if fit.cost else 0.0
-            small_gains = small_gains + 1 if gain < least_gain else 0
-            if gain > 0:
-                fit, damping = trial, max(damping * 0.2, 1e-9)
+        at, slopes = partial(self._fit, samples), partial(self._jacobian, samples)
+        ends = shape.LOWER, shape.UPPER
+        descent = descend(fit, at, slopes, *ends, steps, least_gain)
+        while not self.ended and (step := next(descent, None)) is not None:
+            if step is not fit:
+                fit = step
                 self._offer(fit, samples, start)
             self._note()
-            if gain <= 0:
-                return
 
     def envelope(self, point: FloatArray) -> tuple[Envelope, FloatArray]:
         """Build envelopes and thresholds, Step 4."""
@@ -138,7 +125,7 @@ class Search:
         weights, constant = solve(
             outputs, samples.y, samples.with_offset, samples.nonnegative
         )
-        return _Fit(point, outputs, weights, outputs @ weights + constant - samples.y)
+        return _Fit(point, outputs @ weights + constant - samples.y, outputs, weights)
 
     def _jacobian(self, samples: Samples, fit: _Fit) -> FloatArray:
         """Derivative of the error along each coordinate, weights following.

@@ -30,7 +30,7 @@ SAME_RATIO = 2.0
 ONE_RATE = ("sine", "ramps")
 """Kinds of input of which a record has one rate, or few."""
 UNEVEN_SHARE = 0.01
-"""Of a step: a clock that is less even than that is told."""
+"""Share of a step: a clock that is less even than that is told."""
 PLAY_OPERATORS = 10
 """Play operators, the first of threshold zero: the input itself."""
 
@@ -57,9 +57,9 @@ class Check:
 
     dataset: Dataset
     records: tuple[Record, ...]
-    """With the periods that were found."""
+    """Records, with the periods that were found."""
     facts: tuple[Facts, ...]
-    """In their order."""
+    """Facts, in their order."""
     floor: Floor
     left: float
     """Rms of what it leaves on the fit records, in the output's unit."""

@@ -12,13 +12,14 @@ from hystbench.record import FloatArray
 from hystbench.samples import UNIFORM_TOLERANCE
 
 EARLIEST, LATEST = dt.datetime(1990, 1, 1), dt.datetime(2100, 1, 1)
-"""Between these a computer has recorded."""
+"""Dates between which a computer has recorded."""
 LONGEST_DAYS = 1.0
-"""Of a record: a column of some ten thousand that runs further counts no days."""
+"""Longest record in days: a column of some ten thousand that runs further counts no
+days."""
 
 
 LARGEST_TOLERANCE = 0.5
-"""Of a step: what dataset.yaml may tolerate at most."""
+"""Largest tolerance that dataset.yaml may state, as a share of a step."""
 
 
 class _Count(NamedTuple):

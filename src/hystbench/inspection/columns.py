@@ -59,9 +59,9 @@ class RecordColumns:
 
     table: Table
     group: str
-    """Where the columns lie in the file; empty at the top."""
+    """Group of the file in which the columns lie; empty at the top."""
     columns: Mapping[str, Column]
-    """By the name that they have in every record."""
+    """Columns by the name that they have in every record."""
 
     @property
     def where(self) -> str:

@@ -34,7 +34,7 @@ from hystbench.samples import UNIFORM_TOLERANCE
 from hystbench.units import seconds
 
 HELD_OUT_PART = 3
-"""Of a lone record: a third is held out."""
+"""Part of a lone record that is held out: a third."""
 FIRST_COMMENT = (
     "# Proposed by hystbench init. Change what is wrong; the tutorial has all keys.\n"
 )

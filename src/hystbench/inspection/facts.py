@@ -22,10 +22,11 @@ from hystbench.units import seconds
 LATE_SAMPLES = 1.0
 """Samples by which a record is late against the others, worth telling."""
 DELAY_SHARE = 0.5
-"""Of what the loop leaves of a record: the delay is then what is wrong with it."""
+"""Least share of what the loop leaves of a record: the delay is then what is wrong with
+it."""
 ONE_RATE = 0.9
-"""Of a slope's power, the share that goes with its direction: all of a triangle's, .81
-of a sine's. There a loop of another width moves the output as a delay does."""
+"""Share of a slope's power that goes with its direction: all of a triangle's, .81 of a
+sine's. There a loop of another width moves the output as a delay does."""
 SURE = 3.0
 """Standard errors of that difference."""
 NORMAL_MEDIAN = 0.6745
@@ -66,8 +67,8 @@ class Facts:
     """Whether a gap of the input is longer than a straight line can stand for."""
     delay_s: float
     delay_error_s: float
-    """By how much the output is behind a loop that does not depend on the rate, and the
-    standard error of that."""
+    """Delay of the output behind a loop that does not depend on the rate, and its
+    standard error."""
     delay_share: float
     """Share of the power that the loop leaves which goes with the delay."""
 

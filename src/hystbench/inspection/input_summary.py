@@ -21,7 +21,7 @@ AT_CORNERS = 0.9
 POWER_IN_LINES = 0.95
 """Share of the power that the lines of a sine, or of a sum of sines, have."""
 MOST_LINES = 20
-"""Of a sum of sines: more are broadband."""
+"""Most lines of a sum of sines: more are broadband."""
 LEAST_CROSSINGS = 16
 """Crossings of the mean from which the way of the frequency can be told."""
 EVEN = 0.5
@@ -141,8 +141,8 @@ def _sweeps(u: FloatArray) -> bool:
 
 
 BRIDGED_PERIODS = 0.25
-"""Of the fastest period of an input, that a straight line may stand for: over more of
-it the line misses a turn, and hysteresis remembers turns."""
+"""Share of the fastest period of an input that a straight line may stand for: over more
+of it the line misses a turn, and hysteresis remembers turns."""
 
 
 def runs(mask: Mask) -> list[tuple[int, int]]:

@@ -38,7 +38,7 @@ from hystbench.report.table import Cell, Heading, PageTable, number, table_of
 MOST_LOOPS = 8
 """Records whose loops are drawn."""
 LOOP_POINTS = 3000
-"""Of a loop, at most."""
+"""Most points of a loop."""
 LOOPS_IN_ROW = 4
 """Loops in a row."""
 LEAST_STRENGTH = 1e-4

@@ -22,7 +22,7 @@ FLOORS = {
 }
 KINDS = {"wrong": "refused by 'hystbench gap'", "missing": "to add", "note": "note"}
 EVEN_CLOCK = 1e-6
-"""Of a step: a clock that is as even as that."""
+"""Share of a step to which an even clock is even."""
 WIDTH = 100
 """Letters of a line."""
 SCREEN_LINES = 40

@@ -16,7 +16,7 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.record import FloatArray
 
 RANGE_POINTS = 6
-"""Of an effect's range that are looked at; of further numbers of it, two."""
+"""Points of an effect's range that are looked at; two of each further number."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class Shape:
     """The number that it is proportional to; empty where ``values`` alone say how
     strong it is."""
     block: Block | None
-    """With ``scaled`` at its unit; None of a signal beside the chain."""
+    """Block with ``scaled`` at its unit; None of a signal beside the chain."""
     columns: FloatArray
     """What it adds, shape (scored samples, k); k > 1 where each record has its own."""
     unit: float

@@ -24,7 +24,8 @@ from hystbench.model import Model
 from hystbench.record import FloatArray, Hold, Record
 
 REVEALED = 0.1
-"""Of the output's rms: an effect that must be larger to be seen is not revealed."""
+"""Share of the output's rms: an effect that must be larger to be seen is not
+revealed."""
 ROUNDING_SHARE = 1e-9
 """Share of the power of what an effect does that is rounding."""
 ABSORBED_SHARE = 0.99
@@ -43,9 +44,9 @@ class SmallestSeen:
     """The number that says how strong it then is; NaN where none does."""
     number: str = ""
     unit: str = ""
-    """That number's name and unit in the block, U and Y for those of the signals."""
+    """Name and unit of that number in the block, U and Y for those of the signals."""
     form: str = ""
-    """In which it is seen first, with the other numbers of that."""
+    """Form in which it is seen first, with the other numbers of that."""
     rivals: tuple[tuple[str, float], ...] = ()
     """What it can be mistaken for, with the share from which on it can be told;
     infinite where never. The nearest first."""

@@ -29,7 +29,7 @@ BEFORE: dict[str, Any] = {"color": VERMILION, "linestyle": "--", "label": "befor
 AFTER: dict[str, Any] = {"color": BLUE, "label": "after"}
 
 Outputs = tuple[FloatArray, FloatArray]
-"""Of a record, before and after, shape (n,) each."""
+"""Output of a record before and after, shape (n,) each."""
 
 
 class Picture(Figure):

@@ -21,11 +21,11 @@ class EffectFit:
     """Shape (n,). With the effect, over all samples of all records, one after the
     other."""
     mean_square: float
-    """Of the residual, over the same."""
+    """Mean square of the residual, over the same."""
     freedom: int
     """Parameters fitted."""
     values: dict[str, float]
-    """Of the block's parameters; empty where there is no block."""
+    """Values of the block's parameters; empty where there is no block."""
     predict: Callable[[Record], FloatArray]
     """Output for another record. What is new in every record (a phase, a path) is
     unknown there and left out."""

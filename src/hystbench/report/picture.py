@@ -34,9 +34,9 @@ class PagePicture:
     caption: Markup
     width: int
     height: int
-    """In CSS pixels."""
+    """Height in CSS pixels."""
     files: tuple[Link, ...] = ()
-    """Where it can be had as a file."""
+    """Files in which it can be had."""
 
     @property
     def wide(self) -> bool:

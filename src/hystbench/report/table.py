@@ -58,7 +58,7 @@ class PageTable:
     columns: Sequence[Heading]
     bodies: Sequence[Body]
     files: tuple[Link, ...] = ()
-    """Where it can be had as a file."""
+    """Files in which it can be had."""
     filtered: tuple[str, ...] = ()
     """Titles of columns by whose values rows can be chosen."""
     cards: bool = False

@@ -1,6 +1,6 @@
 """What the models do on the twin and on others like it.
 
-``read`` reads model files and ``runs`` runs the filters on them. ``fits``,
-``experiments``, ``parts`` and ``judge`` try the claims on many twins; ``constants``,
-``draws`` and ``edges`` answer one question each.
+``runs`` makes twins, simulates records of them and runs the filters on these. ``fits``
+holds what no step size changes, Algorithm 1 and the RDGPI model. ``parts`` runs all
+models on each twin, in parts that can be made again alone, and joins them.
 """

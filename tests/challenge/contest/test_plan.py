@@ -1,3 +1,5 @@
+"""Seeds of the contest are never used twice, and its sets are stratified as told."""
+
 import itertools
 import re
 from collections import Counter

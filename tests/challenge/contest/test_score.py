@@ -1,3 +1,5 @@
+"""An answer is judged against the truth: right, false alarm, spurious, withdrawn."""
+
 import dataclasses
 
 import pandas as pd

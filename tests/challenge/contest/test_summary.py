@@ -1,3 +1,5 @@
+"""Shares, intervals and calibration of the contest, against counts by hand."""
+
 import csv
 import dataclasses
 import json

@@ -1,3 +1,5 @@
+"""The proposed experiment tells most apart, within the limits, and is a signal."""
+
 import dataclasses
 from itertools import combinations
 

@@ -1,3 +1,5 @@
+"""A black box is told beside the named effects on hold-out records."""
+
 import numpy as np
 import pytest
 

@@ -1,3 +1,5 @@
+"""Intervals on hold-out records hold the truth as often as they say."""
+
 import numpy as np
 import pytest
 from hypothesis import given

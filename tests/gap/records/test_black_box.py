@@ -1,3 +1,5 @@
+"""A black box explains what the input causes, and neither noise nor time."""
+
 import dataclasses
 import subprocess
 import sys

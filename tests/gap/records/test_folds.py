@@ -1,3 +1,5 @@
+"""Folds judge each sample once, and never by a fit that read it or its neighbours."""
+
 from itertools import pairwise
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""The page of a search says every number and word of gap.json, once."""
+
 import base64
 import json
 import re

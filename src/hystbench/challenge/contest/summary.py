@@ -124,7 +124,7 @@ class AskedFigure(NamedTuple):
     high: float | None
     cases: int
     met: bool | None
-    """By the point estimate; None where there are no cases."""
+    """Whether the point estimate meets the target; None where there are no cases."""
 
 
 def summary(cases: pd.DataFrame) -> dict[str, Any]:

@@ -98,10 +98,11 @@ class Reach:
     velocity: float
     force: float
     output: float
-    """Of a tank ``position`` is the level of each, so far as they are alike, ``force``
-    the inflow and ``velocity`` that level over the time in which it settles."""
+    """Largest output. In a tank ``position`` is the level of each, so far as they are
+    alike, ``force`` the inflow and ``velocity`` that level over the time in which it
+    settles."""
     stiffness: float
-    """That of the linear spring; where there is none, force over position."""
+    """Stiffness of the linear spring; where there is none, force over position."""
 
 
 Act = Callable[[FloatArray, PlantRun, Parameters], FloatArray]
@@ -115,23 +116,24 @@ class Form:
     """One way in which an effect may be written."""
 
     act: Act | None = None
-    """In an actuator: takes the signal, the run and the parameters and gives the
-    signal. None where the hysteresis itself is another, and in a machine."""
+    """Function of an effect in an actuator: it takes the signal, the run and the
+    parameters and gives the signal. None where the hysteresis itself is another, and in
+    a machine."""
     ranges: Mapping[str, Range] = field(default_factory=dict)
-    """By parameter."""
+    """Range of each parameter."""
     size: str = ""
     """The parameter that makes the effect larger (``power`` above zero: the difference
     grows roughly with this power) or smaller (below zero); empty where there is
     none."""
     power: float = 1.0
     stage: Stage | None = None
-    """Where this form acts, if not where its kind does."""
+    """Stage at which this form acts, if it is another than its kind's."""
     told: Callable[[Parameters], dict[str, Any]] = dict
     """Gives the parameters under the vocabulary's names."""
     numbers: Inside | None = None
     """Inside a machine: gives the numbers of its part or of each tank."""
     curve: Curve | None = None
-    """Before or behind a machine: gives the signal."""
+    """Function of an effect before or behind a machine: it gives the signal."""
 
 
 @dataclass(frozen=True)
@@ -140,12 +142,12 @@ class EffectKind:
 
     name: str
     place: str
-    """In an actuator ``drive``, ``material``, ``mechanics`` or ``sensor``; in a machine
-    ``before``, ``inside`` or ``behind``."""
+    """Place of the effect: in an actuator ``drive``, ``material``, ``mechanics`` or
+    ``sensor``; in a machine ``before``, ``inside`` or ``behind``."""
     stage: Stage = "mechanics"
-    """Where in the chain of an actuator it acts."""
+    """Stage of an actuator's chain at which it acts."""
     views: tuple[str, ...] = ()
-    """Where in an actuator it shows: views as gap.json has them."""
+    """Views of gap.json in which it shows in an actuator."""
     forms: Mapping[str, Form] = field(default_factory=dict)
     listed: bool = True
     """Whether the vocabulary has a word for it."""

@@ -27,7 +27,7 @@ class MovingPart:
     """The linear part."""
     quadratic: float = 0.0
     cubic: float = 0.0
-    """Of the spring's force, times q^2 and q^3."""
+    """Factors of q^2 and q^3 in the spring's force."""
     sinh_force: float = 0.0
     sinh_reach: float = 1.0
     """Adds ``sinh_force (sinh(q / sinh_reach) - q / sinh_reach)``."""

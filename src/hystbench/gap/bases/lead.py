@@ -28,7 +28,7 @@ from hystbench.sentences import listed, percent
 from hystbench.units import sized
 
 LEFT = 0.01
-"""Of what a state does at most: when no more is left, it is forgotten."""
+"""Share of what a state does at most: when no more is left, it is forgotten."""
 
 HALF = 0.5
 """Share of a record that a lead may be."""

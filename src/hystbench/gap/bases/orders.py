@@ -45,9 +45,9 @@ class Judged:
     """A model with its errors."""
 
     fit: float
-    """On all records."""
+    """Error on all records."""
     folds: float
-    """On folds that did not fit it."""
+    """Error on folds that did not fit it."""
 
 
 def lowers(better: Judged, item: Judged, share: float = NUMBER_PAYS) -> bool:

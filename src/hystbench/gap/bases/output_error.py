@@ -85,12 +85,12 @@ class OutputError:
     scale: float
     """Unit of the ratio's s, in rad/s."""
     start: str = "rest"
-    """As of the block."""
+    """How the records start, as in the block."""
     own_offsets: bool = False
     """Whether each record has a constant of its own, as where a sensor's zero is
     another one every time; a ratio has their mean."""
     held: int = 0
-    """So many of the lowest coefficients of the denominator stay as they are."""
+    """Count of the lowest coefficients of the denominator that stay as they are."""
 
     def block(self, ratio: Ratio) -> TransferFunction:
         """Give the block of a ratio; its constant is left out."""

@@ -21,7 +21,7 @@ from hystbench.gap.records.evidence import Evidence
 from hystbench.record import FloatArray
 
 ORDER = 3
-"""Of the linear model that signs are found with: a mode and a lag."""
+"""Order of the linear model that signs are found with: a mode and a lag."""
 TURNS = 8
 """Times that signs are found anew, at most."""
 FEW = 3
@@ -31,9 +31,10 @@ LAGS = 4
 BOTH = 0.02
 """Share of the samples that must have either sign: else nothing is hidden."""
 BELOW = 0.05
-"""Of the output's size, by which noise may bring a magnitude below zero."""
+"""Share of the output's size by which noise may bring a magnitude below zero."""
 NEAR = 0.1
-"""Of it, the least that is shown: a speed that turns around passes zero."""
+"""Least magnitude that is shown, as a share of it: a speed that turns around passes
+zero."""
 
 
 def with_signs(evidence: Evidence) -> Evidence | None:

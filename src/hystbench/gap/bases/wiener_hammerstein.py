@@ -162,7 +162,7 @@ class HalvesError:
     scale: float
     """Unit of s, in rad/s."""
     start: str = "rest"
-    """As of a transfer function's block."""
+    """How the records start, as in a transfer function's block."""
 
     @cached_property
     def ways(self) -> list[Way]:

@@ -130,7 +130,7 @@ class SlewLimit(Effect):
 
 
 STEP = 0.25
-"""Of a step, that the signal moves in both intervals beside it together at most."""
+"""Largest move in the two intervals beside a step together, as a share of the step."""
 
 
 def _fastest(simulation: Simulation, place: int) -> float:
@@ -179,7 +179,7 @@ class DeadZone(Effect):
 
 
 SOFT = {"sharpness": (SOFTEST, SHARPEST)}
-"""Of a soft limit: a sharper one is the hard one."""
+"""Sharpness of a soft limit: a sharper one is the hard one."""
 ROUND = np.array([5.0, 8.0, 14.0])
 """Sharpness of limits with rounded corners that are tried."""
 

@@ -38,10 +38,10 @@ class Effect(ABC):
     """What usually causes it, and in which kinds of devices; where none are given, its
     rows of ``device_kinds.yaml``."""
     offsets: ClassVar[Mapping[str, tuple[tuple[str, str], ...]]] = {}
-    """By form, where its blocks are plain gains: the name and the unit that the offset
-    of each has as a number of the effect."""
+    """Name and unit of each offset as a number of the effect, by form, where its blocks
+    are plain gains."""
     numbers: ClassVar[tuple[str, ...]] = ()
-    """Of its blocks, the parameters that are numbers of the effect; by default all."""
+    """Parameters of its blocks that are numbers of the effect; by default all."""
     free_forms: ClassVar[tuple[str, ...]] = ()
     """Forms that bend to much of what is there, as a path does: no law."""
     like_noise: ClassVar[bool] = False

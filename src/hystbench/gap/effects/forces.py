@@ -35,8 +35,8 @@ BENDS = 0.1
 """The same, at most, where it falls with the velocity, as no hysteretic force does:
 there is friction that slides on most of its way."""
 VISCOUS = 1.0
-"""Of the fastest velocity: there the tangent is a quarter below a straight line. What
-bends less is as much as viscous."""
+"""Largest scale of velocity, as a share of the fastest velocity: there the tangent is a
+quarter below a straight line. What bends less is as much as viscous."""
 
 
 class Friction(Effect):
@@ -147,8 +147,8 @@ class Drag(InsideEffect):
 
 
 BESIDE = 2.0
-"""Of a spring that is known, as of an arm that was measured lying: a weight that is
-more than the spring is far from any share of it."""
+"""Weight in times of a known spring, as of an arm that was measured lying: a weight
+above the spring is far from any share of it."""
 
 
 class Gravity(InsideEffect):
@@ -288,7 +288,7 @@ nothing within the clearance. A rest of the spring stays, for a fit to take or l
 HERTZ = 1.5
 """Power of the way in, of round bodies."""
 LOSS = 0.3
-"""Of a contact's force that a start adds at the largest speed."""
+"""Share of a contact's force that a start adds at the largest speed."""
 
 
 class Stop(InsideEffect):

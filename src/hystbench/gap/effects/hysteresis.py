@@ -23,7 +23,7 @@ BEND = 0.5
 """Argument of the hyperbolic tangent at the largest input, where the search starts."""
 PLAYS = "prandtl-ishlinskii"
 FORM = "plays"
-"""Of plain plays beside a linear path; another is of generalized ones."""
+"""Form of plain plays beside a linear path; another is of generalized ones."""
 BOUC_WEN = "bouc-wen"
 NEAREST, FARTHEST = 0.03, 10.0
 """Yield distance, in halves of the input's range: nearer it switches as a relay does,
@@ -259,7 +259,7 @@ EXPONENTS = {
     # With an exponent of one the field that acts is a plain lag of the drive.
     "acting-field": (0.5,),
 }
-"""Where the search for each law starts; the refit moves the exponent."""
+"""Exponents at which the search for each law starts; the refit moves them."""
 
 
 def _widened(form: str, exponent: float, given: Values) -> dict[str, Any]:

@@ -15,18 +15,18 @@ class Moved:
     """How a mechanism moves, the largest magnitudes over all records."""
 
     reach: float
-    """Of its position about the middle."""
+    """Largest distance of its position from the middle."""
     speed: float
-    """Of its velocity."""
+    """Largest velocity."""
     force: float
-    """Of the force that drives it, or that its motion takes."""
+    """Largest force that drives it, or that its motion takes."""
     turns: str = ""
     """The unit of its position where that is an angle: rad or deg."""
     anywhere: bool = False
     """Whether where it is does not matter, as of a mass without a spring: a force that
     depends on the place has no meaning then."""
     stiffness: float = 0.0
-    """Of its linear spring, and of a weight; zero without either."""
+    """Stiffness of its linear spring, and of a weight; zero without either."""
     loose: bool = False
     """Whether nobody knows that it has a spring."""
 
@@ -58,7 +58,7 @@ class Law:
     """Share of the linear spring that the force stands for: it goes out of the spring.
     Of one it is all of it, and no spring is left."""
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    """Of its numbers, where beyond them it would be another effect."""
+    """Ranges of its numbers; beyond them it would be another effect."""
 
 
 class Filled(NamedTuple):

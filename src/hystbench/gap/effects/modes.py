@@ -30,7 +30,7 @@ PEAKS = 3
 LIGHT = 0.02
 """Damping ratio of that mode: its peak is as wide as a step of the search."""
 BINS = 8
-"""Of the spectrum in a step from mode to mode, that is in a half-width of a peak."""
+"""Bins of the spectrum in a step from mode to mode, which is a half-width of a peak."""
 NEAR = 0.25
 """Share of a frequency around it in which a mode is told by its peak."""
 

@@ -115,7 +115,7 @@ class SensorNonlinearity(Effect):
 
 
 BELOW = 0.05
-"""Of the largest output: what is further below zero is not noise."""
+"""Share of the largest output: what is further below zero is not noise."""
 
 
 def hides_the_sign(simulation: Simulation) -> bool:
@@ -127,11 +127,9 @@ def hides_the_sign(simulation: Simulation) -> bool:
 
 
 CURVE_CHARGE = 2.0
-"""Of each form: a sensor's curve has both terms, as a rule.
-
-One that is a square alone is more likely the material's asymmetry, and one that is a
-cube alone its saturation: the same curve to the data, and one number less.
-"""
+"""Charge for each form: a sensor's curve has both terms, as a rule. One that is a
+square alone is more likely the material's asymmetry, and one that is a cube alone its
+saturation: the same curve to the data, and one number less."""
 CURVES = {
     "square": ("quadratic",),
     "cube": ("cubic",),
@@ -209,7 +207,8 @@ def path(
 
 MAINS_HZ = (50.0, 60.0)
 HARMONICS = 3
-"""Of the mains that are looked at: the fundamental, the second and the third."""
+"""Harmonics of the mains that are looked at: the fundamental, the second and the
+third."""
 
 
 class MainsPickup(Effect):
@@ -265,4 +264,4 @@ def tone(
 
 
 SHOWN = 0.45
-"""Of the sampling rate, up to which a record shows a tone."""
+"""Share of the sampling rate up to which a record shows a tone."""

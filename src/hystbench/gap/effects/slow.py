@@ -89,7 +89,7 @@ class Creep(Effect):
 
 
 POWERS = {"logarithmic": 0.0, "fractional": 0.3}
-"""Of time, with which creep over decades grows: where the refit starts."""
+"""Powers of time with which creep over decades grows: where the refit starts."""
 SPREAD = 5.0
 """Ratio between neighbouring time constants of three elements."""
 

@@ -43,11 +43,12 @@ class Outflow(StoreEffect):
 
 
 EXPONENTS = {"root": 0.5, "weir": 1.5}
-"""Of a free outlet (Torricelli), and of water that flows over a straight edge."""
+"""Exponents of a free outlet (Torricelli), and of water that flows over a straight
+edge."""
 
 
 SHARES = (0.95, 0.75)
-"""Of the highest level without it: where overflow begins."""
+"""Shares of the highest level without it: where overflow begins."""
 CAUGHT = 0.3
 """Share of what is spilt that the next store catches, where a fit begins."""
 

@@ -51,13 +51,13 @@ class Variant:
     build: Callable[[Values], tuple[Block, ...]]
     """Blocks from ``start`` on, from values of all parameters."""
     positions: tuple[int, ...]
-    """Where the effect's own blocks stand in what ``build`` gives."""
+    """Places of the effect's own blocks in what ``build`` gives."""
     grids: dict[str, FloatArray] = field(default_factory=dict)
     """Values to search, by parameter."""
     unit: dict[str, float] = field(default_factory=dict)
     """Parameters that are solved for, and a small step of each."""
     positive: tuple[str, ...] = ()
-    """Of these, the ones that may not be negative."""
+    """Those of ``unit`` that may not be negative."""
     free: tuple[str, ...] = ()
     """Parameters of the block that a refit may change."""
     beside: Beside | None = None

@@ -98,8 +98,8 @@ def _numeric(model: Model, name: str) -> bool:
 def places_of_base(state: ModelState) -> list[int | None]:
     """Find where the base's blocks stand; None where an effect stands for one."""
     beside = {item.effect for item, _ in state.beside}
-    # An effect without a block lost it to a later one, which then stands for no block
-    # of the base.
+    # A later effect replaced the block of an effect that has none, and stands in place
+    # of no block of the base.
     lost = any(not item.blocks and item.effect not in beside for item in state.added)
     # Of a store an effect has some numbers, and the base the others.
     inserted = [item for item in state.added if not effects()[item.effect].numbers]

@@ -18,18 +18,18 @@ from hystbench.gap.thresholds import SCALE
 from hystbench.record import FloatArray
 
 ROUNDS = 1
-"""Of least squares on a fold: the fit to all records is near."""
+"""Rounds of least squares on a fold: the fit to all records is near."""
 
 RUNS_AWAY = -1e6
 """What a model gains, at worst, that has no bounded output on folds."""
 
 Used = tuple[NDArray[np.bool_], ...]
-"""Of each record's scored samples, those that count."""
+"""Which of each record's scored samples count."""
 
 
 class _Fold(NamedTuple):
     train: Score
-    """Of what fits."""
+    """Score on the samples that are fitted."""
     held: Used
     """What judges."""
     outside: FloatArray

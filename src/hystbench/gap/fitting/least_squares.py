@@ -20,13 +20,13 @@ from hystbench.gap.thresholds import SCALE
 from hystbench.record import FloatArray
 
 EVALUATIONS = 100
-"""Of the residual in one fit, at most, without those of the derivatives."""
+"""Most evaluations of the residual in one fit, without those of the derivatives."""
 QUICK = 15
 """The same where starts are compared."""
 STEP = 1e-5
 """Share of its size by which a number moves for a derivative."""
 NOTHING = 1e-6
-"""By how much one moves that is zero."""
+"""Move of a number that is zero."""
 REACH = 1.0
 """How far the first step may go: numbers change by a factor of e, or by their size."""
 FACTOR = 100.0

@@ -19,7 +19,7 @@ from hystbench.metrics import rms
 from hystbench.record import FloatArray
 
 LEAST = float(np.finfo(float).tiny)
-"""Of a floor, where the output is zero: the score has its logarithm."""
+"""Least floor, where the output is zero: the score has its logarithm."""
 
 
 def make_score(state: ModelState, floor_rms: float, forms: bool = True) -> Score:

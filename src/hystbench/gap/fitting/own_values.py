@@ -30,9 +30,9 @@ from hystbench.record import FloatArray, Record
 
 KINDS = ("delay", "gain", "offset")
 LONGEST = 1 / 20
-"""Of a record, that it may be late or early by, as for a delay that all share."""
+"""Share of a record that it may be late or early by, as for a delay that all share."""
 FINER = 1e-3
-"""Of a sampling interval, to which a delay is found."""
+"""Share of a sampling interval to which a delay is found."""
 NEWTON = 8
 """Steps of Gauss and Newton to it, at most."""
 
@@ -60,9 +60,9 @@ class OwnValues:
     """What some records have of their own."""
 
     kinds: tuple[str, ...] = ()
-    """Of ``delay``, ``gain``, ``offset``: those in which they differ."""
+    """Those of ``delay``, ``gain`` and ``offset`` in which records differ."""
     records: tuple[tuple[str, Own], ...] = ()
-    """By name, those that differ from the others."""
+    """Records that differ from the others, each with its name."""
     share: float = 0.0
     """Share of the gap's power above the noise floor that it takes away."""
 
@@ -235,7 +235,7 @@ def own_values(
 
 
 STILL = 1e-6
-"""Of the score, below which two are the same."""
+"""Share of the score below which two are the same."""
 
 
 def values_of_record(
@@ -298,7 +298,8 @@ def values_of_record(
 COARSE, NEAREST = 401, 40
 """Delays that are tried first, and samples within which every one is."""
 ROUNDING = 1e-12
-"""Of the output's power: what is below comes from the sums of :func:`_squares`."""
+"""Share of the output's power: what is below comes from the sums of
+:func:`_squares`."""
 
 
 def _squares(

@@ -18,7 +18,7 @@ from hystbench.model import Model
 from hystbench.record import FloatArray
 
 OFFSET = "offset"
-"""Of a plain gain."""
+"""Name of the offset of a plain gain."""
 
 
 def base_parameters(base: Model, state: ModelState) -> dict[str, Any]:

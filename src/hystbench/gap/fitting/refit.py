@@ -21,7 +21,7 @@ from hystbench.gap.thresholds import SCALE
 from hystbench.record import FloatArray
 
 ROUNDS = 5
-"""Of least squares in a refit whose tangents are taken anew."""
+"""Rounds of least squares in a refit whose tangents are taken anew."""
 
 MENDED = 4
 """Rounds for each of them at most, with those whose tangents are mended."""

@@ -29,7 +29,7 @@ from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
 from hystbench.record import FloatArray
 
 ROUNDS = 4
-"""Of reweighting: amplitudes change little after."""
+"""Rounds of reweighting: amplitudes change little after."""
 STILL = 1e-3
 """A round that changes the score by less is the last."""
 APART = 1e-12
@@ -123,7 +123,7 @@ class Score:
     floor: float
     """Mean square of what no model explains, in squared output units."""
     used: tuple[NDArray[np.bool_], ...] | None = None
-    """Of each record's scored samples, those that count; by default all."""
+    """Which of each record's scored samples count; by default all."""
 
     @cached_property
     def parts(self) -> tuple[NDArray[np.intp], ...]:

@@ -59,7 +59,7 @@ class Added(NamedTuple):
     smooths: bool = False
     """Whether blocks behind it took a staircase before it came."""
     was_free: tuple[Free, ...] = ()
-    """Of the numbers of other blocks that it changed, those that were free before."""
+    """Those of the numbers it changed in other blocks that were free before."""
 
 
 ROUNDING = 16 * float(np.finfo(float).eps)

@@ -41,26 +41,27 @@ from hystbench.record import Record
 ENOUGH = 4
 """Records of which half is looked at."""
 STRAIGHT, STRAIGHTER = 3e-3, 1e-3
-"""Of an input's largest size, by which straight lines between samples may miss it: at a
-glance, and where all records are looked at."""
+"""Share of an input's largest size by which straight lines between samples may miss it:
+at a glance, and where all records are looked at."""
 LEAST = 150
 """Samples that a record keeps."""
 EACH = 3
-"""Of the scored samples, one of so many is looked at, where enough are left."""
+"""One of so many scored samples is looked at, where enough are left."""
 
 MORE = 4.0
-"""On all records a variant may gain this many times what a glance showed, uncharged."""
+"""Most that a variant may gain on all records, in times of what a glance showed,
+uncharged."""
 
 
 class Seen(NamedTuple):
     """A variant of which a part of the records was looked at."""
 
     attempt: Attempt
-    """On all records."""
+    """The variant beside all records."""
     points: tuple[Point, ...]
-    """Of its grid, those that do best at a glance."""
+    """Points of its grid that do best at a glance."""
     gain: float
-    """By how much it lowers the score if the other records are like those looked at;
+    """How far it lowers the score if the other records are like those looked at;
     without a grid all that it may be, as nothing was looked at."""
 
     @property

@@ -23,16 +23,17 @@ SAMPLES = 2000
 RANK = 1e-9
 """Directions that weigh less than this share are not told apart: they are left out."""
 SHOWN = 1e-6
-"""Of the noise: what a change of a whole number must do to be known at all."""
+"""Share of the noise that a change of a whole number must move the output by to be
+known at all."""
 ROUNDING = 1e-12
-"""Of the output: what moves it by less is lost among its last digits."""
+"""Share of the output: what moves it by less is lost among its last digits."""
 STRETCHES = 20
-"""Of a record, within which residuals may be correlated in any way."""
+"""Stretches of a record, within which residuals may be correlated in any way."""
 FEW = 4
 """Records that are needed to tell how much they differ."""
 
 Errors = dict[str, float | list[float] | None]
-"""Of a signal beside, by parameter of its block."""
+"""Standard errors of a signal beside the chain, by parameter of its block."""
 
 
 def standard_errors(state: ModelState, score: Score) -> FloatArray:

@@ -23,7 +23,8 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.record import FloatArray
 
 HALVINGS = 4
-"""Of a grid's step, where several numbers are searched; of one number a single one."""
+"""Halvings of a grid's step, where several numbers are searched; one for a single
+number."""
 NEWTON = 3
 """Steps of Gauss and Newton from a grid's best value, at most."""
 
@@ -31,7 +32,7 @@ NUDGE = 1e-3
 """Relative change by which they are found."""
 
 LAST_STEP = 3.0
-"""Of a step of the search: what lowers the score by less is the last."""
+"""Least gain of a step of the search: one that lowers the score by less is the last."""
 
 POINTS_EACH = 15
 """Points of a grid for each of which one more is looked at on all records."""
@@ -47,7 +48,7 @@ class Trial:
     attempt: Attempt
     values: dict[str, float]
     score: float
-    """Of the model with the effect, what the model may re-tune re-tuned to first
+    """Score of the model with the effect, what may be re-tuned being re-tuned to first
     order."""
 
     @property

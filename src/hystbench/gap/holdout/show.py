@@ -36,8 +36,8 @@ class Outcome:
     model: Model
     """The base with its effects; the base, where the records took the names back."""
     content: dict[str, Any]
-    """Of gap.json: ``gap``, ``records``, ``ladder``, ``runs_away`` and ``black_box``,
-    then all of it."""
+    """Keys of gap.json: ``gap``, ``records``, ``ladder``, ``runs_away`` and
+    ``black_box``, then all of it."""
     outputs: list[tuple[FloatArray, FloatArray]]
     """Outputs before and after, of each record; NaN where the model runs away on it."""
 

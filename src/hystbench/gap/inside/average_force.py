@@ -22,7 +22,8 @@ from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray
 
 REMAINS = 0.05
-"""Of a spring or a damper, at least, where a force begins that does its work."""
+"""Least share of a spring or a damper that remains where a force begins that does its
+work."""
 
 
 def evened(state: ModelState) -> ModelState:

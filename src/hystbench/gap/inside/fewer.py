@@ -57,7 +57,7 @@ class OnAll:
     whole: ModelState
     """The base, with the records."""
     score: Score
-    """Of all records."""
+    """Score on all records."""
     start: str
     """How linear dynamics start on them."""
 

@@ -65,7 +65,7 @@ class Inside:
     sentence: str
     """What it stands in place of."""
     counts: int = 0
-    """As how many effects more it counts: one if known numbers were fitted."""
+    """How many effects more it counts as: one if known numbers were fitted."""
     host: Kind = "coordinate"
     """What the effects act in."""
 

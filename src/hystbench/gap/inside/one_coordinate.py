@@ -47,7 +47,8 @@ class Host:
     """What forces are put in instead: as good while linear, and not fitted, as a fit
     would come back."""
     charge: float = 0.0
-    """For numbers of a given base that are fitted though nobody set them free."""
+    """Charge for numbers of a given base that are fitted though nobody set them
+    free."""
     kind: Kind = "coordinate"
 
     @property

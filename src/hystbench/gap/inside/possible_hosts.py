@@ -245,7 +245,7 @@ def of_many_modes(start: ModelState) -> bool:
 
 
 SHARES = (0.2, 0.5, 0.8)
-"""Of the mass, that is attached."""
+"""Shares of the mass that is attached."""
 RATIO = 0.05
 """Damping ratio with which they are begun."""
 

@@ -39,7 +39,7 @@ class HostTrial:
     score: Score
     offer: Offer
     share: float
-    """Of the gap, that may stay unnamed."""
+    """Share of the gap that may stay unnamed."""
     identified: bool
     """Whether the base was identified from the records."""
     say: Say

@@ -23,7 +23,7 @@ Groups = Mapping[str, FloatArray]
 """Columns by group, shape (samples, k) each; a group may have none."""
 
 STEPS = 25
-"""Of the fixed-point iteration."""
+"""Steps of the fixed-point iteration."""
 NOTHING = 1e-12
 """Share of the signal's power below which a variance is taken as zero."""
 
@@ -35,7 +35,7 @@ class Grouped:
     noise: float
     """Variance of what no group explains, freedom charged."""
     variances: Mapping[str, float]
-    """Of the amplitudes of each group's columns."""
+    """Variance of the amplitudes of each group's columns."""
     evidence: float
     """Logarithm of the probability density of the signal."""
     amplitudes: Groups

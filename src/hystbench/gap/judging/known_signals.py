@@ -20,15 +20,15 @@ from hystbench.operators import play
 from hystbench.record import FloatArray, Record
 
 SLOW_COSINES = 3
-"""Over a record, by which a strength may change in it."""
+"""Cosines over a record by which a strength may change in it."""
 PATH_COSINES = 5
-"""Over a record, that a path of its own may have."""
+"""Cosines over a record that a path of its own may have."""
 WALK_COSINES = 100
-"""Over a run, of a random walk: all but 0.6 % of its power."""
+"""Cosines of a random walk over a run: all but 0.6 % of its power."""
 WALKS_COSINES = 1000
-"""Of the random walks of all runs, at most: many runs have fewer each."""
+"""Most random walks of all runs together: many runs have fewer each."""
 TIMES = 5
-"""Of low-passes, from the shortest step on, and of slow averages."""
+"""Time constants of low-passes, from the shortest step on, and of slow averages."""
 DELAYS = (1, 2, 4, 8, 16)
 """Shortest sampling intervals."""
 REACH = 300.0
@@ -36,7 +36,7 @@ REACH = 300.0
 SLOWEST = 0.01
 """Shortest slow average, in longest records."""
 THRESHOLDS = (0.1, 0.3, 0.5, 0.7)
-"""Of plays, as shares of the input's largest size."""
+"""Thresholds of plays, as shares of the input's largest size."""
 
 PATH = "drift"
 """The effect that gives every record a slow path of its own."""
@@ -45,7 +45,7 @@ SLOW_POWER = "slow power"
 """The group of slow averages of the squared input: what heat does."""
 
 Columns = list[FloatArray]
-"""Of one record, shape (n,) each."""
+"""Columns of one record, shape (n,) each."""
 
 
 def generic_groups(base: ModelState, state: ModelState) -> dict[str, FloatArray]:

@@ -30,11 +30,11 @@ class Left:
 
     before: float
     after: float
-    """Above the floor and beyond what a wrong shape of the hysteresis could leave, of
-    the base and of the model with its effects, in floors."""
+    """Power above the floor and beyond what a wrong shape of the hysteresis could
+    leave, of the base and of the model with its effects, in floors."""
     all_before: float
     all_after: float
-    """Above the floor, of the whole residual, in floors."""
+    """Power above the floor of the whole residual, in floors."""
     output: float = 0.0
     """Mean square of the measured output about its mean, in floors."""
     lone: float = 0.0

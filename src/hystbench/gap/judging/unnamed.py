@@ -40,8 +40,8 @@ SURROGATES = round(1 / BY_CHANCE) - 1
 """What follows nothing explains more than all of them by chance alone."""
 
 STRETCHES = 10
-"""Of a record, whose means tell how much that of the whole may differ by chance: as few
-as are needed to know a variance, so that each is as long as it may be."""
+"""Stretches of a record. Their means tell how much the mean of the whole may differ by
+chance. They are as few as a variance needs, so that each is as long as it may be."""
 
 SORTS = {
     "strength": "its strength changes with time or between records, perhaps with level",
@@ -61,7 +61,7 @@ SORT_OF = {
     "statics": "curve",
     "memory": "curve",
 }
-"""Of what sort a residual is that a group of columns explains best."""
+"""Sort of a residual that a group of columns explains best."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Unnamed:
     structured: float
     """What follows known signals and the named effects cannot own."""
     allowed: float = UNNAMED_SHARE
-    """Of it, what may stay."""
+    """Share of it that may stay."""
     changing: float | None = None
     """What goes if the effects' strength and numbers may differ between the halves of
     each recording, a record or all windows cut from one; None where no effect acts
@@ -80,7 +80,7 @@ class Unnamed:
     unrelated: float = 0.0
     """What follows no known signal."""
     gains: Mapping[str, float] = field(default_factory=dict)
-    """By how much each group of known signals, alone, raises the evidence, in natural
+    """How far each group of known signals, alone, raises the evidence, in natural
     logarithms; empty where so little stays that no sort is said."""
     factors: tuple[float, ...] = ()
     """The effects' strength in each record, as a multiple of what it is in all of them;

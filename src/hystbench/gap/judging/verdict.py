@@ -31,7 +31,7 @@ SURE = 100.0
 
 
 OWNED = Unnamed(0.0)
-"""Where nothing is left that names cannot own."""
+"""What stays where nothing is left that names cannot own."""
 GIVE = "give period_samples or noise_rms"
 """What to write in dataset.yaml where nothing tells the noise."""
 

@@ -36,27 +36,28 @@ from hystbench.record import FloatArray, Mask
 from hystbench.sentences import percent, shortly
 
 KNOTS = 9
-"""Of a curve over an axis."""
+"""Knots of a curve over an axis."""
 ONE_SIDED_SHARE = 0.8
 """Share of what is explained on one side, or branch, for the other to be left out."""
 THRESHOLDS = np.array([0.02, 0.05, 0.09, 0.13, 0.18, 0.24, 0.3, 0.37, 0.45, 0.54, 0.7])
-"""Of play operators, as shares of the input's largest magnitude."""
+"""Thresholds of play operators, as shares of the input's largest magnitude."""
 RATE_EXPONENTS = (0.25, 0.5, 1.0)
-"""Of the rate."""
+"""Exponents of the rate."""
 TIME_CONSTANTS = 4
 """Time constants, from a fifth of the slowest period to twice the longest record."""
 DELAY_STARTS = 61
 """Delays that are tried, of both signs, before the best is refined."""
 ROUGH_STRIDE = 4
-"""Of the samples of a view, one of so many chooses a start."""
+"""One of so many samples of a view chooses a start."""
 NEWTON_STEPS = 8
 """Steps of Gauss and Newton from there, at most."""
 TOLERANCE = 1e-4
-"""Of a step between two starts, to which a delay is found."""
+"""Share of a step between two starts to which a delay is found."""
 LONGEST_PERIODS = 1.5
-"""Of the fastest input: further a shift is not told from those by whole periods."""
+"""Longest shift in periods of the fastest input: a longer one is not told from a shift
+by whole periods."""
 QUIET = 1.5
-"""Of the noise's power, that a record's residual has where the gap is not."""
+"""Most power of a record's residual where the gap is not, in times of the noise's."""
 RECORDS_TOLD = 3
 """Records that are told by name; of more, how many they are."""
 

@@ -32,12 +32,12 @@ DRAWN = (
     (EITHER, "other lines", "odd or even"),
 )
 EXCITED_POWER = 1e-6
-"""Of its strongest line's power, that a line of the input holds."""
+"""Least power of an excited line of the input, as a share of its strongest line's."""
 ABOVE_NOISE = 20.0
 """Times what noise on the input gives a line: of a thousand such lines of noise none is
 so high."""
 LINES_DRAWN = 100
-"""Of a kind in the picture."""
+"""Lines of a kind in the picture."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class RecordLines:
     period (sums of squares over the samples of the periods that were used), the number
     of lines, and how many numbers the difference has."""
     samples: int
-    """That were used."""
+    """Samples that were used."""
 
     def above(self, noise: float) -> FloatArray:
         """Give the energy above the noise of each kind, what does not repeat last."""

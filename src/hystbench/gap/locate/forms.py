@@ -23,17 +23,18 @@ FACTS = 300
 """The residual counts as so many independent facts, however finely sampled: an error of
 a model is not white (docs/gap-method.md, "The score")."""
 HELD_SHARE = 0.8
-"""Of what a view explains, that its range holds."""
+"""Share of what a view explains that its range holds."""
 RANGE_BINS = 50
-"""Of as many samples each, in which the narrowest range is looked for."""
+"""Bins of as many samples each, in which the narrowest range is looked for."""
 SMOOTHED_BINS = 17
 """Bins over which the spectrum of what is left is smoothed."""
 LEAST_SINGULAR = 1e-5
-"""Of the largest singular value of columns of one length: below it there is none."""
+"""Least singular value of columns of one length, as a share of the largest: a smaller
+one counts as zero."""
 SIGNIFICANT = 0.01
-"""Of a p-value, for a part of a view to be told as there."""
+"""Largest p-value at which a part of a view is told as there."""
 LEAST_SHARE = 0.01
-"""Of the gap's power, for a part of a view to be told at all."""
+"""Least share of the gap's power at which a part of a view is told at all."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ class View:
     """Whether it shows what a named effect adds."""
     pictures: tuple[ViewPicture, ...] = ()
     kinds: tuple[str, ...] = ()
-    """Of the view by level: how modes move with it."""
+    """How modes move with the level, in the view by level."""
 
     def to_mapping(self) -> dict[str, Any]:
         """Give what gap.json holds under ``where``."""
@@ -92,7 +93,7 @@ class FittedForm:
     saved: float
     """Description length saved, in nats."""
     share: float
-    """Of the gap's power, what noise buys taken off."""
+    """Share of the gap's power, what noise buys taken off."""
     weights: FloatArray
     """Shape (columns,). Of the last record, where each has its own."""
     added: tuple[FloatArray, ...] = ()

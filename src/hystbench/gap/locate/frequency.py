@@ -28,7 +28,7 @@ from hystbench.record import ComplexArray, FloatArray, Mask
 from hystbench.sentences import percent, shortly
 
 BANDS = 12
-"""With a gain and a phase of their own."""
+"""Bands that have a gain and a phase of their own."""
 EDGES = 401
 """Edges of the common axis, evenly spaced in the logarithm of frequency."""
 
@@ -156,9 +156,9 @@ def _response(spectra: BinSpectra) -> ViewPicture:
 U, R, S = range(3)
 """Input, residual and simulated output, as rows and columns of a spectral matrix."""
 SEGMENTS = 4
-"""Of a record without as many periods, that overlap by half."""
+"""Segments of a record without as many periods; they overlap by half."""
 EXCITED_POWER = 1e-5
-"""Of the strongest bin's input power, that an excited bin holds."""
+"""Least input power of an excited bin, as a share of the strongest bin's."""
 
 
 @dataclass(frozen=True)

@@ -189,19 +189,19 @@ def _with_error(value: float, error: float) -> str:
 
 
 APART = 1.2
-"""Of two input levels, rms over rms, at least."""
+"""Least ratio of two input levels, rms over rms."""
 LEAST_LEVELS = 3
 """Levels that show how something moves."""
 BLURRED_ERROR = 0.5
 """Relative error of damping or gain above which there is no peak to speak of."""
 MODES_SHOWN = 2
-"""That are shown."""
+"""Modes that are shown."""
 NUMBERS = 8
-"""Of a mode at a level: its pole, and three complex numbers of its band."""
+"""Numbers of a mode at a level: its pole, and three complex numbers of its band."""
 INTEGRALS = {"position": 0, "velocity": 1, "acceleration": 2}
-"""That lead from an output to a position."""
+"""Integrals that lead from an output to a position."""
 ROLES = (("first", "first by width"), ("second", "second by width"))
-"""Of the lines of the first and the second mode."""
+"""Roles of the lines of the first and the second mode."""
 
 
 def take_levels(samples: ViewSamples) -> tuple[Moving, ...]:

@@ -40,7 +40,7 @@ CLASSES: dict[str, tuple[str, tuple[str, ...]]] = {
     ),
     "none": ("a linear mode, as far as these levels show", ()),
 }
-"""Of each class of what is missing its words, and the effects that move a mode so."""
+"""Words of each class of what is missing, and the effects that move a mode so."""
 IN_A_CHAIN = (
     *("stiffness-hardening", "backlash"),
     *CLASSES["a static curve before or behind"][1],

@@ -25,7 +25,7 @@ from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import ComplexArray, FloatArray, Mask
 
 EXCITED_POWER = 1e-3
-"""Of the strongest line's input power, that an excited line holds."""
+"""Least input power of an excited line, as a share of the strongest line's."""
 MOST_SAMPLES = 2**15
 """Samples of a record without periods that are looked at, from its end on."""
 
@@ -75,7 +75,7 @@ def lines_of(compared: Compared) -> LevelLines:
 
 
 DEGREE = 2
-"""Of the local polynomials, in the distance from the middle of the band."""
+"""Degree of the local polynomials, in the distance from the middle of the band."""
 HALF_BAND = 6.0
 """Half the width of a band, in damping ratios: nine tenths of a mode's energy."""
 NARROWEST, WIDEST = 0.08, 0.5
@@ -83,9 +83,10 @@ NARROWEST, WIDEST = 0.08, 0.5
 LEAST_LINES = 16
 """Fewest excited lines of a band: twice the numbers that are fitted."""
 DAMPINGS, FREQUENCIES = 12, 25
-"""Of the grid in which a mode is searched."""
+"""Values of damping and of frequency on the grid in which a mode is searched."""
 EDGE_TOLERANCE = 1e-3
-"""Of a range: a fit that comes so near to its end has none, relative to its value."""
+"""Distance from an end of a range, relative to the fitted value: a fit that comes so
+near to the end has none."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ class Mode:
     """A mode at one level of the input."""
 
     frequency: float
-    """In Hz."""
+    """Frequency in Hz."""
     damping: float
     """Damping ratio of the fitted pole."""
     power_damping: float
@@ -281,13 +282,13 @@ def _square(values: FloatArray) -> float:
 
 
 MOST_PEAKS = 6
-"""Of the output's spectrum, that are tried."""
+"""Most peaks of the output's spectrum that are tried."""
 SMOOTHED_WIDTH = 0.03
-"""Of a frequency, over which lines are averaged before peaks are sought."""
+"""Share of a frequency over which lines are averaged before peaks are sought."""
 DAMPING = 0.01
 """Damping ratio from which a peak is fitted: in a narrow band, away from others."""
 LEAST_SHARE = 0.1
-"""Of the output's power, that a mode worth a picture holds."""
+"""Least share of the output's power that a mode worth a picture holds."""
 
 
 def find_modes(level: Sequence[LevelLines], integrals: int) -> tuple[Mode, ...]:

@@ -16,7 +16,7 @@ from hystbench.record import FloatArray
 from hystbench.sentences import percent
 
 MOST_POINTS = 200
-"""Of a line, at most."""
+"""Most points of a line."""
 
 Number = float | None
 """None where there is nothing to show."""
@@ -129,7 +129,7 @@ def mean_in(edges: FloatArray, at: FloatArray, values: FloatArray) -> FloatArray
 
 
 INPUT_CELLS = 40
-"""Of the picture over the input."""
+"""Cells of the picture over the input."""
 MAP_COLUMNS = 18
 """Cells of the map along the input, of one width."""
 MAP_ROWS = 6

@@ -16,10 +16,10 @@ from hystbench.operators import play
 from hystbench.record import FloatArray
 
 MOST_SAMPLES = 14_000
-"""More samples than this tell a map over an axis nothing more."""
+"""Most samples of a map over an axis: more tell nothing more."""
 PRIMES = (1, 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61)
 TURN_SHARE = 0.01
-"""Of the input's range, that it moves before a turn counts: noise is no turn."""
+"""Share of the input's range that it moves before a turn counts: noise is no turn."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,8 @@ class Contribution:
 
     effect: str
     view: ViewKind | None
-    """Where it shows, what an engineer looks at first; None where that is not known."""
+    """View in which it shows, what an engineer looks at first; None where that is not
+    known."""
     added: tuple[FloatArray, ...]
     """Shape (n,). In the unit of the output, a record each."""
     freedom: float = 1.0

@@ -24,7 +24,7 @@ square of sum w^2."""
 MEDIAN_EFFICIENCY = float(np.log(2) ** 2)
 """Variance of the mean over that of the median scaled to it, of exponential values."""
 LINE_POWER = 1e-5
-"""Of the strongest bin's power, that a line of the input holds."""
+"""Least power of a line of the input, as a share of the strongest bin's."""
 STANDS_OUT = 10.0
 """Times the level around it, that a line holds."""
 

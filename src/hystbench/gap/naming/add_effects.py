@@ -182,7 +182,7 @@ class SoFar:
     gap: float
     """Mean square of the base's gap above the floor."""
     share: float = UNNAMED_SHARE
-    """Of it, that may stay unnamed."""
+    """Share of it that may stay unnamed."""
     rounds: tuple[Round, ...] = ()
     deferred: bool = False
     """Whether a shape that takes more of the gap was put off."""

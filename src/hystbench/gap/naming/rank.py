@@ -48,7 +48,7 @@ FINALISTS = 6
 BEHIND = 0.75
 """Share of the best's gain that one of them may lack: a refit makes up for less."""
 EXACT = 3
-"""Of the finalists, those that are simulated exactly before one is taken."""
+"""Finalists that are simulated exactly before one is taken."""
 FITTED_WITH_IT = "the shape of a hysteresis whose weights are free is fitted with it"
 AT_AN_END = "fits best at the end of what it can be"
 ALIKE_WITHOUT = "the same curves fit alike without"

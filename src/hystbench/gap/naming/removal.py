@@ -94,11 +94,9 @@ def is_shape_that_matters(effect: str, gain: float, share: float) -> bool:
 def unknown(state: ModelState, floor_rms: float) -> Without | None:
     """Find a further effect whose size the records do not know.
 
-    Where its standard error is more than half of it, the records do not agree on the
-    effect: it takes away what another one leaves in some of them. If few records show
-    it but others foretell it beyond doubt, it stays. So do the first effect, those
-    that are new in every record, and a hysteresis, which is judged as what others
-    reshape.
+    An effect whose size is uncertain by more than half of it is dropped, unless it
+    predicts records that did not fit it. The first effect always stays. So do effects
+    that are new in every record, and hysteresis, which is judged as a shape.
     """
     finer = on_more_samples(state)
     for number in reversed(range(1, len(state.added))):

@@ -25,7 +25,7 @@ class TriedVariant(NamedTuple):
     place: str
     form: str
     position: int | None
-    """Of its first block in the chain; None for a signal beside it."""
+    """Position of its first block in the chain; None for a signal beside it."""
     score: float
 
 
@@ -37,12 +37,12 @@ class Candidate:
     place: str
     form: str = ""
     score: float = np.inf
-    """Of the model with it; raised by what folds take off its gain."""
+    """Score of the model with it; raised by what folds take off its gain."""
     gain: float = 0.0
-    """By how much it lowers the score: of a finalist that pays the less of what all
+    """How far it lowers the score. For a finalist that pays it is the less of what all
     records tell and what folds do."""
     state: ModelState | None = None
-    """With the effect, jointly refitted; finalists have it."""
+    """Model with the effect, jointly refitted; finalists have it."""
     declined: str = ""
     """Why it could not be judged, if so."""
     refused: bool = False
@@ -82,13 +82,13 @@ class Round:
 
     before: ModelState
     score: float
-    """Of the model before."""
+    """Score of the model before."""
     ranking: tuple[Candidate, ...]
     """Best first."""
     taken: bool
     """Whether the first of the ranking was added."""
     looks: tuple[SecondLook, ...] = ()
-    """At the effects that were there when it was, in their order."""
+    """Second looks at the effects that were there when it was added, in their order."""
 
 
 def near(first: Candidate, ranking: Sequence[Candidate]) -> tuple[str, ...]:

@@ -146,7 +146,8 @@ def beside_offsets(state: ModelState, start: ModelState, score: Score) -> ModelS
 
 
 ROUNDS = 3
-"""Of naming, after each of which what records have of their own is known better."""
+"""Rounds of naming; after each of them what records have of their own is known
+better."""
 
 
 def _likely(

@@ -22,7 +22,8 @@ POWER_BEYOND = 1e-4
 """Share of the input's power that may lie beyond what the coarse samples tell: a
 hundredth of its rms."""
 TOLD_BAND = 0.25
-"""Of the sampling rate, up to where the curve through samples meets a sine well."""
+"""Share of the sampling rate up to which the curve through samples meets a sine
+well."""
 ENOUGH = 2 * SAMPLES
 """Samples that a record keeps, twice as many as are scored: it is simulated quickly."""
 

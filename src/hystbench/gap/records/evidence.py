@@ -32,7 +32,7 @@ class Evidence:
     input_hold: Hold = "band-limited"
     """How the input moves between samples."""
     noise_rms: float | None = None
-    """As declared, in the output's unit."""
+    """RMS noise as declared, in the output's unit."""
     identification: str | None = None
     """Name of the fit record that a hysteretic base is identified from; by default the
     slowest."""

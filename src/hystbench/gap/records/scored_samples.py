@@ -30,13 +30,13 @@ class ScoredSamples:
     """Positions of the scored samples in each record."""
 
     positions: tuple[NDArray[np.intp], ...]
-    """By record, increasing."""
+    """Positions of the scored samples in each record, increasing."""
     of_start: tuple[FloatArray, ...] = ()
     """Shape (samples, 0 or 1) each. What an unknown velocity at the first sample of
     each record does there; it is taken off every signal. By default no record has
     one."""
     apart: tuple[int, ...] = ()
-    """Of signals that are given at every so many samples alone, by record: they are
+    """Samples from one to the next at which signals are given, by record; they are
     straight lines in between. By default they are given at all samples."""
 
     @classmethod

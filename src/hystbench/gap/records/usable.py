@@ -18,11 +18,12 @@ CLIPPED_SHARE = 0.01
 APPROACH = 5
 """Samples of motion before the input stops, or after it jumps."""
 JUMP_RATIO = 10.0
-"""Of the median step: a larger one is a jump."""
+"""Ratio to the median step: a larger step is a jump."""
 STRETCH_PARTS = 12
-"""That a stretch is cut into; their means are free of noise and of fast ringing."""
+"""Parts that a stretch is cut into; their means are free of noise and of fast
+ringing."""
 MOVED_SHARE = 0.1
-"""Of the output's range, that it goes meanwhile."""
+"""Share of the output's range that it goes meanwhile."""
 IF_REAL = (
     "; if it is real, say 'stands_still: [{}]' of this record in dataset.yaml; if the "
     "recorder did it, leave this record out"

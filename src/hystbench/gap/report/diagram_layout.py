@@ -24,17 +24,17 @@ NAME_LINE, NUMBER_LINE = 0.15, 0.13
 NAME_LETTERS, NUMBER_LETTERS = 18, 24
 
 PAD = 0.07
-"""Between a box and what stands in it."""
+"""Distance between a box and what stands in it."""
 RADIUS = 0.07
-"""Of the circle where signals are summed."""
+"""Radius of the circle where signals are summed."""
 LEAD = 0.2
 """Length of a line with an arrow."""
 STUB = 0.1
 """Length of a line without one."""
 SPACE = 0.12
-"""Between boxes above one another."""
+"""Distance between boxes above one another."""
 ROWS = 0.22
-"""Between rows, twice: a line runs in the middle."""
+"""Half the distance between rows: a line runs in the middle."""
 MARGIN = 0.06
 
 

@@ -39,7 +39,8 @@ class Part:
     numbers: tuple[str, ...] = ()
     """The first numbers of an effect, with units."""
     whose: Whose = "simulator"
-    """Of the simulator as it was given, added by the search, or put in by the user."""
+    """Whose part it is: the simulator's as it was given, added by the search, or put in
+    by the user."""
 
 
 @dataclass(frozen=True)

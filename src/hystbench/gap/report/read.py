@@ -43,12 +43,12 @@ class Content:
     """All that a folder holds."""
 
     gap: dict[str, Any]
-    """Of gap.json, checked."""
+    """Content of gap.json, checked."""
     hold_out: tuple[HoldOut, ...]
     curves: Mapping[str, Any]
-    """Of curves.json."""
+    """Content of curves.json."""
     model: Model
-    """Of model.yaml."""
+    """The model of model.yaml."""
 
 
 def read_content(folder: Path) -> Content:

@@ -11,14 +11,17 @@ from hystbench.errors import InputError
 from hystbench.record import Record
 
 REST = 6
-"""Of the longest record, that the input rests after it has gone there and back."""
+"""Rest of the input after it has gone there and back, in lengths of the longest
+record."""
 REMEMBERED_SHARE = 0.01
-"""Of the output's range, by which outputs must differ to remember the way; and of that
-difference, by which a linear function may miss superposition, as solvers do."""
+"""Share of the output's range by which outputs must differ to remember the way; and of
+that difference, by which a linear function may miss superposition, as solvers do."""
 STAYING_SHARE = 0.5
-"""Of that difference, in the first half of the rest, that must be left in the other."""
+"""Share of that difference, in the first half of the rest, that must be left in the
+other."""
 WEIGHT = 0.75
-"""Of one way in the mean of two; of both halves an odd hysteresis would answer zero."""
+"""Weight of one way in the mean of two; with equal weights an odd hysteresis would
+answer zero."""
 
 
 def may_have_hysteresis(block: Block, records: Sequence[Record]) -> bool:

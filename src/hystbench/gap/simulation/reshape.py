@@ -32,16 +32,16 @@ from hystbench.operators import play
 from hystbench.record import FloatArray
 
 POWERS, OPERATORS, OPERATOR_POWERS = 5, 10, 3
-"""Of a signal; play operators of it; and of each of these."""
+"""Powers of a signal; play operators of it; powers of each of these."""
 MIXED = 6
 """Play operators, the input among them, of which products are taken."""
 FORGETTING_WAYS = (0.05, 0.15, 0.4, 1.0, 3.0)
-"""In which loops forget, as shares of the largest input."""
+"""Ways in which loops forget, as shares of the largest input."""
 SLOPES, HEIGHTS, LEVELS = (1, 5), (0, 4), (0, 3, 4, 7)
-"""Of the envelope functions' numbers a0 to a7 (Eqs. 5 and 6): per unit of input, how
-high they are, and what is in the unit of their output."""
+"""Which of the envelope functions' numbers a0 to a7 (Eqs. 5 and 6) are per unit of
+input, which are heights, and which are in the unit of their output."""
 LEAST_NUMBER = 0.1
-"""Of its unit, that a number counts as at least."""
+"""Least size that a number counts as, in its unit."""
 CHANGE_SHARE = 1e-3
 """Size of a change beside the signal that it changes."""
 WEAKEST = 1e-3

@@ -135,6 +135,7 @@ def test_the_jacobian_gives_the_slope_of_the_best_cost(point):
             beside = point.copy()
             beside[k] += step
             sides.append((search._fit(samples, beside).cost - fit.cost) / step)
+        sides.append(sum(sides) / 2)  # where the cost is bent, the slope is their mean
         near = pytest.approx(slope[k], rel=0.05, abs=1e-4 * fit.cost)
         assert any(side == near for side in sides), sides
 

@@ -4,7 +4,7 @@ import pytest
 
 from tests.browser.seen import SIZES, all_faults, look
 from tests.conftest import table as rows
-from tests.report.made import make_measured, make_page
+from tests.report.reproduction.made import make_measured, make_page
 
 
 def test_nothing_is_cut_off_at_any_width_in_light_or_dark(browser, results):

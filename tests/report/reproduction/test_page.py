@@ -12,7 +12,7 @@ from hystbench.errors import InputError
 from hystbench.report.markup import first_sentence, inline, paragraphs
 from hystbench.report.table import Body, Cell, Heading, PageTable, number
 from tests.conftest import table as rows
-from tests.report.made import (
+from tests.report.reproduction.made import (
     SIGNALS,
     make_measured,
     make_page,

@@ -10,11 +10,9 @@ from hystbench.commands.jobs.random_sum import random_sum
 from hystbench.commands.jobs.step_sweep import step_sweep
 from hystbench.compare.beside import Edge, Ranking, read_draws
 from hystbench.compare.rows import read_items
-from hystbench.compare.summary import pairs_in_order
 from hystbench.twins.runs import draw_signals, measure_twin, read_twins
 from tests.conftest import table
-
-from .conftest import SIGNALS, call
+from tests.twins.conftest import SIGNALS, call
 
 
 def test_draws_edges_and_constants_are_what_the_comparison_reads(
@@ -79,17 +77,3 @@ def test_draws_edges_and_constants_are_what_the_comparison_reads(
     assert all(0 <= row.gpo_first <= len(SIGNALS) for row in ranked)
     pairs = (usual[0].pairs_calibrated, usual[0].pairs_held_out)
     assert sum(int(each.partition(" of ")[2]) for each in pairs) == 6 * len(SIGNALS)
-
-
-def test_pairs_in_the_order_of_the_paper_by_hand():
-    published = {(s, m): v for s in "abc" for m, v in (("gpo", 1.0), ("delayed", 2.0))}
-    mse = {
-        ("a", "gpo"): 1.0,
-        ("a", "delayed"): 4.0,
-        ("b", "gpo"): 3.0,
-        ("b", "delayed"): 2.0,
-        # both diverged: they have no order
-        ("c", "gpo"): np.inf,
-        ("c", "delayed"): np.inf,
-    }
-    assert pairs_in_order(mse, published) == (1, 3)

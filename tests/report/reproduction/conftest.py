@@ -3,7 +3,7 @@ import shutil
 import pytest
 
 from hystbench.written import ENTRIES
-from tests.report.made import make_page, make_results
+from tests.report.reproduction.made import make_page, make_results
 
 
 @pytest.fixture(scope="session")

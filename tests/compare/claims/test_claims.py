@@ -23,9 +23,7 @@ from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import write_fields
 from hystbench.order_errors import OrderError
 from hystbench.published import FILTERS, Printed
-from tests.conftest import table
-
-from .made import (
+from tests.compare.made import (
     PAIRS,
     TEXT,
     chirp_record,
@@ -35,6 +33,7 @@ from .made import (
     sine_records,
     sum_records,
 )
+from tests.conftest import table
 
 BY_ID = {claim.id: claim for claim in CLAIMS}
 NEVER_TESTABLE = {
