@@ -18,7 +18,7 @@ from hystbench.report.markup import one_micro
 FLOORS = {
     "repeats": "measured by repeats",
     "declared": "declared",
-    "upper-bound": "an upper bound, as nothing repeats",
+    "upper-bound": "an upper bound, as no period comes twice",
 }
 KINDS = {"wrong": "refused by 'hystbench gap'", "missing": "to add", "note": "note"}
 EVEN_CLOCK = 1e-6
@@ -190,8 +190,9 @@ def _effects(found: Check) -> dict[str, list[str]]:
         for x in found.revealed
         for rival, share in x.rivals[:1]
     )
+    beside = "Seen" if found.fits else "Beside that loop, which does not fit, seen"
     told = {
-        "seen": ["  Seen from this share of the output on (rms):", *seen],
+        "seen": [f"  {beside} from this share of the output on (rms):", *seen],
         "alike": ["  Not told apart, up to this share of the output:", *pairs],
         "hidden": ["  Not revealed:", *_hidden(found.hidden)],
         "unjudged": ["  Not judged here:", *_hidden(found.unjudged)],
@@ -237,6 +238,12 @@ def headline(found: Check) -> str:
     can = f"the records to fit can reveal {seen} of the {every} effects judged"
     if not every:
         can = "which effects the records can reveal was not asked"
+    elif not found.fits:
+        can = (
+            "which effects the records can reveal is not told, as the loop they would "
+            f"be judged on does not fit: it leaves {percent(found.share_left)} of the "
+            "output's rms"
+        )
     if wrong:
         things = "thing is" if wrong == 1 else "things are"
         return f"{wrong} {things} wrong, which 'hystbench gap' refuses; {can}."
