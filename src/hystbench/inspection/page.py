@@ -81,8 +81,8 @@ def _misfit(found: Check) -> str:
         return ""
     return (
         f"That loop does not fit: it leaves {percent(found.share_left)} of the "
-        "output's rms. So read the tables as of a device that is such a loop; they do not tell "
-        "what this one shows."
+        "output's rms. So read the tables as of a device that is such a loop; they do "
+        "not tell what this one shows."
     )
 
 
