@@ -212,9 +212,11 @@ def _tick(time: FloatArray) -> float | None:
     there, count = time[places], places - places[0]
     even = there[0] + (there[-1] - there[0]) * count / count[-1]
     away = float(np.abs(there - even).max())
+    # The last are the largest: of significant digits they have the fewest decimals.
+    last = there[-max(len(there) // 10, 2) :]
     for digits in range(FINEST):
         tick = 10.0**-digits
-        if np.abs(there / tick - np.round(there / tick)).max() < WHOLE:
+        if np.abs(last / tick - np.round(last / tick)).max() < WHOLE:
             return tick if away <= 1.01 * tick else None
     return None
 
