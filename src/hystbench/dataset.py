@@ -383,8 +383,8 @@ def _name(channel: Mapping[str, str]) -> str:
     if "name" in channel:
         return channel["name"]
     unit, column = plain(channel["unit"]), channel["column"]
-    per, over = unit.replace("/", "_per_"), unit.replace("/", "_")
-    spelt = (per, over, per.replace("*", ""), over.replace("*", ""))
+    spelt = [unit.replace("/", over) for over in ("_per_", "_", "p", "")]
+    spelt += [each.replace("*", "").replace("^", "") for each in spelt]
     for end in (*(f"_{each}" for each in spelt), f"[{unit}]", f"({unit})"):
         if plain(column).endswith(end):
             return column[: -len(end)].strip(" _").replace("_", " ")

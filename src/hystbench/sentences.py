@@ -9,6 +9,13 @@ def listed(names: Sequence[str]) -> str:
     return f"{', '.join(first)} and {last}" if first else last
 
 
+def either(names: Sequence[str]) -> str:
+    """Join what any of may be the one, with a last "or"."""
+    *first, last = names
+    apart = "; " if any(", " in name for name in names) else ", "
+    return apart.join((*first, f"or {last}")) if first else last
+
+
 def percent(share: float) -> str:
     """Write a share as it stands in a sentence."""
     return f"{100 * share:.0f} %"

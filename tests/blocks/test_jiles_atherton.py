@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from hystbench.blocks.asymmetry import Asymmetry
 from hystbench.blocks.jiles_atherton import JilesAtherton, langevin
 from hystbench.errors import InputError
 
@@ -159,3 +160,29 @@ def test_a_missing_sample_shows_from_there_on(wrong):
 def test_a_coupling_that_makes_the_curve_vertical_is_refused():
     with pytest.raises(InputError, match=r"coupling: 0.9 is too large.* 0.87"):
         replace(BLOCK, coupling=0.9)
+
+
+def test_the_square_of_the_magnetization_is_an_asymmetry_behind_it():
+    """As the page on model files writes a displacement of ``g m^2``."""
+    field = {
+        "shape": 1.0,
+        "coupling": 0.5,
+        "pinning": 0.4,
+        "reversibility": 0.2,
+        "bias": 1.5,
+    }
+    start = JilesAtherton(saturation=1.0, **field).anhysteretic(1.5)
+    g = 3.0
+    z = 1.2 * np.sin(np.linspace(0, 12, 900))
+    m = start + JilesAtherton(saturation=1.0, **field).simulate(z, z, 1e-3)
+    behind = Asymmetry(coefficient=1 / (4 * g * start**2))
+    linear = JilesAtherton(saturation=2 * g * start, **field).simulate(z, z, 1e-3)
+    found = behind.simulate(linear, z, 1e-3)
+    np.testing.assert_allclose(found, g * (m**2 - start**2), atol=1e-12)
+
+
+def test_its_slope_is_that_of_the_textbook_in_irreversible_magnetization():
+    """``(1 - c) dm_irr/de + c dman/de`` with m_irr of the whole m."""
+    c, k, man, m = 0.3, 0.7, 0.6, 0.2
+    irreversible = (m - c * man) / (1 - c)
+    assert (1 - c) * (man - irreversible) / k == pytest.approx((man - m) / k)

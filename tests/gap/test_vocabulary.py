@@ -12,7 +12,7 @@ from hystbench.gap.holdout.outcome import with_what_was_asked
 from hystbench.gap.naming.built_in import build_in
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.records.evidence import load_evidence
-from hystbench.gap.report.words import rerun_commands, verdict_sentence
+from hystbench.gap.report.words import rerun_commands, verdict_sentence, verdict_text
 from hystbench.gap.vocabulary import EVERYTHING, Vocabulary
 from hystbench.interface.gap import find_gap
 from hystbench.model import load_model
@@ -175,3 +175,39 @@ def test_the_command_passes_what_was_asked(tiny, tmp_path, monkeypatch):
     assert result.exit_code == 0, result.output
     assert (given["without"], given["with_"]) == (("friction", "drift"), ("creep",))
     assert "you put in creep" in result.output
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "called"),
+    [
+        ("eddy-diffusion", None, "diffusion-like lag"),
+        (
+            "eddy-diffusion",
+            "piezoelectric",
+            "diffusion-like lag (relaxation of polarization, or the charge amplifier)",
+        ),
+        (
+            "drive-lag",
+            "piezoelectric",
+            "drive lag (the amplifier, which charges a capacitance; or the amplifier's "
+            "bandwidth)",
+        ),
+        # The kind tells nothing here: these are all the causes there are.
+        ("friction", "mechanical", "friction"),
+        # Nothing causes it there; the user put it in all the same.
+        ("friction", "electronic", "friction"),
+    ],
+)
+def test_a_name_is_worded_as_it_would_be_in_the_device(name, kind, called):
+    named = {"name": name, "cannot_be_told_from": []}
+    device = {"kind": kind}
+    told = about(effects=[named], device=device)
+    assert verdict_sentence(told) == f"The simulator lacks {called}."
+    assert verdict_text(told).startswith(f"**The simulator lacks {called}.**")
+    short = {"sentence": "it is a curve", "sort": "curve", "structured": 0.02}
+    told = about(verdict="unnamed", unnamed=short, effects=[named], device=device)
+    assert f"something like {called}, but" in verdict_sentence(told)
+    taken = {"names": [name], "after": 1.0}
+    told = about(verdict="unnamed", withdrawn=taken, effects=[], device=device)
+    assert f"{called[1:]} was withdrawn" in verdict_sentence(told)
+    assert "eddy" not in verdict_sentence(told)

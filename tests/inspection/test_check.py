@@ -319,3 +319,59 @@ def test_amplitudes_and_rates_inside_a_record_count(tmp_path):
     }
     mixed = {name: (sine(5) + sine(40, 0.5), noisy(u)) for name in several}
     assert not any(about_levels(tmp_path / "mixed", mixed).values())
+
+
+def rounded(place, digits):
+    """Round the times of records, and scatter none."""
+    for file in place.parent.glob("*.csv"):
+        head, *rows = file.read_text().splitlines()
+        cells = [row.partition(",") for row in rows]
+        made = [f"{float(time):.{digits}f},{rest}" for time, _, rest in cells]
+        file.write_text("\n".join([head, *made]) + "\n")
+
+
+def test_a_jitter_that_comes_of_rounding_is_called_so(tmp_path):
+    dt = 1 / 12000
+    made = {f"{k}": (sine(200 * k, dt=dt), sine(200 * k, dt=dt)) for k in (1, 2)}
+    place = write(tmp_path, made, roles={"2": "hold-out"}, dt=dt)
+    rounded(place, 6)
+    found = check(load_dataset(place), effects=False)
+    assert [item.tick_s for item in found.facts] == [1e-6, 1e-6]
+    assert "(times are rounded to 1e-06 s)" in " ".join(screen.lines(found))
+
+
+def test_a_clock_that_is_uneven_beyond_its_digits_is_no_rounded_one(tmp_path):
+    place = write(tmp_path, {"a": (sine(5), sine(5)), "b": (sine(9), sine(9))})
+    file = tmp_path / "a.csv"
+    head, *rows = file.read_text().splitlines()
+    scatter = 3e-6 * np.random.default_rng(0).uniform(-1, 1, len(rows))
+    made = [
+        f"{float(row.partition(',')[0]) + by:.6f},{row.partition(',')[2]}"
+        for row, by in zip(rows, scatter, strict=True)
+    ]
+    file.write_text("\n".join([head, *made]) + "\n")
+    first, second = check(load_dataset(place), effects=False).facts
+    assert first.jitter > 1e-4
+    assert first.tick_s is None
+    assert second.jitter < 1e-6
+
+
+def groups(place):
+    """Give the lines of the screen that tell of several records."""
+    said = screen.lines(check(load_dataset(place), effects=False))
+    return [line for line in said if " samples at " in line]
+
+
+def test_periods_are_told_of_records_that_have_some(tmp_path):
+    noise = {
+        f"noise-{k}": (np.random.default_rng(k).standard_normal(COUNT), sine(5))
+        for k in range(8)
+    }
+    place = write(tmp_path, noise, roles={"noise-0": "hold-out"})
+    told = groups(place)
+    assert told
+    assert not any("period" in line for line in told)
+    place = write(tmp_path / "mixed", noise | records(), roles=HELD)
+    told = [line for line in groups(place) if "sine" in line]
+    assert told
+    assert all(" periods," in line for line in told)

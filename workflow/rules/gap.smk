@@ -129,6 +129,7 @@ rule gap_decide:
         curves=f"{GAP_CASE}/curves.json",
         named=f"{STAGES}/named.json",
         decision=f"{STAGES}/decision.json",
+        took=f"{STAGES}/decide-took.csv",
         experiment=[directory(GAP_EXPERIMENT)] if GAP_EXPERIMENT else [],
     log:
         f"{RESULTS}/logs/gap/{{case}}/decide.log",
@@ -151,7 +152,7 @@ rule gap_decide:
         "hystbench job gap-decide {input.dataset:q} --model {params.model:q}"
         " {params.limits} {params.effects} --unnamed-share {params.unnamed_share}"
         " {params.experiment}"
-        " --out {params.folder:q} 2> {log:q}"
+        " --out {params.folder:q} --took {output.took:q} 2> {log:q}"
 
 
 # The one job that shows hold-out records: all is chosen. It may take names back, so
@@ -170,6 +171,7 @@ rule gap_show:
         gap=f"{GAP_CASE}/gap.json",
         model=f"{GAP_CASE}/model.yaml",
         hold_out=directory(f"{GAP_CASE}/holdout"),
+        took=f"{STAGES}/show-took.csv",
     log:
         f"{RESULTS}/logs/gap/{{case}}/show.log",
     benchmark:
@@ -180,7 +182,7 @@ rule gap_show:
         "hold-out records of {wildcards.case}"
     shell:
         "hystbench job gap-show {input.dataset:q} --base {input.base:q}"
-        " --out {params.folder:q} 2> {log:q}"
+        " --out {params.folder:q} --took {output.took:q} 2> {log:q}"
 
 
 PICTURES = ("model", "residual", "where")
@@ -199,6 +201,7 @@ rule gap_report:
     output:
         page=f"{GAP_CASE}/report.html",
         verdict=f"{GAP_CASE}/verdict.md",
+        host=f"{GAP_CASE}/host.csv",
         pictures=multiext(
             f"{GAP_CASE}/",
             *(f"{name}.{kind}" for name in PICTURES for kind in ("svg", "png")),
@@ -249,6 +252,9 @@ if TWIN:
 rule gap_summary:
     input:
         gaps=expand(rules.gap_show.output.gap, case=GAP_CASES),
+        took=expand(
+            [rules.gap_decide.output.took, rules.gap_show.output.took], case=GAP_CASES
+        ),
         twin=SETTINGS.model_file if TWIN else [],
         code=code("hystbench.commands.jobs.gap_summary"),
     output:
@@ -256,12 +262,14 @@ rule gap_summary:
         effects=f"{GAP}/effects.csv",
         records=f"{GAP}/records.csv",
         sentences=f"{GAP}/sentences.csv",
+        seconds=f"{GAP}/seconds.csv",
         adds=[f"{GAP}/twin-adds.csv"] if TWIN else [],
     log:
         f"{RESULTS}/logs/gap/summary.log",
     benchmark:
         f"{RESULTS}/logs/benchmarks/gap/summary.tsv"
     params:
+        took=lambda wildcards, input: options("--took", input.took),
         twin=lambda wildcards, input, output: (
             f"--twin {shlex.quote(input.twin)} --adds {shlex.quote(output.adds[0])}"
             if TWIN
@@ -272,7 +280,7 @@ rule gap_summary:
     shell:
         "hystbench job gap-summary {input.gaps:q} {params.twin}"
         " --effects {output.effects:q} --records {output.records:q}"
-        " --sentences {output.sentences:q}"
+        " --sentences {output.sentences:q} {params.took} --seconds {output.seconds:q}"
         " --out {output.summary:q} 2> {log:q}"
 
 

@@ -15,7 +15,7 @@ from hystbench.device_kinds import BEHAVIOURS, DeviceKind, behaviour_of
 from hystbench.errors import InputError, nearest
 from hystbench.gap.progress import Say
 from hystbench.quantities import Quantities
-from hystbench.sentences import listed
+from hystbench.sentences import either, listed
 
 if TYPE_CHECKING:
     from hystbench.gap.effects.effect import Effect
@@ -141,6 +141,18 @@ _OF_THE_USER = (
 def in_words(text: str) -> str:
     """Call effects by what they do, in a sentence or where one name stands."""
     return _NAMED_BY_A_CAUSE.sub(lambda found: behaviour_of(found[1]), text)
+
+
+def called_in(effect: str, kind: DeviceKind | None) -> str:
+    """Call an effect by what it does, and by its causes where a kind tells them apart.
+
+    A ceramic has no eddy currents: in a piezoelectric device it is a "diffusion-like
+    lag (relaxation of polarization, or the charge amplifier)".
+    """
+    causes = _effects()[effect].causes_in(kind)
+    if not causes or len(causes) == len(_effects()[effect].causes_in(None)):
+        return behaviour_of(effect)
+    return f"{behaviour_of(effect)} ({either(causes)})"
 
 
 def say_in_words(say: Say) -> Say:

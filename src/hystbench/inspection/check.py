@@ -16,8 +16,10 @@ from hystbench.flat import flats
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.floor import Floor, noise_floor
 from hystbench.gap.records.scored_samples import Compared
+from hystbench.gap.thresholds import LOOSE
 from hystbench.inspection.entries import entry_text
 from hystbench.inspection.facts import Facts, facts_of, late
+from hystbench.inspection.same_input import FAR_APART, SameInput, same_inputs
 from hystbench.inspection.visible import SmallestSeen, seen_effects
 from hystbench.metrics import rms
 from hystbench.model import Model
@@ -66,6 +68,21 @@ class Check:
     findings: tuple[Finding, ...]
     effects: tuple[SmallestSeen, ...]
     """Empty where they were not simulated."""
+
+    @property
+    def share_left(self) -> float:
+        """Share of the output's rms on the fit records, about its mean, of ``left``."""
+        outputs = [x.y[x.counted] for x in self.records if x.use == "fit"]
+        power = float(np.mean([np.var(y) for y in outputs]))
+        return self.left / np.sqrt(power) if power > 0 else 0.0
+
+    @property
+    def fits(self) -> bool:
+        """Whether the loop is a base to judge effects on.
+
+        It is none where it leaves half of the output's rms.
+        """
+        return self.share_left**2 <= LOOSE
 
     @property
     def revealed(self) -> tuple[SmallestSeen, ...]:
@@ -196,12 +213,20 @@ def _findings(
         )
         for item, by in late(facts)
     ]
+    twice = same_inputs(records)
+    if twice and floor.method == "upper-bound":
+        found.append(_of_one_input(twice, records[0].output.unit))
+    found += [
+        _finding("apart", name=x.other, times=x.rms / floor.rms, **x._asdict())
+        for x in twice
+        if floor.method != "upper-bound" and x.rms > FAR_APART * floor.rms
+    ]
     fit = [item.input for item in facts if item.use == "fit"]
     rates, spans = ([x.rate for x in fit], [round(x.span, 12) for x in fit])
     alone = all(item.kind in ONE_RATE for item in fit)
     on_the_whole = {
         "none held out": all(item.use == "fit" for item in facts),
-        "no noise": floor.method == "upper-bound",
+        "no noise": floor.method == "upper-bound" and not twice,
         "one rate": alone and max(rates) < SAME_RATIO * min(rates),
         "one amplitude": max(spans) < SAME_RATIO * min(x.least_swing for x in fit),
     }
@@ -212,6 +237,14 @@ def _findings(
         found.append(_finding("refused", line=str(error)))
     order = ("wrong", "missing", "note")
     return sorted(found, key=lambda item: order.index(item.kind))
+
+
+def _of_one_input(twice: Sequence[SameInput], unit: str) -> Finding:
+    """Say what noise the records tell that share an input."""
+    noise = rms(np.array([item.noise for item in twice]))
+    told = "; ".join(f"{x.first} and {x.other} have the same input" for x in twice)
+    lines = [f"noise_rms: {noise:.3g}"]
+    return _finding("same input", lines, told=told, noise=noise, unit=unit)
 
 
 def _still(dataset: Dataset, record: Record, item: Facts) -> Iterator[Finding]:

@@ -19,6 +19,8 @@ from hystbench.periods import find_period, repeats
 from hystbench.record import FloatArray, Record, Use
 from hystbench.units import seconds
 
+FINEST, WHOLE = 13, 1e-3
+"""Decimals of a time that are looked at, and what still counts as a whole number."""
 LATE_SAMPLES = 1.0
 """Samples by which a record is late against the others, worth telling."""
 DELAY_SHARE = 0.5
@@ -49,6 +51,8 @@ class Facts:
     jitter: float | None
     """Rms of the steps of time about their mean, as a share of it; None without a
     column of time."""
+    tick_s: float | None
+    """What times are rounded to, in seconds, where that is all of the jitter."""
     period: int | None
     """Samples, as the dataset says or as it was found."""
     declared: bool
@@ -91,13 +95,14 @@ def facts_of(dataset: Dataset, item: Compared) -> Facts:
     file = dataset.record_files[record.name]
     given = record.period_samples
     delay, error, share = delay_of(item)
-    jitter, missing, too_far = _clock_and_missing(dataset, record)
+    jitter, tick, missing, too_far = _clock_and_missing(dataset, record)
     return Facts(
         record.name,
         record.use,
         len(record),
         record.dt,
         jitter,
+        tick,
         given or find_period(record.u),
         given is not None,
         given is None or repeats(record.u, given),
@@ -181,23 +186,40 @@ def _middle_line(x: FloatArray, y: FloatArray) -> FloatArray:
 
 def _clock_and_missing(
     dataset: Dataset, record: Record
-) -> tuple[float | None, int, bool]:
-    """Give the jitter of a clock, and how many samples are missing.
+) -> tuple[float | None, float | None, int, bool]:
+    """Give the jitter of a clock, what it is rounded to, and how many samples miss.
 
     Also whether a gap of the input is longer than a straight line can stand for.
     """
     about = dataset.about.get("time")
     if about is None and "missing" not in dataset.entry(record.name):
-        return None, 0, False
+        return None, None, 0, False
     _, columns, rows = dataset.columns(record.name)
     columns.pop("simulated", None)
     values = {key: column.values[rows] for key, column in columns.items()}
     missing = int(np.count_nonzero(~np.all(np.isfinite([*values.values()]), axis=0)))
     too_far = bool(missing and cannot_be_bridged(values["input"]).any())
     if about is None:
-        return None, missing, too_far
-    steps = np.diff(values["time"]) * seconds("time: unit", about["unit"])
-    return float(np.nanstd(steps)) / record.dt, missing, too_far
+        return None, None, missing, too_far
+    second = seconds("time: unit", about["unit"])
+    jitter = float(np.nanstd(np.diff(values["time"]))) * second / record.dt
+    tick = _tick(values["time"])
+    return jitter, None if tick is None else tick * second, missing, too_far
+
+
+def _tick(time: FloatArray) -> float | None:
+    """Give what the times of an even clock are rounded to; none if it is uneven."""
+    places = np.flatnonzero(np.isfinite(time))
+    there, count = time[places], places - places[0]
+    even = there[0] + (there[-1] - there[0]) * count / count[-1]
+    away = float(np.abs(there - even).max())
+    # The last are the largest: of significant digits they have the fewest decimals.
+    last = there[-max(len(there) // 10, 2) :]
+    for digits in range(FINEST):
+        tick = 10.0**-digits
+        if np.abs(last / tick - np.round(last / tick)).max() < WHOLE:
+            return tick if away <= 1.01 * tick else None
+    return None
 
 
 def _stuck(file: Path, record: Record, stands_still: Sequence[str]) -> str:

@@ -64,6 +64,7 @@ def page(found: Check) -> str:
         kinds=KINDS,
         records=_records(found),
         pictures=_pictures(found),
+        misfit=_misfit(found),
         chart=_chart(found),
         revealed=_revealed(found),
         hidden=_why_not("hidden", "Not revealed", found.hidden, len(found.judged)),
@@ -72,6 +73,17 @@ def page(found: Check) -> str:
         ),
     )
     return one_micro(made)
+
+
+def _misfit(found: Check) -> str:
+    """Warn where the loop is no base to judge effects on; else nothing."""
+    if found.fits:
+        return ""
+    return (
+        f"That loop does not fit: it leaves {percent(found.share_left)} of the "
+        "output's rms. So read the tables as of a device that is such a loop; they do "
+        "not tell what this one shows."
+    )
 
 
 def _records(found: Check) -> PageTable:

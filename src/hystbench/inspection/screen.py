@@ -18,7 +18,7 @@ from hystbench.report.markup import one_micro
 FLOORS = {
     "repeats": "measured by repeats",
     "declared": "declared",
-    "upper-bound": "an upper bound, as nothing repeats",
+    "upper-bound": "an upper bound, as no period comes twice",
 }
 KINDS = {"wrong": "refused by 'hystbench gap'", "missing": "to add", "note": "note"}
 EVEN_CLOCK = 1e-6
@@ -94,7 +94,7 @@ def _each(facts: Sequence[Facts], unit: str) -> list[str]:
     for item in facts:
         several = "s" * (item.periods != 1)
         period = f"{item.periods:.3g} period{several}" if item.period else "no period"
-        jitter = "" if item.jitter is None else f", jitter {jitter_text(item.jitter)}"
+        jitter = "" if item.jitter is None else f", jitter {_jitter([item])}"
         told += _lines(
             f"{item.name:{width}} {item.use:8} {item.samples} at {1 / item.dt:.5g} Hz"
             f"{jitter}, {item.input.kind}, {period}, {band(item)}, "
@@ -118,16 +118,35 @@ def _grouped(facts: Sequence[Facts], unit: str) -> list[str]:
         said = [
             f"{len(items)} {use}, {kind}",
             f"{_range(item.samples for item in items)} samples at {rate} Hz",
-            _range(round(item.periods, 1) for item in items) + " periods",
+            *_periods(items),
             f"{min(x.low_hz for x in inputs):.3g} to "
             f"{max(x.high_hz for x in inputs):.3g} Hz",
             f"{low:.3g} to {quantity(high, unit)}",
         ]
         if jitter >= EVEN_CLOCK:
-            said.insert(2, f"jitter up to {jitter_text(jitter)}")
+            said.insert(2, f"jitter up to {_jitter(items)}")
         told += _lines(", ".join(said))
         told.append("    " + _names([item.name for item in items], WIDTH - 4))
     return told
+
+
+def _periods(items: Sequence[Facts]) -> list[str]:
+    """Tell how many periods records have, where some have any."""
+    counts = [round(item.periods, 1) for item in items]
+    if not any(counts):
+        return []
+    said = _range(counts) if all(counts) else f"up to {max(counts):g}"
+    return [f"{said} period{'s' * (said != '1')}"]
+
+
+def _jitter(items: Sequence[Facts]) -> str:
+    """Tell the largest jitter, and where it comes of times that are rounded."""
+    worst = max(items, key=lambda item: item.jitter or 0.0)
+    jitter = worst.jitter or 0.0
+    said = jitter_text(jitter)
+    if jitter < EVEN_CLOCK or worst.tick_s is None:
+        return said
+    return f"{said} (times are rounded to {worst.tick_s:.1g} s)"
 
 
 def _range(values: Iterable[float]) -> str:
@@ -190,8 +209,9 @@ def _effects(found: Check) -> dict[str, list[str]]:
         for x in found.revealed
         for rival, share in x.rivals[:1]
     )
+    beside = "Seen" if found.fits else "Beside that loop, which does not fit, seen"
     told = {
-        "seen": ["  Seen from this share of the output on (rms):", *seen],
+        "seen": [f"  {beside} from this share of the output on (rms):", *seen],
         "alike": ["  Not told apart, up to this share of the output:", *pairs],
         "hidden": ["  Not revealed:", *_hidden(found.hidden)],
         "unjudged": ["  Not judged here:", *_hidden(found.unjudged)],
@@ -237,6 +257,12 @@ def headline(found: Check) -> str:
     can = f"the records to fit can reveal {seen} of the {every} effects judged"
     if not every:
         can = "which effects the records can reveal was not asked"
+    elif not found.fits:
+        can = (
+            "which effects the records can reveal is not told, as the loop they would "
+            f"be judged on does not fit: it leaves {percent(found.share_left)} of the "
+            "output's rms"
+        )
     if wrong:
         things = "thing is" if wrong == 1 else "things are"
         return f"{wrong} {things} wrong, which 'hystbench gap' refuses; {can}."

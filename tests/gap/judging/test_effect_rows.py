@@ -351,3 +351,39 @@ def test_a_number_at_the_end_of_its_range_is_told(tau, told):
         "searched"
     )
     assert sentence == (wanted if told else "")
+
+
+AT_ITS_BLOCKS_END = [
+    ("outflow", "store", {"exponent": 0.1}, "exponent of outflow, 0.1, lies at"),
+    ("outflow", "store", {"exponent": 0.11}, ""),
+    ("overflow", "store", {"caught": 1.0}, ""),
+    ("overflow", "store", {"caught": 0.0}, ""),
+    ("sensor-lag", "sensor-lag", {"damping_ratio": 0.0}, ""),
+    ("sensor-lag", "sensor-lag", {"damping_ratio": 10.0}, "damping_ratio of sensor"),
+]
+
+
+@pytest.mark.parametrize(("effect", "kind", "number", "told"), AT_ITS_BLOCKS_END)
+def test_the_bounds_of_its_block_are_ends_as_well_but_not_physical_ones(
+    effect, kind, number, told
+):
+    """A law of a store searches no range of its own."""
+    own = {"gain": 1.0, "rate": 1.0} if kind == "store" else {"time_constant_s": 0.01}
+    chain = (block("gain", value=12.0), block(kind, **own, **number))
+    (name,) = number
+    added = Added(effect, "inside", "", (1,), number, 1)
+    state = state_of(
+        chain, measured(chain, NOISE), free=(Free(1, name),), added=(added,)
+    )
+    sentence = at_ends(state)
+    assert sentence.startswith(told)
+    assert bool(sentence) == bool(told)
+
+
+def test_a_force_of_zero_is_at_no_end_even_where_the_law_ends_there():
+    lag = block("sensor-lag", time_constant_s=1e-3, damping_ratio=0.0)
+    added = Added("sensor-lag", "sensor", "", (1,), {}, 1)
+    chain = (block("gain", value=12.0), lag)
+    free = (Free(1, "damping_ratio", low=0.0, high=2.0),)
+    state = state_of(chain, measured(chain, NOISE), free=free, added=(added,))
+    assert at_ends(state) == ""

@@ -6,10 +6,12 @@ from dataclasses import asdict
 import pytest
 
 from hystbench.errors import InputError
+from hystbench.gap.computing_time import write_seconds, write_took
 from hystbench.gap.locate.picture import Axis, Panel, ViewPicture
-from hystbench.gap.report.tables import write_gallery, write_table
+from hystbench.gap.report.tables import write_gallery, write_host, write_table
 from hystbench.gap.report.where_pictures import first_picture
 from hystbench.gap.report.words import verdict_text
+from hystbench.model import Model
 from tests.gap.report.test_report import GAP, write_folder
 
 NAMES = ("model", "residual", "where")
@@ -77,3 +79,39 @@ def test_pictures_of_another_are_not_written_over(tmp_path):
 def test_tables_that_are_missing_are_one_line(tmp_path):
     with pytest.raises(InputError, match="no tables"):
         write_gallery(write_folder(tmp_path, with_tables=False))
+
+
+def test_numbers_of_what_has_effects_inside_stand_beside_those_without(tmp_path):
+    chain = [
+        {"mechanism": {"mass": 2.0, "damping": 3.0, "stiffness": 0.0, "bias": 0.5}},
+        {"friction-force": {"coulomb": 20.0, "presliding_distance": 1e-5}},
+    ]
+    channels = {"input": ("force", "N"), "output": ("position", "m")}
+    about = {key: {"name": x, "unit": unit} for key, (x, unit) in channels.items()}
+    model = Model.from_mapping({"name": "drive", **about, "chain": chain}, "drive")
+    known = {"mechanism.mass": 4.0, "mechanism.damping": 9.0}
+    after = {"mechanism.mass": 2.0, "mechanism.damping": 3.0}
+    told = {
+        "base_parameters": {
+            k: {"before": x, "after": after[k]} for k, x in known.items()
+        }
+    }
+    write_host(model, told, tmp_path / "host.csv")
+    assert (tmp_path / "host.csv").read_text().splitlines() == [
+        "block,parameter,fitted,without the effects,unit",
+        "mechanism,mass,2,4,N s^2/m",
+        "mechanism,damping,3,9,N s/m",
+    ]
+
+
+def test_seconds_of_the_jobs_of_a_device_are_added_up(tmp_path):
+    tables = [tmp_path / f"{k}.csv" for k in range(3)]
+    for table, name in zip(tables, ("one", "other", "one"), strict=True):
+        write_took(name, table)
+    took = [float(table.read_text().splitlines()[1].split(",")[1]) for table in tables]
+    assert min(took) > 0.0
+    write_seconds(tables, tmp_path / "seconds.csv")
+    head, one, other = (tmp_path / "seconds.csv").read_text().splitlines()
+    assert head == "dataset,cpu_seconds"
+    assert one == f"one,{round(took[0] + took[2], 1)}"
+    assert other == f"other,{took[1]}"

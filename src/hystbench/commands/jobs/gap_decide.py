@@ -8,20 +8,34 @@ import click
 from hystbench import options
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.load import load_base
+from hystbench.gap.computing_time import write_took
 from hystbench.gap.records.evidence import check_units, load_evidence
 from hystbench.gap.run import decide_in, write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary
-from hystbench.options import DatasetFile, OutFolder, SearchOptions, command, of_class
+from hystbench.options import (
+    DatasetFile,
+    Out,
+    OutFolder,
+    SearchOptions,
+    command,
+    of_class,
+)
 
 
 @partial(command, also=of_class(SearchOptions))
 @options.kept_calls
 def gap_decide(
-    dataset: DatasetFile, *, model: str, out: OutFolder, **search: Any
+    dataset: DatasetFile,
+    *,
+    model: str,
+    out: OutFolder,
+    took: Out | None = None,
+    **search: Any,
 ) -> None:
     """Decide what MODEL lacks beside the fit records of DATASET; opens no other.
 
     Writes curves.json, and the base, what was named and the decision to OUT/stages.
+    Writes to TOOK, if given, how long that computed.
     """
     given = SearchOptions(**search)
     asked = Asked(
@@ -43,3 +57,5 @@ def gap_decide(
         place.parent.mkdir(parents=True, exist_ok=True)
         told = write_next_experiment(decision, evidence.input, place)
         click.echo(told, err=True)
+    if took is not None:
+        write_took(evidence.name, took)

@@ -9,7 +9,8 @@ from hystbench.options import Folder, command
 def gap_report(folder: Folder) -> None:
     """Write report.html from what is in FOLDER.
 
-    Beside it verdict.md, and model and residual as pictures (SVG, PNG).
+    Beside it verdict.md, host.csv (the numbers of what has effects inside), and model
+    and residual as pictures (SVG, PNG).
     """
     write_report(folder)
     write_gallery(folder)

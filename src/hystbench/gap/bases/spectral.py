@@ -25,7 +25,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.record import ComplexArray, FloatArray, Record
 
 #: Highest order that is fitted.
-MOST = 12
+HIGHEST_ORDER = 12
 #: Share of a channel's power that may lie beyond the last line that is used.
 BEYOND = 1e-5
 #: Fewest lines that are used.
@@ -62,8 +62,8 @@ class RecordSpectrum:
 
     @cached_property
     def powers(self) -> ComplexArray:
-        """Powers of s from zero on, shape (l, MOST + 1)."""
-        return np.vander(self.s, MOST + 1, increasing=True)
+        """Powers of s from zero on, shape (l, HIGHEST_ORDER + 1)."""
+        return np.vander(self.s, HIGHEST_ORDER + 1, increasing=True)
 
 
 @dataclass(frozen=True)

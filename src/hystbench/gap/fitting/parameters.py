@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.blocks.parameter import SETTINGS
+from hystbench.blocks.parameter import HUGE, SETTINGS, TINY
 from hystbench.gap.bases.known_about import defaults
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import beside_blocks, places_of_base
 from hystbench.gap.fitting.parameter_units import unit_at, unit_behind, written
-from hystbench.gap.fitting.state import Added, ModelState
+from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.fitting.uncertainty import Errors
 from hystbench.model import Model
 from hystbench.record import FloatArray
@@ -129,20 +129,28 @@ def _errors_of(
 def at_ends(state: ModelState) -> str:
     """Tell which numbers of effects lie at an end of the range that was searched.
 
-    There the range may have shut a better number out.
+    There the range may have shut a better number out. The range is the narrower of
+    what the effect and its block allow. An end that physics sets is none: zero, as of a
+    gap, a force or a lag, and all or nothing, as of a share.
     """
     told = []
     for free in state.free:
         value = state.value(free)
         named = next((x.effect for x in state.added if free.block in x.blocks), None)
-        ends = [end for end in (free.low, free.high) if np.isfinite(end)]
+        ends = _searched_ends(state, free)
         if named and any(np.isclose(value, end, rtol=AT_END, atol=0) for end in ends):
             unit = state.chain[free.block].parameters()[free.parameter].unit
-            told.append(
-                f"{free.parameter} of {named}, {value:.3g} "
-                f"{_unit(unit, free.block, state)},"
-            )
+            shown = f"{value:.3g} {_unit(unit, free.block, state)}".removesuffix(" -")
+            told.append(f"{free.parameter} of {named}, {shown},")
     if not told:
         return ""
     lies = "lies" if len(told) == 1 else "lie"
     return f"{' and '.join(told)} {lies} at the end of the range that was searched"
+
+
+def _searched_ends(state: ModelState, free: Free) -> list[float]:
+    """Give the ends of a number's range that a search may have set."""
+    about = state.chain[free.block].parameters()[free.parameter]
+    of_share = (-1.0, 1.0) if about.high == 1.0 else ()
+    physical = (0.0, -HUGE, TINY, HUGE, *of_share)
+    return [end for end in state.range_of(free) if end not in physical]

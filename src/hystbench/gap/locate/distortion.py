@@ -33,7 +33,7 @@ DRAWN = (
 )
 EXCITED_POWER = 1e-6
 """Least power of an excited line of the input, as a share of its strongest line's."""
-ABOVE_NOISE = 20.0
+TIMES_NOISE = 20.0
 """Times what noise on the input gives a line: of a thousand such lines of noise none is
 so high."""
 LINES_DRAWN = 100
@@ -204,5 +204,5 @@ def _excited(u: FloatArray) -> IntArray:
     mean = u.mean(axis=0)
     cause = np.abs(fft.rfft(mean - mean.mean())) ** 2
     scatter = float(np.sum((u - mean) ** 2)) / (count - 1) / count
-    floor = max(EXCITED_POWER * float(np.max(cause)), ABOVE_NOISE * scatter)
+    floor = max(EXCITED_POWER * float(np.max(cause)), TIMES_NOISE * scatter)
     return np.flatnonzero(cause > floor)

@@ -8,7 +8,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from hystbench.blocks.force import Dynamics
 from hystbench.blocks.parameter import SETTINGS
+from hystbench.blocks.store import Store
 from hystbench.errors import InputError
 from hystbench.figures import style
 from hystbench.files import write_csv, write_text
@@ -56,6 +58,32 @@ def write_adds(model: Model, path: Path) -> None:
         if name not in SETTINGS and name in block.to_mapping()
     ]
     write_csv(path, ("block", "parameter", "value", "unit"), rows)
+
+
+def write_host(model: Model, told: Told, path: Path) -> None:
+    """Write the fitted numbers of what has effects inside: one row a number.
+
+    Parameters
+    ----------
+    model : Model
+        With the effects.
+    told : mapping
+        What gap.json holds. Its numbers of the base are those without the effects.
+    path : Path
+    """
+    rows: list[Row] = []
+    numbers = told.get("base_parameters", {})
+    for k, (label, block) in enumerate(model.labelled()):
+        for name, about in block.parameters().items():
+            known = numbers.get(f"{label}.{name}")
+            if isinstance(block, Dynamics | Store) and known is not None:
+                values = (known["after"], known["before"])
+                unit = unit_at(
+                    about.unit, model.chain, k, model.input.unit, model.output.unit
+                )
+                rows.append([label, name, *map(_any, values), unit])
+    columns = ("block", "parameter", "fitted", "without the effects", "unit")
+    write_csv(path, columns, rows)
 
 
 def _summary(told: Told) -> Iterator[Row]:
@@ -159,12 +187,12 @@ FORMATS = ("svg", "png")
 
 
 def write_gallery(folder: str | Path) -> None:
-    """Write verdict.md and pictures as SVG and PNG: ``model``, ``residual``, ``where``.
+    """Write verdict.md, host.csv and pictures: ``model``, ``residual``, ``where``.
 
-    They are made of gap.json, model.yaml, holdout/ and curves.json. ``model`` is the
-    block diagram; ``residual`` is what is left, before and after, of the hold-out
-    record that the base misses most; ``where`` is how modes move with the level of the
-    input, or else the first picture of where the gap is.
+    They are made of gap.json, model.yaml, holdout/ and curves.json. Pictures are SVG
+    and PNG. ``model`` is the block diagram; ``residual`` is what is left, before and
+    after, of the hold-out record that the base misses most; ``where`` is how modes move
+    with the level of the input, or else the first picture of where the gap is.
 
     Parameters
     ----------
@@ -187,6 +215,7 @@ def write_gallery(folder: str | Path) -> None:
         for name, figure in drawn.items():
             for suffix in FORMATS:
                 style.save(figure, place / f"{name}.{suffix}")
+    write_host(content.model, content.gap, place / "host.csv")
     write_text(place / "verdict.md", words.verdict_text(with_optional(content.gap)))
 
 

@@ -8,11 +8,11 @@ from typing import Any
 
 from markupsafe import Markup
 
-from hystbench.device_kinds import behaviour_of
+from hystbench.device_kinds import DeviceKind
 from hystbench.figures.style import unit_text
 from hystbench.gap.thresholds import LOOSE
-from hystbench.gap.vocabulary import in_words
-from hystbench.sentences import listed, shortly
+from hystbench.gap.vocabulary import called_in, in_words
+from hystbench.sentences import either, listed, shortly
 
 #: A narrow space that does not break.
 NARROW = "\u202f"
@@ -45,7 +45,7 @@ def verdict_sentence(gap: dict[str, Any]) -> str:
     put_in = (gap.get("asked") or {"with": []})["with"]
     if not put_in:
         return _verdict(gap)
-    names = listed([behaviour_of(name) for name in put_in])
+    names = listed([_called(name, gap) for name in put_in])
     said = _verdict(gap)
     return f"With {names}, which you put in, {said[:1].lower()}{said[1:]}"
 
@@ -114,8 +114,8 @@ def _command(
 
 def _verdict(gap: dict[str, Any]) -> str:
     if gap["withdrawn"] and gap["verdict"] == "unnamed":
-        return _withdrawn_sentence(gap["withdrawn"])
-    names = [behaviour_of(effect["name"]) for effect in gap["effects"]]
+        return _withdrawn_sentence(gap)
+    names = [_called(effect["name"], gap) for effect in gap["effects"]]
     if gap["verdict"] == "unnamed":
         return _unnamed(names, gap["unnamed"] or {"sentence": None})
     return VERDICTS[gap["verdict"]].format(
@@ -139,19 +139,25 @@ def _unnamed(names: list[str], unnamed: dict[str, Any]) -> str:
 
 def causes(gap: dict[str, Any]) -> list[str]:
     """Say of each effect that was found what usually causes it, a sentence each."""
-    device = gap.get("device") or {"kind": None}
-    where = f"in a device that is {device['kind']}" if device["kind"] else "usually"
+    kind = _kind(gap)
+    where = f"in a device that is {kind}" if kind else "usually"
     return [
         f"{effect['behaviour'][:1].upper()}{effect['behaviour'][1:]}: {where} "
-        f"{_either(effect['causes'])}."
+        f"{either(effect['causes'])}."
         for effect in gap["effects"]
         if effect.get("causes")
     ]
 
 
-def _either(names: list[str]) -> str:
-    """Join causes, any of which may be the one."""
-    return "; ".join(names[:-1]) + "; or " + names[-1] if names[1:] else names[0]
+def _kind(gap: dict[str, Any]) -> DeviceKind | None:
+    """Tell the kind of the device, where the dataset says it."""
+    kind: DeviceKind | None = (gap.get("device") or {"kind": None})["kind"]
+    return kind
+
+
+def _called(name: str, gap: dict[str, Any]) -> str:
+    """Call an effect as it is called in such a device."""
+    return called_in(name, _kind(gap))
 
 
 def advice(gap: dict[str, Any]) -> str:
@@ -167,9 +173,10 @@ def advice(gap: dict[str, Any]) -> str:
     )
 
 
-def _withdrawn_sentence(taken: dict[str, Any]) -> str:
+def _withdrawn_sentence(gap: dict[str, Any]) -> str:
     """Say that names were withdrawn, and why."""
-    names = listed([behaviour_of(name) for name in taken["names"]])
+    taken = gap["withdrawn"]
+    names = listed([_called(name, gap) for name in taken["names"]])
     what = f"{names[:1].upper()}{names[1:]}" if names else "The re-tuning of the base"
     were = "were" if len(taken["names"]) > 1 else "was"
     they = "they make" if len(taken["names"]) > 1 else "it makes"
