@@ -111,7 +111,7 @@ def mixed():
         ),
         "growth inside growth": chain_of(
             gpi,
-            faster("growing-thresholds", "linear"),
+            faster("growing-thresholds", "default"),
             ("butterfly", EXAMPLES["butterfly"]),
             faster("growing-thresholds", "band-limited"),
         ),

@@ -66,10 +66,12 @@ def structure(
     if coincide(poles):
         return None
     peaks = np.abs(residues / np.where(poles.real, poles.real, 1.0))
+    swings = poles.imag > 0
+    least = APART * np.max(peaks[swings], initial=0.0)
     modes: list[Mechanism] = []
     through, taken = 0.0, np.zeros(len(poles), dtype=bool)
     for k in np.argsort(np.abs(poles)):
-        if poles[k].imag <= 0 or peaks[k] <= APART * peaks.max():
+        if not swings[k] or peaks[k] <= least:
             continue
         one = mode_of(block, poles[k], residues[k], output)
         if one is None:
