@@ -18,7 +18,9 @@ class Asked:
     """What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
     What is not given is taken from the fit records."""
     unnamed_share: float = UNNAMED_SHARE
-    """Share of the power of the gap that may stay unnamed beside a name."""
+    """Share of the power of the gap that may stay unnamed beside a name. The search
+    holds it against all that is left, the verdict against what follows known
+    signals."""
     vocabulary: Vocabulary = EVERYTHING
     """Effects that may be named, and those that are in the model from the start."""
     say: Say = silent

@@ -52,8 +52,8 @@ class Decided:
     """What goes from the fit records to those that are held out."""
 
     base: Model
-    """The base as it was given, or identified. It shows what another state at the first
-    sample would do: a model that stands for it may never forget where it began."""
+    """The base as it was given, or identified. It is kept to find the leads of hold-out
+    records: it forgets its start, while a host in its place, as a store, may not."""
     fitted: FitResult
     content: Mapping[str, Any]
     """What gap.json holds, but for what the hold-out records show."""

@@ -198,8 +198,8 @@ def _beside(
         return most_inside(in_a_chain(), floor.rms)
 
     halves = bool(places_between_halves(start.simulation))
-    # Two halves say themselves that there is a curve between two filters: a chain. And
-    # a base that was given has to be beaten by forces, also where they leave little.
+    # A base of two filters already tells that a curve lies between them, so the chain
+    # is tried first. So it is beside a given base: forces must beat that.
     if halves or (quantities is not None and not identified):
         little = halves and _why_enough(start, in_a_chain().state, floor, share)
         if quantities and (little or most() < 1):

@@ -30,7 +30,7 @@ HIGHEST_WITH_MODES = 12
 UNHELD = 1e-9
 #: Order from which on a further mode is looked for: two modes and a lag do not do.
 MANY = 5
-#: So many orders in a row may not matter; one more ends the search.
+#: Orders in a row that are allowed to bring nothing; one more ends the search.
 IN_VAIN = 2
 #: Share of each record at its beginning that does not count: what it remembers of the
 #: time before would pull the poles.

@@ -83,10 +83,11 @@ def _steps_up(content: Mapping[str, Any]) -> list[tuple[Any, Any]]:
 
 
 def no_surer_than_even(content: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Give the effects: a name that the hold-out records do not bear out is that.
+    """Give the effects, no surer than even where hold-out records do not bear them out.
 
-    It widens the gap there; or, being no signal that is new in every record, it is a
-    part of what takes less than half of the share that it takes on the fit records.
+    One half is the most for a name whose step widens the gap there. It is the most for
+    all names, but for signals that are new in every record, if less than half of the
+    share that they promised on the fit records is gone.
     """
     doubtful = {
         name for _, step in _steps_up(content) for name in step["name"].split(" + ")

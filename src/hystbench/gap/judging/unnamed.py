@@ -96,7 +96,7 @@ class Unnamed:
 
     @property
     def too_much(self) -> bool:
-        """Whether more stays unnamed than may."""
+        """Whether more follows known signals, without being owned, than is allowed."""
         return self.structured > self.allowed
 
     @property

@@ -32,8 +32,9 @@ def with_poles_named(base: Model, found: ModelState) -> Model | None:
     """Give an identified base with the poles that were named beside it.
 
     A base is identified with the gap in it: folds ask for poles only where these lower
-    the error, of which a curve or a loop may be the larger part. Beside that the rest
-    of the dynamics is seen, and was not missing in a simulation.
+    the error, of which a curve or a loop may be the larger part. Once that is named
+    these poles show. They belong to the linear part of the device, which identification
+    missed, so they are no missing effect.
 
     Parameters
     ----------
