@@ -8,13 +8,14 @@ from benchmarks.work import AMPLITUDE, adaptive, record
 
 from benchmarks import reference
 from hystbench.envelope import PUBLISHED_ENVELOPE, thresholds
-from hystbench.filters import FILTERS
 from hystbench.operators import (
     generalized_prandtl_ishlinskii,
     rate_dependent_prandtl_ishlinskii,
 )
 
 ORDER = 30
+WITH_LOOPS = ("backlash", "delayed", "gpo", "volterra")
+"""Filters that benchmarks/reference.py has a plain loop of: those of the paper."""
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +45,7 @@ def compiled(name, x, d, each, build, other):
     return c.play_lms(x, d, each.step_size, each.thresholds, envelope, ahead=other)
 
 
-@pytest.mark.parametrize("name", sorted(FILTERS))
+@pytest.mark.parametrize("name", WITH_LOOPS)
 @pytest.mark.parametrize("fraction", [0.01, 0.1, 0.5])
 @pytest.mark.parametrize("order", [4, ORDER])
 def test_filters_are_the_plain_loops_up_to_half_the_bound(
@@ -57,7 +58,7 @@ def test_filters_are_the_plain_loops_up_to_half_the_bound(
     assert reference.equal(Adapted(result.output, result.weights), expected)
 
 
-@pytest.mark.parametrize("name", sorted(FILTERS))
+@pytest.mark.parametrize("name", WITH_LOOPS)
 @pytest.mark.parametrize("build", BUILDS)
 @pytest.mark.parametrize("other", [False, True])
 def test_the_c_reference_is_the_plain_loops(name, build, other, signals):

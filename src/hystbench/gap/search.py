@@ -194,21 +194,23 @@ def _beside(
     in_a_chain = cache(partial(add_effects, start, floor.rms, asked))
 
     @cache
-    def most() -> float:
+    def most_forces() -> float:
         return most_inside(in_a_chain(), floor.rms)
 
-    halves = bool(places_between_halves(start.simulation))
+    of_two_filters = bool(places_between_halves(start.simulation))
     # A base of two filters already tells that a curve lies between them, so the chain
     # is tried first. So it is beside a given base: forces must beat that.
-    if halves or (quantities is not None and not identified):
-        little = halves and _why_enough(start, in_a_chain().state, floor, share)
-        if quantities and (little or most() < 1):
+    if of_two_filters or (quantities is not None and not identified):
+        chain_leaves_little = of_two_filters and _why_enough(
+            start, in_a_chain().state, floor, share
+        )
+        if quantities and (chain_leaves_little or most_forces() < 1):
             say("no force could gain what matters, so none is tried inside")
             quantities = None
     if quantities is not None:
         whole = start, floor
         start, floor, inside, own = _with_forces(
-            base, start, floor, quantities, declared, asked, most, kinds
+            base, start, floor, quantities, declared, asked, most_forces, kinds
         )
         if inside is not None and not beats_base(inside, start, floor.rms):
             say("inside: what stands for the base leaves more than the base does")

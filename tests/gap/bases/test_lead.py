@@ -7,7 +7,7 @@ import pytest
 
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.bases.lead import in_words, without_leads
+from hystbench.gap.bases.lead import lead_warnings, without_leads
 from hystbench.gap.bases.linear import IdentifiedModel
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.ladder import FitResult
@@ -152,11 +152,11 @@ def test_what_has_no_lead_already_is_looked_at_no_more():
 
 def test_what_is_not_scored_is_told():
     short = replace(record(537), name="cut", lead=200)
-    assert in_words((record(0), short, replace(short, name="late", lead=7))) == [
+    assert lead_warnings((record(0), short, replace(short, name="late", lead=7))) == [
         "not scored is the beginning of records that start in the middle of a motion: "
         "cut (2 s) and late (0.07 s)"
     ]
-    assert in_words((record(0),)) == []
+    assert lead_warnings((record(0),)) == []
 
 
 def test_scores_leave_a_lead_out():

@@ -98,7 +98,7 @@ def without_leads(
     return shorter if cut else records
 
 
-def in_words(records: Sequence[Record]) -> list[str]:
+def lead_warnings(records: Sequence[Record]) -> list[str]:
     """Tell of which records a lead is not scored: a sentence, or none."""
     told = [
         f"{item.name} ({sized(item.lead * item.dt, 's')})"

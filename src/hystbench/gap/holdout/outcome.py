@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.gap.bases.known_about import as_it_was
-from hystbench.gap.bases.lead import in_words
+from hystbench.gap.bases.lead import lead_warnings
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.holdout.shortfall import no_surer_than_even, shortfall
 from hystbench.gap.holdout.show import Outcome, as_recorded, nuisance_of, score_hold_out
@@ -57,7 +57,7 @@ def show_on_hold_out(
         "warnings": [
             *evidence.warnings,
             *decided.get("warnings", ()),
-            *in_words((*fitted.state.records, *evidence.hold_out)),
+            *lead_warnings((*fitted.state.records, *evidence.hold_out)),
             *worse_than_a_constant(
                 shown.content["gap"]["before"], evidence, fitted.floor.rms
             ),

@@ -44,9 +44,9 @@ def structure(
     """Give a linear model as a structure; None if one coordinate is all it has.
 
     A structure has two modes, or one beside real poles: those of a drive that turns
-    freely, whose shaft swings. The model does what it did. Each mode moves its drive
-    and its sensor alike, as where both are at one place; where the joint is is not
-    known.
+    freely, whose shaft swings. The model does what it did. Drive and sensor are
+    taken to be at one place, so that they share one shape of each mode. The shape at
+    the joint stays open.
 
     Parameters
     ----------

@@ -99,8 +99,9 @@ def in_each_host(
     trial : HostTrial
     hosts : iterable of Host
     most : callable
-        Tells how many effects are looked for at most. For a first host that was
-        identified it is not asked, and not while one leaves what may stay unnamed.
+        Tells how many effects are looked for at most. It is asked before each host,
+        but not before the first of an identified base, and no longer once a host leaves
+        less than may stay unnamed.
     begins_again : callable
         Told of a host whose best force takes most of the gap. If it says so, this ends.
 

@@ -113,7 +113,8 @@ class Unnamed:
         """Give the factor on a name's confidence: one where no more stays than may.
 
         Else it is the allowed over the actual share. Where the base may have left that
-        as well, it is the square root: the mean of that and one, of their logarithms.
+        as well, it is the square root of that share, halfway to one on a logarithmic
+        scale.
         """
         factor = self.allowed / self.structured if self.too_much else 1.0
         return math.sqrt(factor) if of_base else factor
