@@ -21,6 +21,9 @@ def check(
     effects: Annotated[
         bool, "Whether to simulate effects; long records take minutes."
     ] = True,
+    model: Annotated[
+        str | None, "What 'hystbench gap --model' shall take: run it on all records."
+    ] = None,
 ) -> None:
     """Say what the records of DATASET are like and which effects they can reveal.
 
@@ -28,6 +31,12 @@ def check(
     noise, bands and levels; what is wrong, with the line for dataset.yaml that mends
     it; and how strong each effect must be to be seen, and told from the others.
     """
+    if model is not None:
+        from hystbench.inspection.simulator import (
+            simulator_line,
+        )  # late: it loads bases
+
+        click.echo(simulator_line(dataset, model))
     found = look(load_dataset(dataset), effects)
     for line in screen.lines(found):
         click.echo(line)
