@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.naming.add_effects import Named
@@ -94,6 +95,23 @@ def test_behind_a_curve_the_poles_are_a_ratio_of_their_own(records):
     ]
     assert base.chain[0] == FILTER
     assert "transfer-function#2.denominator" in base.free
+
+
+def test_of_many_poles_the_denominator_is_held_as_in_an_identified_base(records):
+    """A step of one coefficient alone may make such a model unstable."""
+    many = block(
+        "transfer-function",
+        numerator=(3.0,),
+        denominator=tuple(np.poly(-np.arange(1.0, HIGHEST + 1)).tolist()),
+        hold="linear",
+    )
+    base = replace(BASE, chain=(many, GAIN))
+    state = named(records, ("creep", LINEAR["creep"]), ("saturation", CURVE))
+    state = replace(state, chain=(many, *state.chain[1:]))
+    found = with_poles_named(base, state)
+    assert len(found.chain[0].denominator) == HIGHEST + 2
+    assert "transfer-function.numerator" in found.free
+    assert "transfer-function.denominator" not in found.free
 
 
 def test_what_is_named_beside_them_is_the_rest_and_leaves_as_little(records):

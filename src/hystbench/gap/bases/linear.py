@@ -48,6 +48,26 @@ def is_identified(base: Model) -> bool:
     return isinstance(base, IdentifiedModel) and bool(base.free)
 
 
+def with_its_numbers_free(base: Model) -> Model:
+    """Free the numbers of an identified base that may be re-tuned.
+
+    It was fitted with the gap in it: what is added may take its part back. Of many
+    poles, a small step of one coefficient alone may make the model unstable; and its
+    timing is how records were stamped.
+    """
+    bare = replace(base, free=(), tolerances={}, provenance={})
+    numbers = [
+        name
+        for name in bare.parameter_names()
+        if not isinstance(value := bare.value(name), str)
+        and not name.startswith("input-delay.")
+        and not (
+            name.endswith(".denominator") and len(np.atleast_1d(value)) > HIGHEST + 1
+        )
+    ]
+    return replace(bare, free=tuple(numbers))
+
+
 class Linear(NamedTuple):
     """A linear base, and how it was found."""
 

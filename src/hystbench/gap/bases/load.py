@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,8 +21,11 @@ from hystbench.blocks.simulator import Simulator
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.bases.kinds import COMMAND, IDENTIFIED, kind_of_base
-from hystbench.gap.bases.linear import IdentifiedModel, identified_linear
-from hystbench.gap.bases.orders import HIGHEST
+from hystbench.gap.bases.linear import (
+    IdentifiedModel,
+    identified_linear,
+    with_its_numbers_free,
+)
 from hystbench.gap.bases.split_linear import split_given
 from hystbench.gap.cache import records_digest, remembered
 from hystbench.gap.records.evidence import Evidence, check_units
@@ -98,18 +100,7 @@ def _identified(word: str, evidence: Evidence) -> tuple[Model, str]:
     found = identified_linear(evidence)
     if found.signed:  # re-tuned without a sign it would be another model
         return found.model, found.note
-    # It was fitted with the gap in it: what is added may take its part back. Of many
-    # poles, a small step of one coefficient alone may make the model unstable.
-    numbers = [
-        name
-        for name in found.model.parameter_names()
-        if not isinstance(value := found.model.value(name), str)
-        and not name.startswith("input-delay.")  # how records were stamped
-        and not (
-            name.endswith(".denominator") and len(np.atleast_1d(value)) > HIGHEST + 1
-        )
-    ]
-    return replace(found.model, free=tuple(numbers)), found.note
+    return with_its_numbers_free(found.model), found.note
 
 
 def given_base(text: str, evidence: Evidence) -> tuple[Model, str]:

@@ -11,6 +11,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
+from hystbench.gap.bases.linear import with_its_numbers_free
 from hystbench.gap.fitting.model_score import score_of, score_of_numbers
 from hystbench.gap.fitting.refit import finished_to_the_end
 from hystbench.gap.fitting.score import Score
@@ -23,8 +24,6 @@ from hystbench.model import Model
 
 OF_FEW_POLES = frozenset({"creep", "drive-lag", "sensor-lag", "resonance"})
 """Blocks whose poles a transfer function may have as well. A diffusion has many."""
-
-
 OF_THE_BASE = "its poles may be those of the base, which was identified with the gap"
 
 
@@ -54,10 +53,8 @@ def with_poles_named(base: Model, found: ModelState) -> Model | None:
         pieces = _pieces(found)
     except InputError:
         return None  # rounding makes a slow pole unstable
-    bare = replace(base, chain=tuple(x.block for x in pieces if x.place is None))
-    bare = replace(bare, free=(), tolerances={}, provenance={})
-    numbers = [name for name in bare.parameter_names() if _is_free(name, base)]
-    return replace(bare, free=tuple(numbers))
+    chain = tuple(piece.block for piece in pieces if piece.place is None)
+    return with_its_numbers_free(replace(base, chain=chain, free=()))
 
 
 def named_beside_them(
@@ -130,21 +127,16 @@ def _pieces(found: ModelState) -> list[_Piece]:
         own: Block = block
         if isinstance(block, LinearBlock) and place in linear:
             own = _ratio_of(block)
-        last = pieces.pop() if pieces else None
-        if last is not None and last.place is None:
-            before = last.block
-            if isinstance(before, TransferFunction) and (
-                isinstance(own, TransferFunction)
-            ):
-                last, own = None, _product(before, own)
-        pieces += [x for x in (last, _Piece(own, None)) if x is not None]
+        before, of_effect = pieces[-1] if pieces else (None, None)
+        if (
+            of_effect is None
+            and isinstance(before, TransferFunction)
+            and isinstance(own, TransferFunction)
+        ):
+            pieces[-1] = _Piece(_product(before, own), None)
+        else:
+            pieces.append(_Piece(own, None))
     return pieces
-
-
-def _is_free(name: str, base: Model) -> bool:
-    """Tell whether a number is free: all of ratios are, of others what was."""
-    ratio = name.partition(".")[0].partition("#")[0] == TransferFunction.name
-    return name in base.free or (ratio and name.endswith(("numerator", "denominator")))
 
 
 def _ratio_of(block: LinearBlock) -> TransferFunction:
