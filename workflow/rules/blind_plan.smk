@@ -125,7 +125,9 @@ def blind_solver_code(wildcards):
         called = f"hystbench.commands.{command[1].replace('-', '_')}"
         modules += [called] if called in GRAPH.modules else []
         if command[1] == "rival":
-            # Rivals are found by name too.
+            # Rivals are found by name too, and only here.
+            from hystbench.entrants.rivals import rivals
+
             known = rivals(command[2])
             return code_with([known[x] for x in command[2:3] if x in known], *modules)
         if command[1] == "gap":

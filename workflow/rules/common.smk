@@ -10,7 +10,6 @@ from pathlib import Path
 import grimp
 
 import hystbench
-from hystbench.entrants.rivals import rivals
 from hystbench.errors import InputError
 from hystbench.figures import module_of
 from hystbench.filters import filter_class, registry

@@ -32,9 +32,8 @@ def check(
     it; and how strong each effect must be to be seen, and told from the others.
     """
     if model is not None:
-        from hystbench.inspection.simulator import (
-            simulator_line,
-        )  # late: it loads bases
+        # Late: it loads bases.
+        from hystbench.inspection.simulator import simulator_line
 
         click.echo(simulator_line(dataset, model))
     found = look(load_dataset(dataset), effects)

@@ -7,6 +7,8 @@
  */
 #include <math.h>
 
+#define HB_ROW 7 /* numbers of a row: ROW of blocks/force.py */
+
 static double hb_least(double a, double b) { return a < b ? a : b; }
 
 static double hb_most(double a, double b) { return a > b ? a : b; }
@@ -336,7 +338,7 @@ static void hb_move_memories(int count, const double *forces, double v, double w
                              double h, double *memory)
 {
     for (int i = 0; i < count; i++) {
-        const double *f = forces + 7 * i;
+        const double *f = forces + HB_ROW * i;
         if ((int)f[0] == 10 && h > 0) {
             const double gained = h / f[1] * hb_attached(f, way, h, memory + i);
             memory[i] += way - h * (memory[i + 1] + gained / 2);
@@ -350,7 +352,7 @@ static double hb_sum_of_forces(int count, const double *forces, double q, double
                                const double *memory)
 {
     double sum = 0;
-    for (int i = 0; i < count; i++) sum += hb_force(forces + 7 * i, q, v, memory + i);
+    for (int i = 0; i < count; i++) sum += hb_force(forces + HB_ROW * i, q, v, memory + i);
     return sum;
 }
 
@@ -362,7 +364,7 @@ static double hb_miss(int count, const double *forces, const double *memory, dou
 {
     double sum = 0;
     for (int i = 0; i < count; i++) {
-        const double *f = forces + 7 * i;
+        const double *f = forces + HB_ROW * i;
         sum += h > 0 ? hb_mean_force(f, q, way, h, memory + i)
                      : hb_force(f, q + way, 0, memory + i);
     }
@@ -394,7 +396,7 @@ static double hb_way_near(int count, const double *forces, const double *memory,
 static int hb_falls(int count, const double *forces)
 {
     for (int i = 0; i < count; i++) {
-        const double *f = forces + 7 * i;
+        const double *f = forces + HB_ROW * i;
         if (((int)f[0] == 3 || (int)f[0] == 11) && f[2] > 0) return 1;
         if ((int)f[0] == 8 && f[3] > 0 && f[4] > 0) return 1;
     }
@@ -451,7 +453,7 @@ static double hb_way_of(int count, const double *forces, const double *memory, d
 static int hb_turns(int count, const double *forces)
 {
     for (int i = 0; i < count; i++) {
-        const int kind = (int)forces[7 * i];
+        const int kind = (int)forces[HB_ROW * i];
         if (kind == 3 || kind == 5 || kind == 7 || kind == 11) return 1;
     }
     return 0;

@@ -65,7 +65,7 @@ static double near_forces(int count, const double *forces, const double *memory,
     const double beside = h > 0 ? way : 0; /* else it is a velocity */
     double each[count + 1], by_memory[count + 1];
     for (int r = 0; r < count; r++) {
-        const double *f = forces + 7 * r;
+        const double *f = forces + HB_ROW * r;
         const int law = (int)f[0];
         /* A way is added to a place, or to what a force remembers of it. */
         const double to = minds_place(law) ? x0 : minds_memory(law) ? memory[r] : 0;
@@ -93,7 +93,7 @@ static double near_forces(int count, const double *forces, const double *memory,
     }
     for (const int *own = all->own_row; *own >= 0; own++) {
         const int i = *own / count, r = *own % count;
-        const double *f = all->forces + 7 * *own;
+        const double *f = all->forces + HB_ROW * *own;
         const double its[2] = {all->memory[r * wide + i],
                                r + 1 < count ? all->memory[(r + 1) * wide + i] : 0};
         sums[i] += force_at(f, x0, way, h, its) - each[r] -
@@ -111,13 +111,13 @@ static void near_memories(int count, const double *forces, double *memory, doubl
     double *each = moved;
     for (const int *own = all->own_row; *own >= 0; own++, each += 2) {
         const int i = *own / count, r = *own % count;
-        const double *f = all->forces + 7 * *own;
+        const double *f = all->forces + HB_ROW * *own;
         const int numbers = (int)f[0] == 10 ? 2 : 1; /* an attached mass has a speed too */
         for (int j = 0; j < numbers; j++) each[j] = all->memory[(r + j) * wide + i];
         hb_move_memories(numbers, f, all->v[i], all->way[i], h, each);
     }
     for (int r = 0; r < count; r++) {
-        const double *f = forces + 7 * r, was = memory[r];
+        const double *f = forces + HB_ROW * r, was = memory[r];
         if (!minds_memory((int)f[0])) continue;
         const double step = inwards(was, way), bit = inwards(way, was), faster = inwards(v, v);
         const double is = hb_remembered(f, way, v, h, was);
@@ -134,7 +134,7 @@ static void near_memories(int count, const double *forces, double *memory, doubl
     each = moved;
     for (const int *own = all->own_row; *own >= 0; own++, each += 2) {
         const int i = *own / count, r = *own % count;
-        const int numbers = (int)all->forces[7 * *own] == 10 ? 2 : 1;
+        const int numbers = (int)all->forces[HB_ROW * *own] == 10 ? 2 : 1;
         for (int j = 0; j < numbers; j++) all->memory[(r + j) * wide + i] = each[j];
     }
     hb_move_memories(count, forces, v, way, h, memory);
@@ -281,15 +281,15 @@ EXPORT void hb_structure(index_t n, index_t records, const index_t *ends, index_
     int own[count * near + 1], *last = own;
     for (index_t i = 0; i < near; i++)
         for (index_t r = 0; r < count; r++) {
-            const double *f = forces + 7 * r, *its = f + 7 * count * (i + 1);
+            const double *f = forces + HB_ROW * r, *its = f + HB_ROW * count * (i + 1);
             int differs = (int)f[0] == 10;
-            for (int j = 0; j < 7; j++) differs |= f[j] != its[j];
+            for (int j = 0; j < HB_ROW; j++) differs |= f[j] != its[j];
             if (differs) *last++ = (int)(count * i + r);
         }
     *last = -1;
     double *at = rows;
     for (index_t i = 0; i < (size + count + 7) * wide; i++) at[i] = 0;
-    struct nearby all = {near, wide, tables, forces + 7 * count, at, at + size * wide};
+    struct nearby all = {near, wide, tables, forces + HB_ROW * count, at, at + size * wide};
     at += (size + count) * wide;
     double **each[] = {&all.from, &all.to, &all.alone, &all.x, &all.v, &all.way, &all.sum};
     for (int j = 0; j < 7; j++, at += wide) *each[j] = at;

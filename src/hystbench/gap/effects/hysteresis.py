@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import fields, replace
 from functools import partial
-from typing import Any, ClassVar, cast
+from typing import Any, ClassVar, NamedTuple, cast
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from hystbench.gap.effects.effect import Declined, Effect
 from hystbench.gap.effects.places import has_dynamics, only_lags
 from hystbench.gap.effects.variant import Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
+from hystbench.record import FloatArray
 
 OPERATORS = 8
 BEND = 0.5
@@ -211,41 +212,14 @@ class RateDependentHysteresis(Effect):
         """
         if simulation.hysteresis is None:
             raise Declined("the chain has no hysteresis that could widen")
-        amplitude = simulation.largest(simulation.hysteresis)
-        field = np.geomspace(2e-3, 0.5, 5) * amplitude
-        sizes = {
-            "growing-thresholds": np.geomspace(0.03, 20, 5),
-            "excess-field": field,
-            "acting-field": field,
-        }
-        if not can_grow(simulation):
-            del sizes["growing-thresholds"]
-        for form, at_fastest in sizes.items():
-            for exponent in EXPONENTS[form]:
-                yield self.inserted(
-                    simulation,
-                    simulation.hysteresis + 1,
-                    partial(_widened, form, exponent),
-                    form=f"{form}, {exponent:g}",
-                    grids={
-                        "coefficient": at_fastest / simulation.fastest() ** exponent
-                    },
-                    free=("coefficient", "exponent"),
-                    zero={"coefficient": 0.0},
-                    charge=2.0,
-                )
-        fastest = simulation.fastest()
-        for share in KNEES if can_grow(simulation) else ():
+        for law in _rate_laws(simulation):
             yield self.inserted(
                 simulation,
                 simulation.hysteresis + 1,
-                partial(_bent, share * fastest),
-                form=f"growing-thresholds, logarithm from {share:g}",
-                grids={
-                    "coefficient": sizes["growing-thresholds"]
-                    / (share * fastest * np.arcsinh(1 / share))
-                },
-                free=("coefficient", "knee"),
+                law.build,
+                form=law.form,
+                grids={"coefficient": law.coefficients},
+                free=("coefficient", law.other),
                 zero={"coefficient": 0.0},
                 charge=2.0,
             )
@@ -260,6 +234,34 @@ EXPONENTS = {
     "acting-field": (0.5,),
 }
 """Exponents at which the search for each law starts; the refit moves them."""
+
+
+class _RateLaw(NamedTuple):
+    form: str
+    build: Callable[[Values], dict[str, Any]]
+    coefficients: FloatArray
+    """Those that are tried."""
+    other: str
+    """Name of the number that is free beside the coefficient."""
+
+
+def _rate_laws(simulation: Simulation) -> Iterator[_RateLaw]:
+    """Give the laws by which a hysteresis may depend on the rate."""
+    assert simulation.hysteresis is not None  # noqa: S101  (the caller has looked)
+    fastest, amplitude = simulation.fastest(), simulation.largest(simulation.hysteresis)
+    grown, field = np.geomspace(0.03, 20, 5), np.geomspace(2e-3, 0.5, 5) * amplitude
+    grows = can_grow(simulation)
+    for form, exponents in EXPONENTS.items():
+        threshold = form == "growing-thresholds"
+        for exponent in exponents if grows or not threshold else ():
+            coefficients = (grown if threshold else field) / fastest**exponent
+            build = partial(_widened, form, exponent)
+            yield _RateLaw(f"{form}, {exponent:g}", build, coefficients, "exponent")
+    for share in KNEES if grows else ():
+        knee = share * fastest
+        coefficients = grown / (knee * np.arcsinh(1 / share))
+        form = f"growing-thresholds, logarithm from {share:g}"
+        yield _RateLaw(form, partial(_bent, knee), coefficients, "knee")
 
 
 def _widened(form: str, exponent: float, given: Values) -> dict[str, Any]:

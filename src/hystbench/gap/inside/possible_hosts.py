@@ -22,6 +22,7 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.store import Store
+from hystbench.blocks.structure import Structure
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.fitting.least_squares import Fitted, fitted
@@ -146,8 +147,10 @@ def hosts(
 
 def _of_two_modes(state: ModelState | None) -> bool:
     """Tell whether a model is a structure of two modes or more."""
-    found = [] if state is None else [x for x in state.chain if x.name == "structure"]
-    return any(len(block.stiffness) > 1 for block in found)  # type: ignore[attr-defined]
+    return state is not None and any(
+        isinstance(block, Structure) and len(block.stiffness) > 1
+        for block in state.chain
+    )
 
 
 def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
