@@ -85,16 +85,22 @@ def test_the_base_stays_where_that_says_nothing(records, effects):
     assert with_poles_named(BASE, named(records, *effects)) is None
 
 
-def test_behind_a_curve_the_poles_are_a_ratio_of_their_own(records):
+def test_a_lag_has_no_zero_that_is_rounding(records):
+    state = named(records, ("drive-lag", LINEAR["drive-lag"]), ("saturation", CURVE))
+    ratio, _ = with_poles_named(BASE, state).chain
+    assert len(ratio.numerator) == 1
+    assert len(ratio.denominator) == 3
+
+
+def test_apart_from_the_ratio_a_block_stays_with_the_numbers_that_were_free(records):
+    """A ratio there would have a gain, beside which the curve's level is unknown."""
     state = named(records, ("saturation", CURVE), ("creep", LINEAR["creep"]))
+    state = replace(state, free=(Free(2, "time_constants_s", 0),))
     base = with_poles_named(BASE, state)
-    assert [block.name for block in base.chain] == [
-        "transfer-function",
-        "transfer-function",
-        "gain",
-    ]
-    assert base.chain[0] == FILTER
-    assert "transfer-function#2.denominator" in base.free
+    assert base.chain == (FILTER, LINEAR["creep"], GAIN)
+    assert "creep.time_constants_s" in base.free
+    assert "creep.magnitudes" not in base.free
+    assert {"transfer-function.numerator", "gain.value"} <= set(base.free)
 
 
 def test_of_many_poles_the_denominator_is_held_as_in_an_identified_base(records):

@@ -21,9 +21,12 @@ from hystbench.gap.naming.removal import TakenOut, without_what_goes
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import PAYS
 from hystbench.model import Model
+from hystbench.record import FloatArray
 
 OF_FEW_POLES = frozenset({"creep", "drive-lag", "sensor-lag", "resonance"})
 """Blocks whose poles a transfer function may have as well. A diffusion has many."""
+ROUNDING = 1e-12
+"""Share of a denominator's coefficient below which the numerator's is rounding."""
 OF_THE_BASE = "its poles may be those of the base, which was identified with the gap"
 
 
@@ -50,11 +53,21 @@ def with_poles_named(base: Model, found: ModelState) -> Model | None:
     if not 0 < count < len(found.added) or of_base != len(base.chain):
         return None
     try:
-        pieces = _pieces(found)
+        pieces = [piece for piece in _pieces(found) if piece.of_base]
     except InputError:
         return None  # rounding makes a slow pole unstable
-    chain = tuple(piece.block for piece in pieces if piece.place is None)
-    return with_its_numbers_free(replace(base, chain=chain, free=()))
+    chain = tuple(piece.block for piece in pieces)
+    given = with_its_numbers_free(replace(base, chain=chain, free=()))
+    # What stands by itself keeps a static gain of one: curves beside it have their own.
+    was_free = {(item.block, item.parameter) for item in found.free}
+    held = {
+        f"{label}.{name}"
+        for (label, block), piece in zip(given.labelled(), pieces, strict=True)
+        if block.name in OF_FEW_POLES
+        for name in block.parameters()
+        if (piece.place, name) not in was_free
+    }
+    return replace(given, free=tuple(name for name in given.free if name not in held))
 
 
 def named_beside_them(
@@ -78,11 +91,11 @@ def named_beside_them(
     state, linear = named.state, _linear(named.state)
     gone = [TakenOut(state.added[k].effect, OF_THE_BASE) for k in linear]
     pieces = _pieces(state)
-    own = [k for k, piece in enumerate(pieces) if piece.place is None]
+    own = [k for k, piece in enumerate(pieces) if piece.of_base]
     chain = [piece.block for piece in pieces]
     for block, place in zip(start.chain, own, strict=True):
         chain[place] = block
-    moved = {x.place: k for k, x in enumerate(pieces) if x.place is not None}
+    moved = {x.place: k for k, x in enumerate(pieces) if not x.of_base}
     others = tuple(x for k, x in enumerate(state.added) if k not in linear)
     state = replace(state, added=others).rearranged(tuple(chain), moved)
     free = (item._replace(block=own[item.block]) for item in start.free)
@@ -100,10 +113,12 @@ def named_beside_them(
 
 
 class _Piece(NamedTuple):
-    """A block of a chain, with its place if it belongs to an effect."""
+    """A block of a chain, with the place that it, or the first of a product, had."""
 
     block: Block
-    place: int | None
+    place: int
+    of_base: bool
+    """Whether it belongs to the base, and not to an effect."""
 
 
 def _linear(found: ModelState) -> list[int]:
@@ -116,44 +131,40 @@ def _linear(found: ModelState) -> list[int]:
 
 
 def _pieces(found: ModelState) -> list[_Piece]:
-    """Give a chain whose linear effects are ratios of the base; neighbours are one."""
+    """Give a chain whose linear effects are the base's, in a ratio beside them."""
     linear = {k for number in _linear(found) for k in found.added[number].blocks}
     effects = found.places_added - linear
     pieces: list[_Piece] = []
     for place, block in enumerate(found.chain):
-        if place in effects:
-            pieces.append(_Piece(block, place))
-            continue
-        own: Block = block
-        if isinstance(block, LinearBlock) and place in linear:
-            own = _ratio_of(block)
-        before, of_effect = pieces[-1] if pieces else (None, None)
-        if (
-            of_effect is None
-            and isinstance(before, TransferFunction)
-            and isinstance(own, TransferFunction)
-        ):
-            pieces[-1] = _Piece(_product(before, own), None)
-        else:
-            pieces.append(_Piece(own, None))
+        one = _Piece(block, place, place not in effects)
+        last = pieces[-1] if pieces else None
+        if last is not None and last.of_base and one.of_base:
+            product = _product(last.block, block)
+            if product is not None:
+                pieces[-1] = last._replace(block=product)
+                continue
+        pieces.append(one)
     return pieces
 
 
-def _ratio_of(block: LinearBlock) -> TransferFunction:
-    """Give a linear block as a ratio of polynomials."""
+def _product(one: Block, other: Block) -> TransferFunction | None:
+    """Multiply a ratio with another or with a block of few poles; of others none."""
+    ratio = one if isinstance(one, TransferFunction) else other
+    first, second = _ratio_of(one), _ratio_of(other)
+    if first is None or second is None or not isinstance(ratio, TransferFunction):
+        return None
+    up, down = (np.polymul(*pair).tolist() for pair in zip(first, second, strict=True))
+    return replace(ratio, numerator=tuple(up), denominator=tuple(down))
+
+
+def _ratio_of(block: Block) -> tuple[FloatArray, FloatArray] | None:
+    """Give numerator and denominator of a ratio, or of a block of few poles."""
+    if isinstance(block, TransferFunction):
+        return np.array(block.numerator), np.array(block.denominator)
+    if not isinstance(block, LinearBlock) or block.name not in OF_FEW_POLES:
+        return None
     system = block.continuous()
     below = np.poly(system.a)
     above = np.poly(system.a - np.outer(system.b, system.c)) + (system.d - 1.0) * below
-    return TransferFunction(
-        numerator=tuple((np.trim_zeros(above, "f") / below[-1]).tolist()),
-        denominator=tuple((below / below[-1]).tolist()),
-        start=block.start,
-        hold=block.hold,
-    )
-
-
-def _product(one: TransferFunction, other: TransferFunction) -> TransferFunction:
-    """Multiply two ratios; the start and the hold are those of the first."""
-    up = np.polymul(one.numerator, other.numerator)
-    down = np.polymul(one.denominator, other.denominator)
-    return replace(one, numerator=tuple(up.tolist()), denominator=tuple(down.tolist()))
+    above[np.abs(above) < ROUNDING * np.abs(below)] = 0.0
+    return np.trim_zeros(above, "f") / below[-1], below / below[-1]
