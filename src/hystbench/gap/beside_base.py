@@ -10,7 +10,7 @@ from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.re_tuning_gain import (
     charge_of_base,
     re_tuned_score,
-    repeats_a_mode,
+    repeats_the_base,
 )
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
@@ -51,6 +51,11 @@ class BesideBase:
         return () if self.tried is None else (self.tried.host,)
 
     @property
+    def laws_of_many_numbers(self) -> int:
+        """How many of its effects are by a law of many numbers."""
+        return sum(item.is_of_many_numbers for item in self.named.state.added)
+
+    @property
     def counts(self) -> int:
         """Effects named; numbers of a host that nobody set free count as one."""
         host = self.inside is not None and self.inside.counts > 0
@@ -70,10 +75,10 @@ class BesideBase:
     def margin(self) -> float:
         """By how much a re-tuned base has to do better: the base is believed as given.
 
-        Where a mode was named that the base has about there, it may do as much worse:
-        what is called missing is then its own mode with other numbers.
+        Where what was named is of a kind that the base has, it may do as much worse:
+        what is called missing is then its own mode or spring with other numbers.
         """
-        return -PAYS if repeats_a_mode(self.named.state) else PAYS
+        return -PAYS if repeats_the_base(self.named.state) else PAYS
 
     def value(self, score: Score, re_tuned: bool = False) -> float:
         """Score it, with what its effects and its numbers have to pay.
@@ -87,10 +92,11 @@ class BesideBase:
     def may_be_simpler(self) -> bool:
         """Tell whether there may be a better answer beside a re-tuned base.
 
-        Re-tuning may replace an effect. And where it pays for its numbers beside the
-        effects, these may stand for a base that is off.
+        Re-tuning may replace an effect, or let one of few numbers stand where one of
+        many does. And where it pays for its numbers beside the effects, these may stand
+        for a base that is off.
         """
-        if self.counts > 2:
+        if self.counts > 2 or self.laws_of_many_numbers:
             return True
         state, score = self.named.state, self.score_beside(self)
         now = score_of(state, score)
@@ -115,13 +121,26 @@ def stays(found: BesideBase, again: BesideBase, re_tuned: bool = False) -> bool:
 
     What was given is believed unless as much speaks against it as makes a gap
     (:attr:`BesideBase.margin`). Numbers that were re-tuned are charged as an effect;
-    timing is a matter of the records.
+    timing is a matter of the records. Laws of many numbers bend to what such numbers
+    do, so they are no rivals of laws of few that leave as little.
     """
     score = found.score_beside(again)
     alike = len(again.start.sample) == len(found.start.sample)
     value = again.value(score, re_tuned)
     margin = found.margin if re_tuned else PAYS
+    if alike and re_tuned and _by_laws_of_fewer_numbers(found, again):
+        return False
     return not alike or value >= found.value(score) - margin
+
+
+def _by_laws_of_fewer_numbers(found: BesideBase, again: BesideBase) -> bool:
+    """Tell whether a re-tuned base needs no laws of many numbers for as little left."""
+    floor = found.floor.rms
+    return (
+        again.laws_of_many_numbers < found.laws_of_many_numbers
+        and again.counts <= found.counts
+        and again.named.state.power(floor) <= found.named.state.power(floor)
+    )
 
 
 def _pay(effects: int) -> float:

@@ -128,6 +128,15 @@ def test_a_mechanism_that_has_a_force_lacks_another_one(tmp_path):
     assert drag["parameters"]["coefficient"]["value"] == pytest.approx(DRAG, rel=0.05)
 
 
+@pytest.mark.parametrize("noise", [0.003, 0.006])
+def test_forces_that_are_a_little_off_are_no_effect(noise, tmp_path):
+    """The device is all given, its spring and its drag by three parts of a hundred."""
+    drag = f"  - drag: {{coefficient: {DRAG / 0.97}}}\n"
+    model = EXACT.replace(f"{CUBIC}", f"{CUBIC * 0.97}") + drag
+    evidence = evidence_of(moving(drag=DRAG), noise)
+    assert closed(model, evidence, tmp_path / "m.yaml")["effects"] == []
+
+
 def test_a_given_mechanism_is_its_own_host(motions, tmp_path):
     """It keeps its gain, and nothing is put beside its numbers."""
     path = tmp_path / "m.yaml"

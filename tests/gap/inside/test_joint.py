@@ -1,6 +1,7 @@
 """A force between two masses: at a joint that both modes move."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from hystbench.gap.effects.law import Law
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.host_places import own_numbers
 from hystbench.gap.inside.insert_law import with_law
 from hystbench.gap.inside.joint import joints, structure
 from hystbench.gap.inside.possible_hosts import hosts
@@ -167,3 +169,12 @@ def test_a_given_structure_keeps_the_joint_that_it_states(base):
     q = np.array([0.03, 0.06])
     assert against((law,), q, 0 * q, DT) == pytest.approx(CUBE * q**3, rel=0.05)
     assert np.sqrt(np.mean(best.state.residual**2)) < 1.2 * NOISE
+
+
+def test_a_structure_that_is_given_has_the_numbers_that_it_states():
+    """A share of the velocity may be left out, and is then no number of it."""
+    modes = {"stiffness": (4.0, 25.0), "damping": (0.1, 0.2), "drive": (1.0, 1.0)}
+    given = Structure(**modes, modal_constant=(1.0, -0.5))
+    state = SimpleNamespace(chain=(given,), value=lambda free: 1.0)
+    names = [free.parameter for free in own_numbers(state, 0)]
+    assert names == ["stiffness"] * 2 + ["damping"] * 2 + ["modal_constant"] * 2

@@ -77,17 +77,25 @@ def _loosened(state: ModelState) -> ModelState:
     return state.settled()
 
 
-def repeats_a_mode(state: ModelState) -> bool:
-    """Tell whether a mode was added where the base has one, as far as it is known."""
-    added = state.places_added
-    modes = [x for x in (state.chain[k] for k in added) if isinstance(x, Resonance)]
-    if not modes:
-        return False
-    base = (x for place, x in enumerate(state.chain) if place not in added)
-    linear = [x.continuous().a for x in base if isinstance(x, LinearBlock)]
+def repeats_the_base(state: ModelState) -> bool:
+    """Tell whether an effect is of a kind that the base has, as far as it is known.
+
+    A mode is of the base's own kind where the base has one about there. Any other
+    block, such as a spring, is where the base holds such a block.
+    """
+    own = state.places_added
+    added = [state.chain[k] for k in own]
+    base = [x for place, x in enumerate(state.chain) if place not in own]
+    modes = [x for x in added if isinstance(x, Resonance)]
+    others = {type(x) for x in added} - {Resonance}
+    if others & {type(x) for x in base}:
+        return True
+    linear = (
+        [x.continuous().a for x in base if isinstance(x, LinearBlock)] if modes else []
+    )
     poles = np.concatenate([np.linalg.eigvals(a) for a in linear] or [np.empty(0)])
-    own = np.abs(poles[np.abs(poles.imag) > 0.0]) / (2 * np.pi)
-    return any(np.any(np.abs(own / x.frequency_hz - 1.0) < ABOUT) for x in modes)
+    known = np.abs(poles[np.abs(poles.imag) > 0.0]) / (2 * np.pi)
+    return any(np.any(np.abs(known / x.frequency_hz - 1.0) < ABOUT) for x in modes)
 
 
 def re_tuned_words(start: ModelState, state: ModelState) -> str:

@@ -61,12 +61,16 @@ class Added(NamedTuple):
     was_free: tuple[Free, ...] = ()
     """Those of the numbers it changed in other blocks that were free before."""
 
+    @property
+    def is_of_many_numbers(self) -> bool:
+        """Tell whether it is a law of so many numbers that it does what others do."""
+        return bool(self.blocks) and self.charge > MANY_NUMBERS
+
 
 ROUNDING = 16 * float(np.finfo(float).eps)
-"""Share of the output's rms: a smaller change is what a simulation rounds off."""
+"""Share of the output's rms: smaller changes are rounding."""
 FORMS = (0.3, 0.6, 1.6, 3.0)
 """Factors on a number of an added effect: what other forms of it could do."""
-
 MANY_NUMBERS = 4
 """An effect of more numbers has no other forms."""
 
@@ -367,9 +371,7 @@ class ModelState:
 
     def _step(self, free: Free) -> float:
         value = self.value(free)
-        size = 1e-3 * abs(value)
-        if size == 0:
-            size = 1e-6
+        size = 1e-3 * abs(value) or 1e-6
         # A tolerance may leave less room than that.
         size = min(size, (free.high - free.low) / 4)
         return -size if value + size > self.range_of(free)[1] else size

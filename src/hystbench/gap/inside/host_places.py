@@ -29,8 +29,11 @@ def own_numbers(state: ModelState, place: int) -> tuple[Free, ...]:
     """
     block = state.chain[place]
     if isinstance(block, Structure):
-        each = range(len(block.stiffness))
-        every = (Free(place, name, k) for name in MODES for k in each)
+        every = (
+            Free(place, name, k)
+            for name in MODES
+            for k in range(len(getattr(block, name)))
+        )
         return tuple(free for free in every if state.value(free) != 0.0)
     names = NUMBERS if isinstance(block, Impedance) else LINEAR
     return tuple(Free(place, name) for name in names if getattr(block, name) != 0.0)

@@ -18,14 +18,17 @@ import numpy as np
 
 from hystbench.blocks.attached_mass import AttachedMass
 from hystbench.blocks.base import Block
+from hystbench.blocks.force import Force
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.store import Store
 from hystbench.blocks.structure import Structure
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.bases.known_about import stated
 from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.fitting.least_squares import Fitted, fitted
+from hystbench.gap.fitting.on_records import free_within
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.given_hosts import as_given, held_about, is_seen_moving
@@ -225,14 +228,25 @@ def _in_front(delay: Block, start: ModelState, state: ModelState) -> ModelState:
 
 
 def own_mechanism(start: ModelState) -> ModelState | None:
-    """Give a base that holds a mechanism itself, with the numbers of that free."""
+    """Give a base that holds a mechanism itself, with its numbers and its forces' free.
+
+    A force that is given is known no better than the mass that it acts on.
+    """
     places = host_places(start.chain)
     if len(places) != 1:
         return None
     if start.free:
         return start
     (place,) = places
-    return replace(start, free=own_numbers(start, place))
+    forces = (
+        free
+        for k, block in enumerate(start.chain)
+        if isinstance(block, Force)
+        for name in stated(block)
+        for free in free_within(k, name, getattr(block, name), None)
+        if start.value(free) != 0.0
+    )
+    return replace(start, free=(*own_numbers(start, place), *forces))
 
 
 def of_many_modes(start: ModelState) -> bool:

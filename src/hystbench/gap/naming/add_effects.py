@@ -18,7 +18,7 @@ from hystbench.gap.fitting.model_score import (
 )
 from hystbench.gap.fitting.refit import finished, finished_to_the_end, scanned
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import MANY_NUMBERS, ModelState
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.forecast_calls import foretell, foretell_rest
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.naming.removal import (
@@ -133,8 +133,7 @@ def _of_few_numbers(
         return found
     (one,), name = found.state.added, found.state.added[0].effect
     score = make_score(start, floor_rms, forms=False)
-    is_many = bool(one.blocks) and one.charge > MANY_NUMBERS
-    if not is_many or above_floor(found.state, score) < FURTHER:
+    if not one.is_of_many_numbers or above_floor(found.state, score) < FURTHER:
         return found
     say(f"{name} has many numbers and leaves more than noise: naming without it")
     others = tuple(x for x in among(start.offered) if x != name)

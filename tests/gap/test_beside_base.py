@@ -1,0 +1,48 @@
+"""When a re-tuned base takes the place of one that was given."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from hystbench.gap.beside_base import BesideBase, stays
+from hystbench.gap.fitting.own_values import NONE
+from hystbench.gap.fitting.state import Added
+from hystbench.gap.records.floor import Floor
+from tests.gap.small import block, measured, state_of
+
+NOISE = 0.01
+GAIN = block("gain", value=12.0)
+PLAY = block("backlash", half_width=0.8)
+
+
+def beside(records, *added, charge=1.0):
+    """What stands beside a gain, as a law of so many numbers."""
+    start = state_of((GAIN,), records)
+    effect = Added("backlash", "mechanics", "", (1,), {}, charge)
+    state = state_of((GAIN, *added), records, added=(effect,) if added else ())
+    named = SimpleNamespace(state=state)
+    return BesideBase(None, start, Floor(NOISE, "stated"), named, None, NONE)
+
+
+@pytest.fixture
+def records():
+    return measured((GAIN, PLAY), NOISE)
+
+
+def test_a_law_of_many_numbers_is_no_rival_of_one_of_few_that_leaves_as_little(records):
+    few, many = beside(records, PLAY), beside(records, PLAY, charge=17.0)
+    # Both leave the same; a re-tuned base has to pay as an effect does.
+    assert stays(few, few, re_tuned=True)
+    assert not stays(many, few, re_tuned=True)
+    assert stays(few, many, re_tuned=True)
+
+
+def test_it_stays_where_a_law_of_few_leaves_more(records):
+    wider = block("backlash", half_width=0.9)
+    assert stays(beside(records, PLAY, charge=17.0), beside(records, wider), True)
+
+
+def test_naming_is_repeated_beside_a_re_tuned_base_for_a_law_of_many(records):
+    exact = beside(records, PLAY)
+    assert not exact.may_be_simpler()
+    assert beside(records, PLAY, charge=17.0).may_be_simpler()
