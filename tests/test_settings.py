@@ -85,7 +85,7 @@ def limits(**given):
         ((*STEPS, "gpo", "mu", 0), "convergence_factor: gpo: mu: 0"),
         ((*STEPS, "volterra", "second_order", -1e-3), "second_order: -0.001"),
         ((*STEPS, "gpo", "mu", float("nan")), "mu: nan; expected a finite number"),
-        ((*STEPS, "gpo", "mu", "1e-2"), "number (YAML wants 1.0e-2 for 1e-2)"),
+        ((*STEPS, "gpo", "mu", "1e-2"), "in config.yaml 1.0e-2 for 1e-2"),
         (("gap", "twin", limits(low="1")), "low: '1'; expected a finite number or"),
         (("gap", "twin", limits(rat=1)), "key 'rat'; did you mean 'rate'?"),
         (

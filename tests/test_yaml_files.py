@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hystbench.errors import InputError
-from hystbench.yaml_files import DEEPEST, load_yaml, parse_yaml
+from hystbench.yaml_files import DEEPEST, load_yaml, parse_yaml, yaml_text
 from tests.messages import message
 
 PLAIN = st.recursive(
@@ -18,8 +18,28 @@ PLAIN = st.recursive(
 
 @settings(max_examples=25)
 @given(content=PLAIN)
-def test_what_pyyaml_writes_comes_back(content):
-    assert parse_yaml(yaml.safe_dump(content), "x.yaml") == content
+def test_what_is_written_comes_back(content):
+    assert parse_yaml(yaml_text(content), "x.yaml") == content
+
+
+@pytest.mark.parametrize(
+    "text", ["1e-5", "2.6e4", "+1.5E3", ".5", "-.5", "-1.e+2", "3.", "0.0", "1.0e-05"]
+)
+def test_floats_are_those_of_yaml_1_2(text):
+    found = parse_yaml(f"[{text}]", "x.yaml")
+    assert found == [float(text)]
+    assert type(found[0]) is float
+
+
+@pytest.mark.parametrize("text", ["e5", "1e", "1e5.0", "0x1e5", "1.2.3", ".", "-e3"])
+def test_what_is_no_float_stays_what_it_was(text):
+    assert parse_yaml(f"[{text}]", "x.yaml") == yaml.safe_load(f"[{text}]")
+
+
+@pytest.mark.parametrize("text", ["1e-5", "2.6e4", "-.5", "1.0e+2", "1e5_"])
+def test_a_text_that_looks_like_a_float_is_written_in_quotes(text):
+    assert parse_yaml(yaml_text({"name": text}), "x.yaml") == {"name": text}
+    assert parse_yaml(f"name: '{text}'", "x.yaml") == {"name": text}
 
 
 def test_aliases_and_merged_keys_are_plain_yaml():

@@ -24,7 +24,7 @@ from hystbench.errors import InputError, nearest, placed, refuse_unknown
 from hystbench.files import write_text
 from hystbench.model_content import Provenance, place_of, read_content
 from hystbench.record import Channel, FloatArray, Record
-from hystbench.yaml_files import load_yaml
+from hystbench.yaml_files import load_yaml, yaml_text
 
 
 @dataclass(frozen=True)
@@ -282,16 +282,7 @@ class Model:
 
     def to_yaml(self) -> str:
         """Return the text of the model's YAML file."""
-        import yaml  # late: kept out of jobs that write no YAML
-
-        text: str = yaml.safe_dump(
-            self.to_mapping(),
-            sort_keys=False,
-            allow_unicode=True,
-            width=88,
-            default_flow_style=None,
-        )
-        return text
+        return yaml_text(self.to_mapping())
 
     def save(self, path: str | Path) -> None:
         """Write the model's YAML file, all of it or nothing."""

@@ -101,5 +101,6 @@ def _hint(value: object) -> str:
     except ValueError:
         return ""
     if "e" in value.lower():
-        return " (YAML wants 1.0e-2 for 1e-2)"
+        # Snakemake reads YAML 1.1, to which these are text.
+        return " without quotes; in config.yaml 1.0e-2 for 1e-2, 1.0e+2 for 1e2"
     return " without quotes"

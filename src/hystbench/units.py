@@ -92,7 +92,9 @@ def seconds(place: str, unit: str) -> float:
         ) from None
 
 
-def check_same_unit(place: str, ours: str, whose: str, theirs: str) -> None:
+def check_same_unit(
+    place: str, ours: str, whose: str, theirs: str, of_model: bool = False
+) -> None:
     """Refuse two units that are not the same one, in whatever spelling.
 
     Nothing is converted: a factor that is not one is told and refused.
@@ -105,6 +107,8 @@ def check_same_unit(place: str, ours: str, whose: str, theirs: str) -> None:
         The units.
     whose : str
         What has ``theirs``.
+    of_model : bool, optional
+        Whether ``ours`` is a model file's, which may be changed as well.
 
     Raises
     ------
@@ -124,9 +128,11 @@ def check_same_unit(place: str, ours: str, whose: str, theirs: str) -> None:
     except pint.OffsetUnitCalculusError:
         factor = float("nan")
     if not abs(factor - 1) <= 1e-12:
+        model = f"write the model file in {theirs!r}, its numbers too, or "
+        first = model if of_model else ""
         raise InputError(
-            f"{where}; nothing is converted silently: multiply the record's column by "
-            f"{factor:g} and say {ours!r} in its dataset.yaml"
+            f"{where}; nothing is converted silently: {first}multiply the record's "
+            f"column by {factor:g} and say {ours!r} in its dataset.yaml"
         )
 
 

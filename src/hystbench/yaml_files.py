@@ -1,8 +1,10 @@
-"""Reading YAML: plain data alone, each key once, bounded in depth and size."""
+"""YAML: read as plain data alone, each key once, bounded in depth and size; written."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Hashable
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +21,12 @@ LARGEST = 10_000_000
 """Bytes of a file. A file of data that is named by mistake is larger."""
 MOST_REPEATED = 100_000
 """Items that aliases (``*name``) may add to what is written."""
+
+FLOAT = re.compile(
+    r"[-+]?(?:\.[0-9]+|[0-9]+\.[0-9]*|[0-9]+(?=[eE]))(?:[eE][-+]?[0-9]+)?$"
+)
+"""Floats of YAML 1.2's core schema. PyYAML follows YAML 1.1, to which 1e-5 and 2.6e4
+are text."""
 
 _QUOTES = "a tab or a sign that begins no text; expected spaces, or text in quotes"
 _HINTS = {
@@ -74,8 +82,7 @@ def parse_yaml(text: str, place: str) -> Any:
     """
     import yaml  # late: kept out of jobs that read no YAML
 
-    # The same in C, where PyYAML was built with it, takes a tenth of the time.
-    kind: Any = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
+    kind = _loader()
     try:
         _check_bounds(yaml.parse(text, kind), place)
         loader = kind(text)
@@ -101,6 +108,53 @@ def parse_yaml(text: str, place: str) -> Any:
             if problem.startswith(known):
                 problem = hint
         raise InputError(f"{place}: {where}{problem}") from error
+
+
+def yaml_text(content: Any, width: int = 88, flow: bool | None = None) -> str:
+    """Write plain data as YAML, which :func:`parse_yaml` reads back as it is.
+
+    Parameters
+    ----------
+    content : mapping, list, number or text
+    width : int
+        Characters after which a line is broken.
+    flow : bool, optional
+        Whether lists and mappings stand in brackets; the innermost alone unless given.
+    """
+    import yaml  # late: kept out of jobs that write no YAML
+
+    text: str = yaml.dump(
+        content,
+        Dumper=_dumper(),
+        sort_keys=False,
+        allow_unicode=True,
+        width=width,
+        default_flow_style=flow,
+    )
+    return text
+
+
+@cache
+def _loader() -> Any:
+    """Give the loader: of plain data, with floats as YAML 1.2 has them."""
+    import yaml
+
+    # The same in C, where PyYAML was built with it, takes a tenth of the time.
+    safe: Any = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
+    return _with_floats(type("Loader", (safe,), {}))
+
+
+@cache
+def _dumper() -> Any:
+    """Give the dumper, which quotes text that the loader would take for a float."""
+    import yaml
+
+    return _with_floats(type("Dumper", (yaml.SafeDumper,), {}))
+
+
+def _with_floats(kind: Any) -> Any:
+    kind.add_implicit_resolver("tag:yaml.org,2002:float", FLOAT, "-+.0123456789")
+    return kind
 
 
 def _check_bounds(events: Any, place: str) -> None:

@@ -113,9 +113,21 @@ class TestContract:
         first = next(iter(values))
         with pytest.raises(InputError, match=f"unknown parameter '{first}x'.*{first}"):
             registry()[name].from_mapping({**values, f"{first}x": 1.0})
-        del values[first]
+        one_of = registry()[name].one_of
+        left = {key: values[key] for key in values if key not in (first, *one_of)}
         with pytest.raises(InputError, match=f"missing parameter '{first}'"):
-            registry()[name].from_mapping(values)
+            registry()[name].from_mapping(left)
+
+    def test_of_some_parameters_one_is_enough(self, name):
+        own = registry()[name]
+        for given in own.one_of:
+            others = [key for key in own.one_of if key != given]
+            left = {key: EXAMPLES[name][key] for key in EXAMPLES[name]}
+            block = own.from_mapping({k: left[k] for k in left if k not in others})
+            assert [getattr(block, key) for key in others] == [0.0] * len(others)
+            # A fit may pass zero, so that a file may hold it.
+            none = own.from_mapping({given: 0.0})
+            assert own.from_mapping(none.to_mapping()) == none
 
     def test_a_value_that_is_no_number_is_refused(self, name):
         values = dict(EXAMPLES[name])

@@ -99,6 +99,19 @@ def test_straight_lines_hold_a_sine_as_large_as_it_is(frequency):
     assert abs(corners - 1) > 2e-4
 
 
+@pytest.mark.parametrize("count", [20, 50, 200])
+def test_corners_of_a_triangle_are_rounded_by_0_8_of_its_amplitude_a_sample(count):
+    """docs/tutorial.md says so, and that of straight lines beside it."""
+    n = np.arange(10 * count + 1)
+    triangle = 2 / np.pi * np.arcsin(np.sin(2 * np.pi * n / count))
+    lines, fine = held_lines(triangle, "band-limited")
+    true = np.interp(np.arange(len(lines)) / fine, n, triangle)
+    whole = slice(30 * fine, -30 * fine)
+    assert np.abs(lines - true)[whole].max() == pytest.approx(0.83 / count, rel=0.02)
+    # Straight lines make a sine smaller by the square of sinc.
+    assert 1 - np.sinc(1 / count) ** 2 == pytest.approx(3.3 / count**2, rel=0.01)
+
+
 def test_other_holds_take_the_samples():
     v = sine(0.1)
     for hold in ("linear", "zero-order"):

@@ -246,3 +246,35 @@ def test_a_mode_that_samples_do_not_show_does_not_coarsen_the_others():
         joint=each[:2],
     )
     assert three.parts(dt, (spring,)) == two.parts(dt, (spring,)) == 40
+
+
+def test_a_mode_that_is_driven_backwards_is_to_be_turned():
+    given = {"stiffness": [160.0, 820.0], "damping": [0.3, 0.6]}
+    given |= {"modal_constant": [1.0, 0.5], "drive": [1.0, -14.25]}
+    with pytest.raises(InputError, match=r"drive\[1\]: -14\.25; expected more than 0"):
+        Structure.from_mapping(given)
+
+
+def test_shapes_for_unit_mass_make_a_model_in_millimetres():
+    drive, joint, sensor = np.array([[0.45, 0.8], [0.3, -1.1], [1.25, -1.1]])
+    about = {"stiffness": (6800.0, 259000.0), "damping": (5.8, 20.3)}
+    in_m = Structure(
+        **about,
+        modal_constant=listed(drive * sensor),
+        drive=listed(drive),
+        joint=listed(joint),
+    )
+    in_mm = Structure(
+        **about,
+        modal_constant=listed(1000 * drive * sensor),
+        drive=listed(np.sqrt(1000) * drive),
+        joint=listed(np.sqrt(1000) * joint),
+    )
+    z = 200 * np.sin(80 * np.arange(500) * 1e-3)
+    spring = registry()["stiffness"]  # in N/m^3 and in N/mm^3
+    moved = in_m.driven(z, 1e-3, (spring(cubic=1e7),))
+    np.testing.assert_allclose(
+        in_mm.driven(z, 1e-3, (spring(cubic=1e7 * 1e-9),)), 1000 * moved, atol=1e-6
+    )
+    # The spring is felt.
+    assert np.abs(in_m.driven(z, 1e-3, ()) - moved).max() > 0.1 * np.abs(moved).max()

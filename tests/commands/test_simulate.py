@@ -122,7 +122,11 @@ def test_archives_of_records_and_signals(tmp_path, model):
 @pytest.mark.parametrize(
     ("unit", "expected"),
     [
-        ("mA", "multiply the record's column by 0.001 and say 'A'"),
+        (
+            "mA",
+            "write the model file in 'mA', its numbers too, or multiply the record's "
+            "column by 0.001 and say 'A'",
+        ),
         ("V", "expected the same unit"),
         ("furlong", "expected the same unit"),
     ],

@@ -26,8 +26,12 @@ class AttachedMass(Force, name="attached-mass", law="attached"):
     """
 
     mass: float = number("U s^2/Q", "that is attached", TINY)
-    damping: float = number("U s/Q", "between the two", 0.0)
+    damping: float = number("U s/Q", "between the two", 0.0, default=0.0)
     stiffness: float = number("U/Q", "between the two", 0.0)
+
+    def numbers(self) -> tuple[float, ...]:
+        """Give mass, damping and stiffness."""
+        return (self.mass, self.damping, self.stiffness)
 
     def rows(self) -> FloatArray:
         """Give its row, and one of zeros: it remembers a place and a velocity."""

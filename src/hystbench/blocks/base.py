@@ -45,6 +45,9 @@ class Block(ABC):
     no_step: ClassVar[str] = "has no step that could be exported"
     """Why the block cannot be exported, if it cannot."""
 
+    one_of: ClassVar[tuple[str, ...]] = ()
+    """Parameters with a default of which a model file states one at least."""
+
     def __init_subclass__(
         cls, name: str = "", place: Place | None = None, curve: str = ""
     ) -> None:
@@ -75,6 +78,9 @@ class Block(ABC):
         known = cls.parameters()
         for key in values:
             refuse_unknown(key, known, f"unknown parameter {key!r}")
+        if cls.one_of and not any(name in values for name in cls.one_of):
+            wanted = " or ".join(map(repr, cls.one_of))
+            raise InputError(f"missing parameter {wanted}; expected one at least")
         for item in fields(cls):
             if item.name not in values and item.default is MISSING:
                 about = item.metadata["parameter"]
@@ -107,11 +113,11 @@ class Block(ABC):
     def to_mapping(self) -> dict[str, Any]:
         """Return the parameters as a model file holds them; defaults are left out."""
         defaults = {item.name: item.default for item in fields(self)}
-        return {
-            name: about.plain(getattr(self, name))
-            for name, about in self.parameters().items()
-            if getattr(self, name) != defaults[name]
-        }
+        declared = self.parameters()
+        told = [name for name in declared if getattr(self, name) != defaults[name]]
+        if not set(self.one_of) & set(told):
+            told += self.one_of
+        return {name: declared[name].plain(getattr(self, name)) for name in told}
 
     def step(self, sampling: Sampling) -> Step:
         """Say what the block does at one sample, for code that runs elsewhere.

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from hystbench.blocks.parameter import number, text
-from hystbench.blocks.simulator import CallError, Simulator, digest_of
+from hystbench.blocks.simulator import STARTED, CallError, Simulator, digest_of
 from hystbench.errors import InputError, short
 from hystbench.record import FloatArray
 from hystbench.scratch import scratch_folder
@@ -102,7 +102,7 @@ class Command(Simulator, name="command"):
         except OSError as error:
             raise InputError(
                 f"{self.command}: cannot start {words[0]!r} ({error.strerror}); "
-                f"expected a program, looked for from {Path.cwd()}"
+                f"expected a program, looked for from {Path.cwd()}, {STARTED}"
             ) from error
         with process:
             try:

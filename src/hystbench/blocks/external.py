@@ -12,7 +12,7 @@ import numpy as np
 
 from hystbench.blocks.kept_outputs import source_digest
 from hystbench.blocks.parameter import text
-from hystbench.blocks.simulator import CallError, Simulator
+from hystbench.blocks.simulator import STARTED, CallError, Simulator
 from hystbench.errors import InputError, in_line, nearest
 from hystbench.record import FloatArray
 
@@ -82,7 +82,8 @@ def imported(name: str) -> Callable[[FloatArray, float], Any]:
     except (Exception, SystemExit) as error:
         raise InputError(
             f"{name}: cannot import {module_name!r} ({in_line(error)}); expected a "
-            f"module that is installed or lies in {here}"
+            f"module that is installed, is found by PYTHONPATH, or lies in {here}, "
+            f"{STARTED}"
         ) from error
     for part in path.split("."):
         known = [

@@ -71,10 +71,11 @@ class Impedance(Dynamics, name="impedance", place="base"):
     """
 
     smooths = False
+    one_of = NUMBERS[:3]
 
-    mass: float = number("Y s^2/U", "m")
-    damping: float = number("Y s/U", "c, of a viscous force")
-    stiffness: float = number("Y/U", "k")
+    mass: float = number("Y s^2/U", "m", default=0.0)
+    damping: float = number("Y s/U", "c, of a viscous force", default=0.0)
+    stiffness: float = number("Y/U", "k", default=0.0)
     bias: float = number("Y", "constant force", default=0.0)
     input: str = choice("what the input is", INPUTS, "position")
 

@@ -33,7 +33,7 @@ class Preisach(HystereticBlock, name="preisach", place="material"):
     """
 
     limit: float = number("U", "largest input at which a relay switches", TINY)
-    reversible: float = number("Y/U", "slope of the reversible part")
+    reversible: float = number("Y/U", "slope of the reversible part", default=0.0)
     weights: tuple[float, ...] = numbers(
         "Y", "swing of the output by each cluster of relays", 0.0
     )

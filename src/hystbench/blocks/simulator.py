@@ -13,6 +13,9 @@ from hystbench.blocks.calls import current
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
+STARTED = "the folder of the start and not of the model file"
+"""Where names and files are looked for, for messages."""
+
 
 class CallError(ValueError):
     """What a simulator did wrong: the end of a sentence that begins with its call."""
@@ -139,8 +142,8 @@ class FileSimulator(Simulator):
         path = Path(self.file)
         if not path.is_file():
             raise InputError(
-                f"{self.label}: no file {self.file!r}, looked for from {Path.cwd()}; "
-                f"expected {self.expected}"
+                f"{self.label}: no file {self.file!r}, looked for from {Path.cwd()}, "
+                f"{STARTED}; expected {self.expected}"
             )
         return path
 

@@ -15,5 +15,7 @@ class Stiffness(Force, name="stiffness", law="stiffness"):
        and their Behaviour, Wiley, 2011.
     """
 
-    quadratic: float = number("U/Q^2", "weight of the square")
-    cubic: float = number("U/Q^3", "weight of the cube")
+    one_of = ("quadratic", "cubic")
+
+    quadratic: float = number("U/Q^2", "weight of the square", default=0.0)
+    cubic: float = number("U/Q^3", "weight of the cube", default=0.0)

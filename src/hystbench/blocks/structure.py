@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import sqrt
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.attached import Signals
+from hystbench.blocks.base import Block
 from hystbench.blocks.force import Driven, Force, Motion, exported, rows
 from hystbench.blocks.forced import ForcedDynamics, tables_of
 from hystbench.blocks.parameter import TINY, choice, number, numbers
@@ -73,6 +74,21 @@ class Structure(ForcedDynamics, name="structure", place="base"):
     )
     direct: float = number("Y/U", "what passes at once", default=0.0)
     output: str = choice("what the output is", OUTPUTS, "position")
+
+    @classmethod
+    def from_mapping(cls, values: Mapping[str, Any]) -> Block:
+        """Make a structure, as :meth:`Block.from_mapping` does.
+
+        A mode keeps its motion where all its shapes change sign.
+        """
+        given = values.get("drive")
+        for k, shape in enumerate(given if isinstance(given, list | tuple) else ()):
+            if isinstance(shape, int | float) and shape < 0.0:
+                raise InputError(
+                    f"drive[{k}]: {shape:g}; expected more than 0: turn the sign of "
+                    f"the whole mode, drive[{k}] and joint[{k}]; modal_constant stays"
+                )
+        return super().from_mapping(values)
 
     def check(self) -> None:
         """Refuse a joint that no mode moves."""

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 
 from hystbench.challenge.case import OUTPUT, Case, make_case
 from hystbench.challenge.machine_case import make_machine_case
@@ -12,6 +11,7 @@ from hystbench.challenge.plant.effects import MACHINES
 from hystbench.challenge.spec import CaseSpec
 from hystbench.files import write_text
 from hystbench.record import Record, column_name
+from hystbench.yaml_files import yaml_text
 
 #: Of an actuator; a machine's numbers have digits enough for its converter's steps.
 ROW, ROW_OF_MACHINE = "%.6f,%.8f,%.3f\n", "%.6f,%.8g,%.7g\n"
@@ -67,5 +67,4 @@ def _dataset(case: Case) -> str:
         "output": measured,
         "records": entries,
     }
-    text: str = yaml.safe_dump(content, sort_keys=False, default_flow_style=None)
-    return text
+    return yaml_text(content)

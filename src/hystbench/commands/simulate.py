@@ -59,7 +59,7 @@ def simulate(
     for side, ours, theirs in pairs:
         if theirs is not None:
             place = f"{model}: {side}: unit"
-            check_same_unit(place, ours.unit, str(record), theirs.unit)
+            check_same_unit(place, ours.unit, str(record), theirs.unit, of_model=True)
     taken = hold or task.hold
     if taken is not None:
         system = system.with_hold(taken)

@@ -20,6 +20,7 @@ from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.files import write_csv, write_text
 from hystbench.model import Model
 from hystbench.record import Channel, FloatArray, Record, column_name
+from hystbench.yaml_files import yaml_text
 
 NAME = "twin"
 WRITTEN = ("base.yaml", "dataset/dataset.yaml", "dataset/*.csv")
@@ -45,8 +46,6 @@ def write_example(
     folder : Path
         Gets ``dataset/`` and ``base.yaml``.
     """
-    import yaml  # late: kept out of jobs that write no YAML
-
     first = fit[0]
     columns = [
         "time_s",
@@ -70,8 +69,7 @@ def write_example(
         "output": {"column": columns[2], "unit": first.output.unit},
         "records": entries,
     }
-    text = yaml.safe_dump(about, sort_keys=False, default_flow_style=None)
-    write_text(folder / "dataset" / "dataset.yaml", text)
+    write_text(folder / "dataset" / "dataset.yaml", yaml_text(about))
     slow_loop_model(identified, first.input, first.output).save(folder / "base.yaml")
 
 

@@ -377,6 +377,7 @@ class TestFunction:
         said = message(lambda: load_base(text, evidence(self.known)))
         assert "cannot import" in said
         assert "ModuleNotFoundError" in said
+        assert "the folder of the start and not of the model file" in said
 
     def test_a_model_file_may_name_it(self, simulators, tmp_path):
         model, _ = load_base(f"{simulators}:doubled", evidence(self.known))

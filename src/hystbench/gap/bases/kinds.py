@@ -80,17 +80,28 @@ def _name_of_function(text: str) -> str:
             found = ast.parse(content).body
         except (SyntaxError, ValueError) as error:
             return f"{path}: {error}; expected Python code"
-        functions = [
-            item.name
+        public = [
+            item
             for item in found
             if isinstance(item, ast.FunctionDef) and not item.name.startswith("_")
         ]
+        functions = [item.name for item in sorted(public, key=_takes_others)]
     place = Path(os.path.relpath(path)).with_suffix("")
     above = ".." in place.parts
     module = place.name if above else ".".join(place.parts)
-    named = wanted if wanted in functions else "/".join(functions) or "function"
+    named = [wanted] if wanted in functions else functions or ["function"]
+    names = " or ".join(repr(f"{module}:{name}") for name in named)
     also = f", started in the folder {str(Path(path).parent)!r}" if above else ""
     return (
         f"--model: {text!r} is a file of Python code; expected the name of a function "
-        f"in it, package.module:function, here {f'{module}:{named}'!r}{also}"
+        f"in it, package.module:function, here {names}{also}"
     )
+
+
+def _takes_others(function: ast.FunctionDef) -> bool:
+    """Tell whether a function cannot be called with u and dt alone."""
+    own = function.args
+    most = len(own.posonlyargs) + len(own.args)
+    least = most - len(own.defaults)
+    named = any(default is None for default in own.kw_defaults)
+    return named or least > 2 or (most < 2 and own.vararg is None)

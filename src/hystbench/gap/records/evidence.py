@@ -173,4 +173,4 @@ def check_units(evidence: Evidence, model: Model, place: str) -> None:
     ):
         whose = f"the {data_have.name} of {evidence.name}"
         where = f"{place}: {key}: unit"
-        check_same_unit(where, model_has.unit, whose, data_have.unit)
+        check_same_unit(where, model_has.unit, whose, data_have.unit, of_model=True)
