@@ -1,0 +1,71 @@
+"""What looks wrong of a model that is given: how much it leaves, and why it may."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from hystbench.dataset import Dataset
+from hystbench.gap.thresholds import LOOSE
+from hystbench.inspection.base import Base
+from hystbench.inspection.findings import Finding, finding
+from hystbench.record import FloatArray
+
+
+def model_findings(dataset: Dataset, base: Base) -> Iterator[Finding]:
+    """Say what looks wrong of a given model.
+
+    Parameters
+    ----------
+    dataset : Dataset
+    base : Base
+        Of a loop that is fitted to the records nothing is said.
+    """
+    if not base.given:
+        return
+    if not base.fits:
+        yield _misfit(base)
+
+
+def _misfit(base: Base) -> Finding:
+    """Say that a model leaves more than half, and what would mend it, if that shows."""
+    output = base.fit[0].record.output
+    told: dict[str, Any] = {
+        "model": base.called,
+        "left": f"{base.left:.3g} {output.unit}",
+        "moves": f"{base.moves:.3g} {output.unit}",
+        "share": 100 * base.share_left,
+    }
+    for topic in ("offset", "units", "rate"):
+        numbers, left = _would_leave(base, topic)
+        if left**2 <= LOOSE * base.moves**2:
+            told |= {"would": 100 * left / base.moves, "unit": output.unit}
+            told |= dict(zip(("offset", "gain"), numbers, strict=False))
+            return finding(f"misfit {topic}", **told)
+    return finding("misfit", **told)
+
+
+def _would_leave(base: Base, topic: str) -> tuple[list[float], float]:
+    """Give the numbers with which a model would leave least, and how much that is."""
+    tables, outputs, fixed = [], [], []
+    for item in base.fit:
+        counted = item.record.counted
+        shape = item.simulated
+        if topic == "rate":
+            shape = np.gradient(shape, item.record.dt)
+        columns = [np.ones(len(shape)), shape]
+        held = np.zeros(len(shape))
+        if topic == "offset":
+            columns, held = columns[:1], shape
+        tables.append(np.column_stack(columns)[counted])
+        outputs.append(item.record.y[counted])
+        fixed.append(held[counted])
+    return _fitted(np.vstack(tables), np.concatenate(outputs) - np.concatenate(fixed))
+
+
+def _fitted(table: FloatArray, wanted: FloatArray) -> tuple[list[float], float]:
+    size = np.sqrt(np.mean(table**2, axis=0))
+    size[size == 0] = 1.0
+    numbers = np.linalg.lstsq(table / size, wanted, rcond=1e-10)[0] / size
+    left = wanted - table @ numbers
+    return numbers.tolist(), float(np.sqrt(np.mean(left**2)))
