@@ -50,4 +50,47 @@ def test_a_position_for_a_velocity_is_told(tmp_path):
 def test_what_nothing_plain_would_mend_has_its_likely_reasons(stage):
     (one,) = told(of_stage(stage, stiffness=30.0), "misfit")
     assert one.topic == "misfit"
-    assert "Its units, the quantity that it gives" in one.text
+    assert "its units, the quantity that it gives" in one.text
+
+
+def test_a_model_that_leaves_as_much_as_the_output_moves_explains_nothing(stage):
+    """A thousandth of the gain leaves all but a thousandth; a stiff one a part."""
+    (one,) = told(of_stage(stage, gain=1e-3), "misfit")
+    assert "explains nothing: it leaves" in one.text
+    (one,) = told(of_stage(stage, damping=0.5), "misfit")
+    assert "leaves" in one.text
+    assert "explains nothing" not in one.text
+
+
+@pytest.mark.parametrize(
+    ("blocks", "wanted"),
+    [
+        ([("mechanism", {**STAGE, "output": "velocity"})], "position"),
+        (
+            [
+                ("mechanism", {**STAGE, "output": "acceleration"}),
+                ("stiffness", {"quadratic": 0.0, "cubic": 1e-3}),
+                ("sensor-lag", {"time_constant_s": 1e-3}),
+            ],
+            "position",
+        ),
+        ([("mechanism", STAGE)], ""),
+        (
+            [("mechanism", {**STAGE, "output": "velocity"}), ("gain", {"value": 2.0})],
+            "",
+        ),
+        ([("gain", {"value": 2.0})], ""),
+    ],
+    ids=["velocity", "behind-it-a-sensor", "position", "behind-it-a-gain", "none"],
+)
+def test_an_output_of_another_quantity_than_the_records_is_told(stage, blocks, wanted):
+    model = saved(stage, *(block(name, **about) for name, about in blocks))
+    found = told(looked(stage, "stage", model, effects=False), "quantity")
+    assert [item.paste for item in found] == [(f"output: {wanted}",)] * bool(wanted)
+
+
+def test_a_force_for_a_motion_is_told(stage):
+    """An impedance gives nothing else."""
+    model = saved(stage, block("impedance", mass=0.0, damping=0.1, stiffness=1.0))
+    (one,) = told(looked(stage, "stage", model, effects=False), "only force")
+    assert one.text.startswith("impedance gives the force, but the records hold the position")

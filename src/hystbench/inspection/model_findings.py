@@ -5,10 +5,15 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.blocks.attached import AttachedBlock
+from hystbench.blocks.impedance import Impedance
+from hystbench.blocks.mechanism import OUTPUTS, Mechanism
+from hystbench.blocks.structure import Structure
 from hystbench.dataset import Dataset
-from hystbench.gap.thresholds import LOOSE
+from hystbench.gap.thresholds import AS_GOOD, LOOSE
 from hystbench.inspection.base import Base
 from hystbench.inspection.findings import Finding, finding
+from hystbench.model import Model
 from hystbench.record import FloatArray
 
 
@@ -23,17 +28,55 @@ def model_findings(dataset: Dataset, base: Base) -> Iterator[Finding]:
     """
     if not base.given:
         return
+    yield from _another_quantity(dataset, base)
     if not base.fits:
         yield _misfit(base)
 
 
+def _another_quantity(dataset: Dataset, base: Base) -> Iterator[Finding]:
+    """Say that a mechanism gives another quantity than the records hold."""
+    wanted = dataset.quantities.output
+    given = _quantity_given(base.model)
+    if given is None or wanted not in OUTPUTS or given[1] == wanted:
+        return
+    label, quantity, may_be_set = given
+    lines = [f"output: {wanted}"] if may_be_set else []
+    output = base.fit[0].record.output
+    yield finding(
+        "quantity" if may_be_set else "only force",
+        lines,
+        block=label,
+        given=quantity,
+        channel=output.label,
+        wanted=wanted,
+    )
+
+
+def _quantity_given(model: Model) -> tuple[str, str, bool] | None:
+    """Give the block whose output ends a chain, its quantity, and if that may be set.
+
+    None where a block behind it may make another quantity of it: a sensor only spoils
+    what it measures, and so does a curve or a delay; a gain converts.
+    """
+    for label, block in reversed(list(model.labelled())):
+        if isinstance(block, Mechanism | Structure):
+            return label, block.output, True
+        if isinstance(block, Impedance):
+            return label, "force", False
+        if not isinstance(block, AttachedBlock) and block.place != "sensor":
+            return None
+    return None
+
+
 def _misfit(base: Base) -> Finding:
     """Say that a model leaves more than half, and what would mend it, if that shows."""
+    nothing = base.share_left**2 >= 1 - AS_GOOD
     output = base.fit[0].record.output
     told: dict[str, Any] = {
         "model": base.called,
         "left": f"{base.left:.3g} {output.unit}",
         "moves": f"{base.moves:.3g} {output.unit}",
+        "explains": "explains nothing: it " * nothing,
         "share": 100 * base.share_left,
     }
     for topic in ("offset", "units", "rate"):
