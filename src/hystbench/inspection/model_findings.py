@@ -1,20 +1,30 @@
 """What looks wrong of a model that is given: how much it leaves, and why it may."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from hystbench.blocks.attached import AttachedBlock
+from hystbench.blocks.base import Block
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import OUTPUTS, Mechanism
 from hystbench.blocks.structure import Structure
 from hystbench.dataset import Dataset
-from hystbench.gap.thresholds import AS_GOOD, LOOSE
+from hystbench.errors import InputError
+from hystbench.gap.bases.kinds import kind_of_base
+from hystbench.gap.fitting.on_records import run_base
+from hystbench.gap.thresholds import AS_GOOD, LOOSE, WORTH_A_WORD
 from hystbench.inspection.base import Base
 from hystbench.inspection.findings import Finding, finding
+from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.record import FloatArray
+from hystbench.sentences import listed
+
+REPEATING = "repeating"
+"""The start of a block on whole periods, in a steady state."""
 
 
 def model_findings(dataset: Dataset, base: Base) -> Iterator[Finding]:
@@ -31,6 +41,44 @@ def model_findings(dataset: Dataset, base: Base) -> Iterator[Finding]:
     yield from _another_quantity(dataset, base)
     if not base.fits:
         yield _misfit(base)
+    if kind_of_base(base.given) == "file":
+        yield from _start(dataset, base)
+
+
+def _start(dataset: Dataset, base: Base) -> Iterator[Finding]:
+    """Say that a model begins otherwise than records in a steady state do."""
+    if not any(item.record.repeats for item in base.fit):
+        return
+    labels, chain = [], []
+    for label, block in base.model.labelled():
+        begun = _repeating(block)
+        chain.append(begun)
+        if begun is not block:
+            labels.append(label)
+    if not labels:
+        return
+    other = replace(base.model, chain=tuple(chain))
+    records = tuple(item.record for item in base.fit)
+    outputs = run_base(other, records, dataset.input_hold)
+    pairs = zip(records, outputs, strict=True)
+    left = rms(*((record.y - y)[record.counted] for record, y in pairs))
+    if left**2 <= (1 - WORTH_A_WORD) * base.left**2:
+        yield finding(
+            "start",
+            blocks=listed(labels),
+            left=f"{left:.3g} {records[0].output.unit}",
+            now=f"{base.left:.3g} {records[0].output.unit}",
+        )
+
+
+def _repeating(block: Block) -> Block:
+    """Give a block as it begins in a steady state, or itself where it cannot."""
+    if getattr(block, "start", REPEATING) == REPEATING:
+        return block
+    try:
+        return replace(block, start=REPEATING)  # type: ignore[call-arg]
+    except InputError:
+        return block
 
 
 def _another_quantity(dataset: Dataset, base: Base) -> Iterator[Finding]:
