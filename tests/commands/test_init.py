@@ -447,3 +447,10 @@ def test_of_two_outputs_the_input_is_asked_for_at_a_terminal(
     assert run("init", *files)[0] == 0
     assert asked == [("Which column is the input", "Weg_mm")]
     assert written()["input"]["column"] == "Kraft_N"
+
+
+def test_a_kind_that_is_none_may_be_left_out(run, tmp_path):
+    status, _, told = run("init", *records(tmp_path), "--device", "magnetorheological")
+    assert status
+    assert "'magnetorheological' is not one of" in told
+    assert told.rstrip().endswith("; leave it out where none fits")

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from hystbench.device_kinds import DeviceKind
+from hystbench.device_kinds import DEVICE_KINDS, DeviceKind
 from hystbench.errors import InputError, refuse_unknown
 from hystbench.formats import Column, Table
 from hystbench.inspection.clocks import clock_of
@@ -19,6 +19,7 @@ from hystbench.inspection.names import (
     is_time,
     split_unit,
 )
+from hystbench.options import ChoiceOrNone
 from hystbench.record import FloatArray
 from hystbench.units import NONE, check_known, is_known, plain
 
@@ -53,7 +54,11 @@ class Flags:
         Literal["interpolate", "split"] | None,
         "What to do where samples are missing.",
     ] = None
-    device: Annotated[DeviceKind | None, "Kind of the device."] = None
+    device: Annotated[
+        DeviceKind | None,
+        ChoiceOrNone(DEVICE_KINDS),
+        "Kind of the device; leave it out where none fits.",
+    ] = None
     name: Annotated[
         str | None, "Name of the dataset; by default that of its folder."
     ] = None
