@@ -51,7 +51,7 @@ def test_the_command_runs_the_model(rig):
     data = str(rig / "rig" / "dataset.yaml")
     done = run_hystbench("check", data, "--no-effects", "--model", model)
     assert done.returncode == 0, done.stderr
-    assert "it runs on all records" in " ".join(done.stdout.split())
+    assert "It runs on all records" in " ".join(done.stdout.split())
 
 
 def test_effects_are_counted_beside_a_model_where_no_loop_fits(stage):

@@ -100,7 +100,7 @@ def leaves(found: Check) -> str:
     if not base.given:
         return f"a loop that does not depend on the rate leaves {left}"
     return (
-        f"{base.note}: it runs on all records, and leaves {left} rms of the fit "
+        f"{base.note}. It runs on all records, and leaves {left} rms of the fit "
         f"records, whose outputs move by {quantity(base.moves, unit)} rms"
     )
 

@@ -291,7 +291,7 @@ def _leaves(record: Record, left: float, evidence: Evidence) -> str:
         f"{100 * share:.2g} % of its output{known}"
     )
     if noise is not None and left**2 <= (1 + ABOVE_NOISE) * noise**2:
-        return f"{told}: that is noise, and nothing is to be done"
+        return f"{told}: that is noise, and the loop fits its record"
     return (
         f"{told}: an effect smaller than that can hide in the base's own error. Name a "
         "slower or less noisy record under 'identification' in dataset.yaml, bring a "
