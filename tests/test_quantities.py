@@ -113,6 +113,11 @@ def test_what_is_told_goes_before_the_unit(write_dataset):
             "name: bench\ndevice: {kind: piezoelectrc}",
             "device: kind: 'piezoelectrc' is unknown; did you mean 'piezoelectric'?",
         ),
+        (
+            "name: bench",
+            "name: bench\ndevice: {kind: magnetorheological}",
+            "electronic, mechanical; leave 'device' out where none fits",
+        ),
         ("name: bench", "name: bench\ndevice: {}", "device: expected the key 'kind'"),
     ],
 )

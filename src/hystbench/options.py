@@ -213,6 +213,20 @@ def _type(plain: Any) -> Any:
     return click.Choice(get_args(plain)) if get_origin(plain) is Literal else plain
 
 
+class ChoiceOrNone(click.Choice[str]):
+    """A choice that is better left out than made where none fits."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> str:
+        """Read a choice, or refuse it and say so."""
+        try:
+            return super().convert(value, param, ctx)
+        except click.BadParameter as error:
+            told = error.message.rstrip(".")
+            self.fail(f"{told}; leave it out where none fits", param, ctx)
+
+
 @contextmanager
 def counted_calls(
     bound: int | None, keep: bool, say: Callable[[str], None]

@@ -51,6 +51,9 @@ def check_against_schema(content: Any, schema: Mapping[str, Any], place: str) ->
         raise InputError(f"{where}: unknown key {unknown!r}; {told}")
     if rule == "enum":
         near = nearest(value, error.validator_value)
+        also = error.schema.get("description")
+        if also and not near.endswith("?"):  # with a near name nothing else is meant
+            near = f"{near}; {also}"
         raise InputError(f"{where}: {short(value)} is unknown; {near}")
     if rule == "required":
         missing = next(key for key in error.validator_value if key not in value)

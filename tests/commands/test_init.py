@@ -413,3 +413,44 @@ def test_times_that_count_from_a_date(run, tmp_path, first, per_second, unit, rt
     assert "from 2024-02-29 12:00:00.000 on (--time-unit)" in said
     assert written()["time"]["unit"] == unit
     assert load_dataset(".").read("run-1").dt == pytest.approx(DT, rel=rtol)
+
+
+@pytest.mark.parametrize("header", ["t_s,Weg_mm,Kraft_N", "t_s,force_N,stroke_mm"])
+def test_of_two_outputs_the_first_is_the_input_and_that_is_said(run, tmp_path, header):
+    """A damper's rig moves it, a shaker's pushes; most write the input first."""
+    files = records(tmp_path, header)
+    _, one, two = header.split(",")
+    status, said, _ = run("init", *files)
+    assert status == 0
+    assert written()["input"]["column"] == one
+    assert f"note: input: {one!r}, output: {two!r}" in said
+    assert f"'--input {two}' takes the other" in said
+    status, said, _ = run("init", *files, "--input", two, "--out", "other.yaml")
+    assert status == 0
+    assert written("other.yaml")["input"]["column"] == two
+    assert "which is which" not in said
+
+
+def test_of_two_outputs_the_input_is_asked_for_at_a_terminal(
+    run, tmp_path, monkeypatch
+):
+    files = records(tmp_path, "t_s,Weg_mm,Kraft_N")
+    asked = []
+
+    def answer(question, **about):
+        asked.append((question, about["default"]))
+        return "Kraft_N"
+
+    monkeypatch.setattr("click.prompt", answer)
+    for stream in ("stdin", "stdout"):
+        monkeypatch.setattr(f"sys.{stream}.isatty", lambda: True, raising=False)
+    assert run("init", *files)[0] == 0
+    assert asked == [("Which column is the input", "Weg_mm")]
+    assert written()["input"]["column"] == "Kraft_N"
+
+
+def test_a_kind_that_is_none_may_be_left_out(run, tmp_path):
+    status, _, told = run("init", *records(tmp_path), "--device", "magnetorheological")
+    assert status
+    assert "'magnetorheological' is not one of" in told
+    assert told.rstrip().endswith("; leave it out where none fits")

@@ -8,7 +8,8 @@ import pytest
 
 from hystbench.dataset import load_dataset
 from hystbench.inspection import screen
-from hystbench.inspection.check import check, loop_of_plays
+from hystbench.inspection.base import loop_of_plays
+from hystbench.inspection.check import check
 from hystbench.inspection.page import page
 from tests.inspection.made import COUNT, DT, loop, sine, write
 

@@ -36,6 +36,9 @@ def test_units_in_names(name, words, unit):
         ([("channel 1", None), ("channel 2", None)], (None, None)),
         ([("voltage", "V"), ("current", "A"), ("stroke", "um")], (None, 2)),
         ([("pump", "V"), ("level", "V")], (0, 1)),
+        ([("Weg", "mm"), ("Kraft", "N")], (None, None)),
+        ([("force", "N"), ("displacement", "mm")], (None, None)),
+        ([("force", "N"), ("x", None), ("y", None)], (None, None)),
     ],
 )
 def test_input_and_output_by_name_and_unit(columns, expected):

@@ -85,7 +85,7 @@ def test_a_loop_that_does_not_fit_is_no_base_to_count_effects_on(tmp_path):
     place = write(tmp_path, made, about=about, roles={"held": "hold-out"})
     found = check(load_dataset(place))
     assert found.judged
-    assert not found.fits
+    assert not found.base.fits
     said = screen.headline(found)
     assert "effects judged" not in said
     assert "does not fit" in said
@@ -98,5 +98,5 @@ def test_a_loop_that_fits_is_counted_on(tmp_path):
     made = {"one": (wave(0), noisy(y, 1)), "held": (wave(1), loop(wave(1)))}
     place = write(tmp_path, made, roles={"held": "hold-out"})
     found = check(load_dataset(place))
-    assert found.fits
+    assert found.base.fits
     assert "effects judged" in screen.headline(found)

@@ -22,21 +22,20 @@ def check(
         bool, "Whether to simulate effects; long records take minutes."
     ] = True,
     model: Annotated[
-        str | None, "What 'hystbench gap --model' shall take: run it on all records."
+        str | None,
+        "What 'hystbench gap --model' shall take: it is run on all records, and "
+        "effects are judged beside it. By default beside a loop that does not depend "
+        "on the rate.",
     ] = None,
 ) -> None:
     """Say what the records of DATASET are like and which effects they can reveal.
 
     Prints one screen: rates, jitter, periods, stuck channels, missing samples, delays,
     noise, bands and levels; what is wrong, with the line for dataset.yaml that mends
-    it; and how strong each effect must be to be seen, and told from the others.
+    it; and how strong each effect must be to be seen, and told from the others, beside
+    a model ('--model') or else beside a loop that does not depend on the rate.
     """
-    if model is not None:
-        # Late: it loads bases.
-        from hystbench.inspection.simulator import simulator_line
-
-        click.echo(simulator_line(dataset, model))
-    found = look(load_dataset(dataset), effects)
+    found = look(load_dataset(dataset), effects, model or "")
     for line in screen.lines(found):
         click.echo(line)
     if out is not None:

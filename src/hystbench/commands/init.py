@@ -48,19 +48,22 @@ def init(
     options.warn(found.warnings)
 
 
-def _refused(question: str, choices: Sequence[str], flag: str) -> str:
-    """Refuse what nobody is there to be asked; units alone have a word for unknown."""
-    if flag.endswith("-unit"):
-        return "-"
+def _refused(
+    question: str, choices: Sequence[str], flag: str, likely: str | None
+) -> str:
+    """Refuse what nobody is there to be asked, unless something is likely."""
+    if likely is not None:
+        return likely
     told = f"; expected one of {', '.join(choices)}" if choices else ""
     raise InputError(f"{question}: not told; say {flag}{told}")
 
 
-def _asked(question: str, choices: Sequence[str], flag: str) -> str:
+def _asked(
+    question: str, choices: Sequence[str], _flag: str, likely: str | None
+) -> str:
     """Ask on the terminal."""
     kind = click.Choice(list(choices)) if choices else None
-    default = "-" if flag.endswith("-unit") else None
-    answer: str = click.prompt(question, type=kind, default=default, err=True)
+    answer: str = click.prompt(question, type=kind, default=likely, err=True)
     return answer
 
 

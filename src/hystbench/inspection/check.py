@@ -1,31 +1,26 @@
 """A dataset looked at: what each record is like, what is wrong, what it can reveal."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from hystbench.blocks import block_class
 from hystbench.dataset import Dataset
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
 from hystbench.flat import flats
-from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.floor import Floor, noise_floor
 from hystbench.gap.records.scored_samples import Compared
-from hystbench.gap.thresholds import LOOSE
+from hystbench.inspection.base import Base, base_of
 from hystbench.inspection.entries import entry_text
 from hystbench.inspection.facts import Facts, facts_of, late
+from hystbench.inspection.findings import KIND_ORDER, Finding, finding
+from hystbench.inspection.model_findings import model_findings
 from hystbench.inspection.same_input import FAR_APART, SameInput, same_inputs
 from hystbench.inspection.visible import SmallestSeen, seen_effects
 from hystbench.metrics import rms
-from hystbench.model import Model
-from hystbench.operators import play
 from hystbench.record import Record
-from hystbench.yaml_files import load_yaml
 
 SAME_RATIO = 2.0
 """Ratio of the fastest rate to the slowest below which records are of one rate."""
@@ -33,24 +28,6 @@ ONE_RATE = ("sine", "ramps")
 """Kinds of input of which a record has one rate, or few."""
 UNEVEN_SHARE = 0.01
 """Share of a step: a clock that is less even than that is told."""
-PLAY_OPERATORS = 10
-"""Play operators, the first of threshold zero: the input itself."""
-
-
-@dataclass(frozen=True)
-class Finding:
-    """One thing that a reader should know."""
-
-    kind: str
-    """``wrong``: ``hystbench gap`` refuses it; ``missing``: dataset.yaml lacks it; or
-    ``note``."""
-    text: str
-    paste: tuple[str, ...] = ()
-    """Lines for dataset.yaml that mend it."""
-    topic: str = ""
-    """Findings of one topic say the same of several records."""
-    record: str = ""
-    """Whom it concerns; empty where that is no single record."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,30 +36,14 @@ class Check:
 
     dataset: Dataset
     records: tuple[Record, ...]
-    """Records, with the periods that were found."""
     facts: tuple[Facts, ...]
     """Facts, in their order."""
     floor: Floor
-    left: float
-    """Rms of what it leaves on the fit records, in the output's unit."""
+    base: Base
+    """What effects are judged beside."""
     findings: tuple[Finding, ...]
     effects: tuple[SmallestSeen, ...]
     """Empty where they were not simulated."""
-
-    @property
-    def share_left(self) -> float:
-        """Share of the output's rms on the fit records, about its mean, of ``left``."""
-        outputs = [x.y[x.counted] for x in self.records if x.use == "fit"]
-        power = float(np.mean([np.var(y) for y in outputs]))
-        return self.left / np.sqrt(power) if power > 0 else 0.0
-
-    @property
-    def fits(self) -> bool:
-        """Whether the loop is a base to judge effects on.
-
-        It is none where it leaves half of the output's rms.
-        """
-        return self.share_left**2 <= LOOSE
 
     @property
     def revealed(self) -> tuple[SmallestSeen, ...]:
@@ -105,7 +66,7 @@ class Check:
         return tuple(item for item in self.effects if not item.judged)
 
 
-def check(dataset: Dataset, effects: bool = True) -> Check:
+def check(dataset: Dataset, effects: bool = True, model: str = "") -> Check:
     """Look at all records of a dataset.
 
     Parameters
@@ -113,87 +74,53 @@ def check(dataset: Dataset, effects: bool = True) -> Check:
     dataset : Dataset
     effects : bool
         Whether to simulate them, which takes most of the time.
+    model : str
+        As of ``hystbench gap --model``: effects are judged beside it. By default
+        beside a loop of play operators that is fitted to the records.
 
     Raises
     ------
     InputError
-        If a record cannot be read, or one held out is a copy of one to fit.
+        If a record cannot be read, one held out is a copy of one to fit, or the model
+        is none of these records.
     """
     records = tuple(dataset.read(name) for name in dataset.record_files)
-    fit = [record for record in records if record.use == "fit"]
-    base = loop_of_plays(fit)
-    hold = dataset.input_hold
-    outputs = run_base(base, records, hold)
-    compared = [Compared(*pair) for pair in zip(records, outputs, strict=True)]
-    facts = tuple(facts_of(dataset, item) for item in compared)
-    compared = [
-        replace(item, record=replace(item.record, period_samples=about.period))
-        for item, about in zip(compared, facts, strict=True)
-    ]
-    to_fit = [item for item in compared if item.record.use == "fit"]
-    floor = noise_floor(to_fit, dataset.about.get("noise_rms"))
-    left = rms(*(x.residual[x.record.counted] for x in to_fit))
+    base = base_of(dataset, records, model)
+    facts = tuple(facts_of(dataset, item) for item in base.whole)
+    periods = {item.name: item.period for item in facts}
+    floor = noise_floor(
+        [_repeating(item, periods) for item in base.fit],
+        dataset.about.get("noise_rms"),
+    )
+    found = [*_findings(dataset, records, facts, floor), *model_findings(dataset, base)]
     return Check(
         dataset,
-        tuple(item.record for item in compared),
+        records,
         facts,
         floor,
-        left,
-        tuple(_findings(dataset, records, facts, floor)),
-        seen_effects(base, [item.record for item in to_fit], floor.rms, hold)
+        base,
+        tuple(sorted(found, key=lambda item: KIND_ORDER.index(item.kind))),
+        seen_effects(
+            base.model,
+            [item.record for item in base.fit],
+            floor.rms,
+            dataset.input_hold,
+        )
         if effects
         else (),
     )
 
 
-def loop_of_plays(records: Sequence[Record]) -> Model:
-    """Fit a gain, an offset and play operators to records, by least squares.
-
-    ``y = g (u + sum_i w_i P_i[u]) + c``: a hysteresis that does not depend on the rate.
-
-    Parameters
-    ----------
-    records : sequence of Record
-        All of one input and output.
-
-    Returns
-    -------
-    Model
-        A ``prandtl-ishlinskii`` block and a ``gain``.
-    """
-    amplitude = max(float(np.abs(record.u).max()) for record in records)
-    thresholds = amplitude * np.arange(PLAY_OPERATORS) / PLAY_OPERATORS
-    tables, outputs = [], []
-    for record in records:
-        plays = play(record.u, thresholds)
-        weight = 1 / np.sqrt(len(record))  # a record counts once, however long
-        tables.append(weight * np.column_stack([np.ones(len(record)), plays]))
-        outputs.append(weight * record.y)
-    table, y = np.vstack(tables), np.concatenate(outputs)
-    size = np.linalg.norm(table, axis=0)
-    size[size == 0] = 1.0
-    offset, *weights = np.linalg.lstsq(table / size, y, rcond=1e-6)[0] / size
-    reach = max(float(np.ptp(r.y)) for r in records) / (2 * amplitude)
-    gain = max(abs(sum(weights)), 1e-3 * reach)
-    shares = np.array(weights) / gain
-    shares[0] -= 1.0  # the block has the input itself beside its operators
-    return Model(
-        "loop of play operators",
-        records[0].input,
-        records[0].output,
-        (
-            block_class("prandtl-ishlinskii").from_mapping(
-                {"thresholds": thresholds.tolist(), "weights": shares.tolist()}
-            ),
-            block_class("gain").from_mapping({"value": gain, "offset": float(offset)}),
-        ),
-    )
+def _repeating(item: Compared, periods: Mapping[str, int | None]) -> Compared:
+    """Give a record with the period that was found; a window of one has none."""
+    period = periods.get(item.record.name)
+    return replace(item, record=replace(item.record, period_samples=period))
 
 
 def _findings(
     dataset: Dataset, records: Sequence[Record], facts: Sequence[Facts], floor: Floor
 ) -> list[Finding]:
-    """Say what a reader should know, what is refused first; words are in check.yaml."""
+    """Say what a reader should know of the records."""
     both = list(zip(records, facts, strict=True))
     found = [each for pair in both for each in _still(dataset, *pair)]
     new = [item for item in facts if item.period and not item.declared]
@@ -201,11 +128,11 @@ def _findings(
         told = ", ".join(f"{item.name} every {item.period} samples" for item in new)
         lines = [_entry(dataset, item.name, period_samples=item.period) for item in new]
         topic = "steady" if "noise_rms" in dataset.about else "periods"
-        found.append(_finding(topic, told=told, paste=lines))
-    found += [_finding("no period", **vars(x)) for x in facts if not x.repeats]
+        found.append(finding(topic, told=told, paste=lines))
+    found += [finding("no period", **vars(x)) for x in facts if not x.repeats]
     found += [each for item in facts for each in _holes(item)]
     found += [
-        _finding(
+        finding(
             "late" if by > 0 else "early",
             name=item.name,
             ms=1e3 * abs(by),
@@ -217,7 +144,7 @@ def _findings(
     if twice and floor.method == "upper-bound":
         found.append(_of_one_input(twice, records[0].output.unit))
     found += [
-        _finding("apart", name=x.other, times=x.rms / floor.rms, **x._asdict())
+        finding("apart", name=x.other, times=x.rms / floor.rms, **x._asdict())
         for x in twice
         if floor.method != "upper-bound" and x.rms > FAR_APART * floor.rms
     ]
@@ -230,13 +157,12 @@ def _findings(
         "one rate": alone and max(rates) < SAME_RATIO * min(rates),
         "one amplitude": max(spans) < SAME_RATIO * min(x.least_swing for x in fit),
     }
-    found += [_finding(topic) for topic, holds in on_the_whole.items() if holds]
+    found += [finding(topic) for topic, holds in on_the_whole.items() if holds]
     try:
-        found += [_finding("doubt", line=line) for line in doubts(dataset, records)]
+        found += [finding("doubt", line=line) for line in doubts(dataset, records)]
     except InputError as error:
-        found.append(_finding("refused", line=str(error)))
-    order = ("wrong", "missing", "note")
-    return sorted(found, key=lambda item: order.index(item.kind))
+        found.append(finding("refused", line=str(error)))
+    return found
 
 
 def _of_one_input(twice: Sequence[SameInput], unit: str) -> Finding:
@@ -244,7 +170,7 @@ def _of_one_input(twice: Sequence[SameInput], unit: str) -> Finding:
     noise = rms(np.array([item.noise for item in twice]))
     told = "; ".join(f"{x.first} and {x.other} have the same input" for x in twice)
     lines = [f"noise_rms: {noise:.3g}"]
-    return _finding("same input", lines, told=told, noise=noise, unit=unit)
+    return finding("same input", lines, told=told, noise=noise, unit=unit)
 
 
 def _still(dataset: Dataset, record: Record, item: Facts) -> Iterator[Finding]:
@@ -253,7 +179,7 @@ def _still(dataset: Dataset, record: Record, item: Facts) -> Iterator[Finding]:
         of_input = item.stuck.partition(": ")[2].startswith(record.input.name)
         channels = ["input" if of_input else "output"]
         line = _entry(dataset, item.name, stands_still=channels)
-        yield _finding("stuck", paste=[line], **vars(item))
+        yield finding("stuck", paste=[line], **vars(item))
     given = ("input", record.input, record.u), ("output", record.output, record.y)
     for key, channel, values in given:
         on_purpose = key == "input" and item.input.kind in ("steps", "ramps")
@@ -261,7 +187,7 @@ def _still(dataset: Dataset, record: Record, item: Facts) -> Iterator[Finding]:
             continue
         for flat in flats(values):
             said = vars(channel) | {"channel": channel.name, "name": item.name}
-            made = _finding("flat", flat=flat, first=flat.first + 1, **said)
+            made = finding("flat", flat=flat, first=flat.first + 1, **said)
             yield replace(made, topic=f"{flat.kind} {key}")
 
 
@@ -269,23 +195,9 @@ def _holes(item: Facts) -> Iterator[Finding]:
     """Say of a record that samples are missing, or its clock is uneven."""
     if item.missing:
         far = " too far" * item.bridged_too_far
-        yield replace(_finding(f"bridged{far}", **vars(item)), topic="missing")
+        yield replace(finding(f"bridged{far}", **vars(item)), topic="missing")
     if item.jitter is not None and item.jitter > UNEVEN_SHARE:
-        yield _finding("jitter", name=item.name, percent=100 * item.jitter)
-
-
-def _finding(topic: str, paste: Sequence[str] = (), **told: Any) -> Finding:
-    """Give a finding in the words of check.yaml, filled with what is told."""
-    about = _words()[topic]
-    lines = tuple(paste or about.get("paste", ()))
-    text = about["text"].format(**told)
-    return Finding(about["kind"], text, lines, topic, told.get("name", ""))
-
-
-@cache
-def _words() -> dict[str, Any]:
-    found: dict[str, Any] = load_yaml(Path(__file__).with_suffix(".yaml"))
-    return found
+        yield finding("jitter", name=item.name, percent=100 * item.jitter)
 
 
 def _entry(dataset: Dataset, name: str, **more: Any) -> str:

@@ -8,11 +8,18 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from hystbench.device_kinds import DeviceKind
+from hystbench.device_kinds import DEVICE_KINDS, DeviceKind
 from hystbench.errors import InputError, refuse_unknown
 from hystbench.formats import Column, Table
 from hystbench.inspection.clocks import clock_of
-from hystbench.inspection.names import choose, is_simulated, is_time, split_unit
+from hystbench.inspection.names import (
+    both_answer,
+    choose,
+    is_simulated,
+    is_time,
+    split_unit,
+)
+from hystbench.options import ChoiceOrNone
 from hystbench.record import FloatArray
 from hystbench.units import NONE, check_known, is_known, plain
 
@@ -22,9 +29,9 @@ SHORTEST = 20
 _OF_MATRIX = re.compile(r"(?P<stem>.+)(?P<place>\(:,\d+\))")
 
 
-Ask = Callable[[str, Sequence[str], str], str]
-"""Asks the user, or refuses where nobody is there: takes a question, the choices that
-there are, if any, and the flag that answers it."""
+Ask = Callable[[str, Sequence[str], str, str | None], str]
+"""Asks the user: takes a question, the choices that there are, if any, the flag that
+answers it, and what is taken where nobody is there; if that is None it is refused."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +54,11 @@ class Flags:
         Literal["interpolate", "split"] | None,
         "What to do where samples are missing.",
     ] = None
-    device: Annotated[DeviceKind | None, "Kind of the device."] = None
+    device: Annotated[
+        DeviceKind | None,
+        ChoiceOrNone(DEVICE_KINDS),
+        "Kind of the device; leave it out where none fits.",
+    ] = None
     name: Annotated[
         str | None, "Name of the dataset; by default that of its folder."
     ] = None
@@ -155,12 +166,19 @@ def signals_of(parts: Sequence[RecordColumns], given: Flags, ask: Ask) -> Chosen
         )
     chosen = _channels(first, rest, told, given, ask)
     units, notes = {}, []
+    if given.input is None and given.output is None:
+        pair = [name for name in rest if name in chosen]
+        if both_answer([told[name] for name in pair]):
+            notes.append(
+                f"input: {chosen[0]!r}, output: {chosen[1]!r}; names and units do not "
+                f"tell which is which ('--input {chosen[1]}' takes the other)"
+            )
     for key, name in (("input", chosen[0]), ("output", chosen[1])):
         asked = getattr(given, f"{key}_unit")
         unit = asked if asked is not None else told[name][1]
         if unit is None:
             unit = ask(
-                f"Unit of the {key} {name!r} ('-' for none)", (), f"--{key}-unit"
+                f"Unit of the {key} {name!r} ('-' for none)", (), f"--{key}-unit", "-"
             )
         check_known(f"--{key}-unit", unit)
         if unit in NONE and asked is None:
@@ -260,7 +278,8 @@ def _channels(
             open_ = [name for name in left if name not in found]
             alone = len(open_) == 1 and found[1 - k] is not None
             asked = f"Which column is the {key}"
-            found[k] = open_[0] if alone else ask(asked, open_, f"--{key}")
+            likely_one = open_[0] if both_answer([told[n] for n in open_]) else None
+            found[k] = open_[0] if alone else ask(asked, open_, f"--{key}", likely_one)
     one, two = found
     if one is None or two is None or one == two:
         raise InputError(

@@ -149,7 +149,10 @@ def _frequency(
     ]
     if None in told:
         text = ask(
-            "No column of time; sampling frequency in Hz", (), "--sampling-frequency"
+            "No column of time; sampling frequency in Hz",
+            (),
+            "--sampling-frequency",
+            None,
         )
         about["sampling_frequency_hz"] = checked_frequency(text)
         return
@@ -203,6 +206,7 @@ def _without_missing(
         f"{said}; 'interpolate' them or 'split' the record there",
         ("interpolate", "split"),
         "--missing",
+        None,
     )
     u = part.columns[signals.input].values
     cut = cannot_be_bridged(u) if what == "interpolate" else bad

@@ -24,7 +24,7 @@ FINEST, WHOLE = 13, 1e-3
 LATE_SAMPLES = 1.0
 """Samples by which a record is late against the others, worth telling."""
 DELAY_SHARE = 0.5
-"""Least share of what the loop leaves of a record: the delay is then what is wrong with
+"""Least share of what the base leaves of a record: the delay is then what is wrong with
 it."""
 ONE_RATE = 0.9
 """Share of a slope's power that goes with its direction: all of a triangle's, .81 of a
@@ -71,10 +71,9 @@ class Facts:
     """Whether a gap of the input is longer than a straight line can stand for."""
     delay_s: float
     delay_error_s: float
-    """Delay of the output behind a loop that does not depend on the rate, and its
-    standard error."""
+    """Delay of the output behind that of the base, and its standard error."""
     delay_share: float
-    """Share of the power that the loop leaves which goes with the delay."""
+    """Share of the power that the base leaves which goes with the delay."""
 
     @property
     def periods(self) -> float:
@@ -89,7 +88,7 @@ def facts_of(dataset: Dataset, item: Compared) -> Facts:
     ----------
     dataset : Dataset
     item : Compared
-        The record beside a loop of play operators.
+        The record beside what the base of the check gives.
     """
     record = item.record
     file = dataset.record_files[record.name]

@@ -94,6 +94,8 @@ def choose(
         Places of input and output; None where they are not told.
     """
     leans = [leaning(name, unit) for name, unit in columns]
+    if both_answer(columns):
+        return None, None
     found: list[int | None] = []
     for wanted in (1, -1):
         best = max((wanted * lean for lean in leans), default=0)
@@ -104,6 +106,14 @@ def choose(
         one = 1 - two if one is None and two is not None else one
         two = 1 - one if two is None and one is not None else two
     return one, two
+
+
+def both_answer(columns: Sequence[tuple[str, str | None]]) -> bool:
+    """Tell whether there are two columns that look like outputs, as way and force.
+
+    A shaker's rig has the force as its input, a damper's the way.
+    """
+    return len(columns) == 2 and all(leaning(*column) < 0 for column in columns)
 
 
 def _has(name: str, known: Sequence[str]) -> bool:

@@ -27,6 +27,7 @@ from hystbench.inspection.screen import (
     band,
     headline,
     jitter_text,
+    leaves,
     percent,
     quantity,
 )
@@ -59,7 +60,9 @@ def page(found: Check) -> str:
         f"{record.output.name} ({unit})",
         noise=f"{quantity(found.floor.rms, record.output.unit)} rms, "
         f"{FLOORS[found.floor.method]}",
-        left=f"{quantity(found.left, record.output.unit)} rms",
+        leaves=_sentence(leaves(found)),
+        called=found.base.called,
+        freed=" or free number" if found.base.model.free else "",
         findings=found.findings,
         kinds=KINDS,
         records=_records(found),
@@ -76,14 +79,26 @@ def page(found: Check) -> str:
 
 
 def _misfit(found: Check) -> str:
-    """Warn where the loop is no base to judge effects on; else nothing."""
-    if found.fits:
+    """Warn where the base is none to judge effects on; else nothing."""
+    base = found.base
+    if base.fits:
         return ""
+    share = percent(base.share_left)
+    if base.given:
+        return (
+            f"{_sentence(base.called)} leaves {share} of the output's rms. So read the "
+            "tables as of a device that is such a model."
+        )
     return (
-        f"That loop does not fit: it leaves {percent(found.share_left)} of the "
-        "output's rms. So read the tables as of a device that is such a loop; they do "
-        "not tell what this one shows."
+        f"That loop does not fit: it leaves {share} of the output's rms. So read the "
+        "tables as of a device that is such a loop; they do not tell what this one "
+        "shows. With --model the effects are judged beside your simulator."
     )
+
+
+def _sentence(text: str) -> str:
+    """Begin a sentence."""
+    return text[:1].upper() + text[1:]
 
 
 def _records(found: Check) -> PageTable:
@@ -114,8 +129,8 @@ def _records(found: Check) -> PageTable:
     return table_of(
         "records",
         "All records. The band holds 99 % of the input's power. The delay is that of "
-        "the output behind the loop of play operators: a lag and a late trigger both "
-        "show in it.",
+        f"the output behind {found.base.called}: a lag and a late trigger both show in "
+        "it.",
         found.facts,
         shown,
         dense=True,

@@ -10,8 +10,9 @@ from itertools import groupby
 from textwrap import wrap
 
 from hystbench.figures.style import unit_text
-from hystbench.inspection.check import Check, Finding
+from hystbench.inspection.check import Check
 from hystbench.inspection.facts import Facts
+from hystbench.inspection.findings import Finding
 from hystbench.inspection.visible import SmallestSeen
 from hystbench.report.markup import one_micro
 
@@ -20,7 +21,12 @@ FLOORS = {
     "declared": "declared",
     "upper-bound": "an upper bound, as no period comes twice",
 }
-KINDS = {"wrong": "refused by 'hystbench gap'", "missing": "to add", "note": "note"}
+KINDS = {
+    "wrong": "refused by 'hystbench gap'",
+    "model": "of the model",
+    "missing": "to add",
+    "note": "note",
+}
 EVEN_CLOCK = 1e-6
 """Share of a step to which an even clock is even."""
 WIDTH = 100
@@ -82,10 +88,21 @@ def _head(found: Check) -> list[str]:
         *_lines(
             f"{record.input.label} to {record.output.label}; noise "
             f"{quantity(found.floor.rms, unit)} rms ({FLOORS[found.floor.method]}); "
-            "a loop that does not depend on the rate leaves "
-            f"{quantity(found.left, unit)}"
+            f"{leaves(found)}"
         ),
     ]
+
+
+def leaves(found: Check) -> str:
+    """Say what the base leaves of the records to fit."""
+    base, unit = found.base, found.records[0].output.unit
+    left = quantity(base.left, unit)
+    if not base.given:
+        return f"a loop that does not depend on the rate leaves {left}"
+    return (
+        f"{base.note}. It runs on all records, and leaves {left} rms of the fit "
+        f"records, whose outputs move by {quantity(base.moves, unit)} rms"
+    )
 
 
 def _each(facts: Sequence[Facts], unit: str) -> list[str]:
@@ -209,14 +226,22 @@ def _effects(found: Check) -> dict[str, list[str]]:
         for x in found.revealed
         for rival, share in x.rivals[:1]
     )
-    beside = "Seen" if found.fits else "Beside that loop, which does not fit, seen"
     told = {
-        "seen": [f"  {beside} from this share of the output on (rms):", *seen],
-        "alike": ["  Not told apart, up to this share of the output:", *pairs],
-        "hidden": ["  Not revealed:", *_hidden(found.hidden)],
-        "unjudged": ["  Not judged here:", *_hidden(found.unjudged)],
+        "seen": (f"{_beside(found)} from this share of the output on (rms):", seen),
+        "alike": ("Not told apart, up to this share of the output:", pairs),
+        "hidden": ("Not revealed:", _hidden(found.hidden)),
+        "unjudged": ("Not judged here:", _hidden(found.unjudged)),
     }
-    return {key: part if len(part) > 1 else [] for key, part in told.items()}
+    return {
+        key: [*_lines(words), *part] if part else []
+        for key, (words, part) in told.items()
+    }
+
+
+def _beside(found: Check) -> str:
+    if found.base.given:
+        return f"Beside {found.base.called} seen"
+    return "Seen" if found.base.fits else "Beside that loop, which does not fit, seen"
 
 
 def _hidden(effects: Sequence[SmallestSeen]) -> list[str]:
@@ -253,22 +278,33 @@ def headline(found: Check) -> str:
     """Say in one sentence what is to be done, or that nothing is."""
     wrong = sum(item.kind == "wrong" for item in found.findings)
     missing = sum(item.kind == "missing" for item in found.findings)
-    seen, every = len(found.revealed), len(found.judged)
-    can = f"the records to fit can reveal {seen} of the {every} effects judged"
-    if not every:
-        can = "which effects the records can reveal was not asked"
-    elif not found.fits:
-        can = (
-            "which effects the records can reveal is not told, as the loop they would "
-            f"be judged on does not fit: it leaves {percent(found.share_left)} of the "
-            "output's rms"
-        )
+    can = _can(found)
     if wrong:
         things = "thing is" if wrong == 1 else "things are"
         return f"{wrong} {things} wrong, which 'hystbench gap' refuses; {can}."
+    doubted = any(item.kind == "model" for item in found.findings)
+    but = "the model may be wrong; " * doubted
     if missing:
-        return f"Usable, with {missing} to add; {can}."
-    return f"Usable as it is; {can}."
+        return f"Usable, with {missing} to add; {but}{can}."
+    return f"Usable as it is; {but}{can}."
+
+
+def _can(found: Check) -> str:
+    """Say how many effects the records can reveal, and beside what."""
+    base, seen, every = found.base, len(found.revealed), len(found.judged)
+    if not every:
+        return "which effects the records can reveal was not asked"
+    if not (base.fits or base.given):
+        return (
+            "which effects the records can reveal is not told, as the loop they would "
+            f"be judged on does not fit: it leaves {percent(base.share_left)} of the "
+            "output's rms. With '--model MODEL' they are judged beside your simulator"
+        )
+    beside = f"beside {base.called} " if base.given else ""
+    can = f"{beside}the records to fit can reveal {seen} of the {every} effects judged"
+    if base.fits:
+        return can
+    return f"{can}, but it leaves {percent(base.share_left)} of the output's rms"
 
 
 def level(facts: Facts, unit: str) -> str:

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from hystbench.blocks import block_class
+from hystbench.gap.fitting.on_records import free_numbers
 from hystbench.gap.fitting.score import record_weight
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.scored_samples import ScoredSamples
@@ -92,17 +93,18 @@ def seen_effects(
         If the base does not run on the records.
     """
     sample = ScoredSamples.of(records)
-    state = ModelState(base.chain, tuple(records), sample, hold=hold)
+    base = base.with_hold(hold)
+    free = free_numbers(base)
+    state = ModelState(base.chain, tuple(records), sample, free=free, hold=hold)
     shapes, declined = shapes_of(state)
     own = _own(state)
-    if "hysteresis" in declined:
-        more = _hysteresis(state)
-        shapes += more
-        if more:
-            del declined["hysteresis"]
+    own_loop: list[Shape] = []
+    if "hysteresis" in declined and (own_loop := _hysteresis(state)):
+        shapes += own_loop
+        del declined["hysteresis"]
     reach = float(np.sqrt(np.mean([np.var(record.y) for record in records])))
     judge = _Judge(state, own, floor, reach)
-    measured = [judge.measured(shape) for shape in shapes]
+    measured = [judge.measured(shape, shape in own_loop) for shape in shapes]
     found = []
     for name in dict.fromkeys(shape.effect for shape in shapes):
         mine = [item for item in measured if item.shape.effect == name]
@@ -120,7 +122,13 @@ def _own(state: ModelState) -> FloatArray:
     output = sample.take(simulation.output)[:, None]
     return orthonormal(
         np.hstack(
-            [one, output, reshapings(simulation, sample), products(simulation, sample)]
+            [
+                one,
+                output,
+                reshapings(simulation, sample),
+                products(simulation, sample),
+                state.tangents,
+            ]
         )
     )
 
@@ -179,11 +187,14 @@ class _Judge:
         self.slices = state.sample.slices
         self.weight = record_weight(len(self.slices))
 
-    def measured(self, shape: Shape) -> _Measured:
-        """Take off what the base could do, and see how much of the rest it takes."""
+    def measured(self, shape: Shape, of_base: bool) -> _Measured:
+        """Take off what the base could do, and see how much of the rest it takes.
+
+        The hysteresis of the base itself stays: it stands beside a line already.
+        """
         columns = shape.columns
         left = columns
-        if shape.effect != "hysteresis":  # that is the base's own, beside a line
+        if not of_base:
             left = columns - self.own @ (self.own.T @ columns)
         total, rest = float(np.sum(columns**2)), float(np.sum(left**2))
         if rest < ROUNDING_SHARE * total:
@@ -256,9 +267,15 @@ class _Judge:
         if share <= REVEALED:
             return ""
         if item.absorbed > ABSORBED_SHARE:
+            shape = ", shape of the hysteresis" * (
+                self.state.simulation.loop is not None
+            )
+            free = ", free number" * bool(self.state.free)
+            could = f"gain, offset{shape}{free}"
+            last = " or ".join(could.rsplit(", ", 1))
             return (
-                f"{100 * item.absorbed:.4g} % of what it does is what another gain, "
-                "offset or shape of the hysteresis does too"
+                f"{100 * item.absorbed:.4g} % of what it does is what another {last} "
+                "does too"
             )
         noise = f"the noise ({100 * self.floor / self.reach:.2g} % of the output)"
         if not np.isfinite(share):

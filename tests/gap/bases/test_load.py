@@ -1,5 +1,6 @@
 """Bases: identified from the fit records, or a simulator that a user brings."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -269,6 +270,21 @@ class TestHysteresis:
         _, note = identified_gpi(evidence(record(u, u + noise)))
         assert "epsilon not reached" in note
         assert "relative error 0.8" in note  # 1 / sqrt(1 + 0.5)
+
+    def test_a_tolerance_that_is_not_reached_is_told_in_plain_words(self):
+        """White noise of one beside a sine of three: a third of its rms over sqrt 2."""
+        u = sine(2.0)
+        noise = np.random.default_rng(0).standard_normal(len(u))
+        made = record(u, 3.0 * u + noise)
+        share = 100 * np.std(noise) / np.std(made.y)
+        _, note = identified_gpi(evidence(made))
+        told = note.partition("So it leaves ")[2]
+        assert float(told.partition(" um rms of record made, ")[2].split(" %")[0]) == (
+            pytest.approx(share, rel=0.1)
+        )
+        assert "an effect smaller than that can hide" in told
+        _, note = identified_gpi(dataclasses.replace(evidence(made), noise_rms=1.0))
+        assert "with a noise of 1 um: that is noise" in note
 
     def test_an_offset_stands_behind_it(self):
         slow = self.slow(offset=40.0)

@@ -30,7 +30,10 @@ from hystbench.gap.bases.split_linear import split_given
 from hystbench.gap.cache import records_digest, remembered
 from hystbench.gap.records.evidence import Evidence, check_units
 from hystbench.gap.simulation.simulation import Simulation
+from hystbench.gap.thresholds import ABOVE_NOISE
+from hystbench.metrics import rms
 from hystbench.model import Model, check_bounded, load_model
+from hystbench.record import Record
 
 
 def load_base(text: str | Model, evidence: Evidence) -> tuple[Model, str]:
@@ -271,4 +274,26 @@ def identified_gpi(evidence: Evidence) -> tuple[Model, str]:
         f"gpi base of order {ORDER} from record {slow.name}, from {found.start}: "
         f"{found.message}"
     )
+    if not found.reached:
+        left = rms(slow.y - found.simulate(slow.u))
+        note += f". {_leaves(slow, left, evidence)}"
     return Model("gpi", evidence.input, evidence.output, chain), note
+
+
+def _leaves(record: Record, left: float, evidence: Evidence) -> str:
+    """Say what it means that a base is not as near to its record as was asked."""
+    unit = record.output.unit
+    noise = evidence.noise_rms
+    known = "" if noise is None else f", with a noise of {noise:.3g} {unit}"
+    share = left / max(float(np.std(record.y)), 1e-300)
+    told = (
+        f"So it leaves {left:.3g} {unit} rms of record {record.name}, "
+        f"{100 * share:.2g} % of its output{known}"
+    )
+    if noise is not None and left**2 <= (1 + ABOVE_NOISE) * noise**2:
+        return f"{told}: that is noise, and the loop fits its record"
+    return (
+        f"{told}: an effect smaller than that can hide in the base's own error. Name a "
+        "slower or less noisy record under 'identification' in dataset.yaml, bring a "
+        "model of your own (--model FILE), or take --model linear for what has no loop"
+    )

@@ -278,6 +278,13 @@ def never_at_rest(signals: Sequence[FloatArray]) -> bool:
     return any(len(z) > 0 and (z.min() > 0.0 or z.max() < 0.0) for z in signals)
 
 
+NOT_IN_CHAIN = (
+    "it acts inside the dynamics: 'hystbench gap' tries it there, not in the chain; to "
+    "put it in by hand, write it in the model file"
+)
+"""Why an effect that acts inside the dynamics has no place in a chain."""
+
+
 class InsideEffect(Effect):
     """An effect that acts inside the dynamics and nowhere else."""
 
@@ -291,10 +298,7 @@ class InsideEffect(Effect):
         Declined
             Always.
         """
-        raise Declined(
-            "it acts inside the dynamics: 'hystbench gap' tries it there, not in the "
-            "chain; to put it in by hand, write it in the model file"
-        )
+        raise Declined(NOT_IN_CHAIN)
 
 
 class StoreEffect(InsideEffect):

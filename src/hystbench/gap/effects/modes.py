@@ -13,12 +13,13 @@ from scipy import fft
 from hystbench.blocks import block_class
 from hystbench.blocks.base import Block
 from hystbench.blocks.exponential_stiffness import ExponentialStiffness
+from hystbench.blocks.force import Dynamics
 from hystbench.blocks.saturating_stiffness import SaturatingStiffness
 from hystbench.blocks.stiffness import Stiffness
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.blocks.transverse_springs import TransverseSprings
 from hystbench.errors import InputError
-from hystbench.gap.effects.effect import Declined, Effect
+from hystbench.gap.effects.effect import NOT_IN_CHAIN, Declined, Effect
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.effects.places import TRANSFER_FUNCTION
 from hystbench.gap.effects.variant import Values, Variant, logarithmic
@@ -145,8 +146,11 @@ class StiffnessHardening(Effect):
             for before, mode in _modes(block):
                 found = True
                 yield from self._hardened(simulation, k, before, mode)
-        if not found:
-            raise Declined("the chain has no mode whose spring could harden")
+        if found:
+            return
+        if any(isinstance(block, Dynamics) for block in simulation.chain):
+            raise Declined(NOT_IN_CHAIN)
+        raise Declined("the chain has no mode whose spring could harden")
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer a cube of either sign, a square beside it, and other springs.

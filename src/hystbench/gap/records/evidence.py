@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hystbench.blocks.held import Hold
-from hystbench.dataset import load_dataset
+from hystbench.dataset import Dataset, load_dataset
 from hystbench.device_kinds import DeviceKind
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
@@ -103,26 +103,39 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
         file = dataset.record_files[record.name]
         _check_length(file, record)
         check_usable(file, record, dataset.stands_still(record.name))
-    about = dataset.about
-    named = about.get("identification")
+    named = dataset.about.get("identification")
     if named is not None and dataset.use(named) != "fit":
         raise InputError(
             f"{dataset.path}: identification: {named!r} is held out; expected a record "
             "with 'use: fit'"
         )
-    notes = doubts(dataset, records)
+    return evidence_of(dataset, records, doubts(dataset, records))
+
+
+def evidence_of(
+    dataset: Dataset, records: Sequence[Record], notes: tuple[str, ...] = ()
+) -> Evidence:
+    """Take records of a dataset for the gap workflow; nothing is checked.
+
+    Parameters
+    ----------
+    dataset : Dataset
+    records : sequence of Record
+        As they were read, at least one to fit.
+    notes : tuple of str
+        What of them is hardly meant.
+    """
+    named = dataset.about.get("identification")
     decay = decay_of_free_mass(records, dataset.quantities)
     if decay is not None:
         notes, named = (*notes, CUT), None
         records = [window for record in records for window in windows(record, decay)]
-    fit = tuple(record for record in records if record.use == "fit")
-    hold_out = tuple(record for record in records if record.use == "hold-out")
     return Evidence(
         dataset.name,
-        fit,
-        hold_out,
+        tuple(record for record in records if record.use == "fit"),
+        tuple(record for record in records if record.use == "hold-out"),
         dataset.input_hold,
-        about.get("noise_rms"),
+        dataset.about.get("noise_rms"),
         named,
         dataset.simulated_column,
         notes,

@@ -1,0 +1,125 @@
+"""Effects are judged beside the model that is given, which is run on all records."""
+
+import numpy as np
+import pytest
+
+from hystbench.errors import InputError
+from hystbench.inspection import screen
+from hystbench.inspection.page import page
+from hystbench.model import Model
+from hystbench.record import Channel
+from tests.conftest import run_hystbench
+from tests.gap.made import DISPLACEMENT, record, write_folder
+from tests.gap.small import block
+from tests.inspection.stage import NOISE, STAGE, T, looked, saved, through
+
+
+@pytest.fixture
+def rig(tmp_path):
+    u = np.sin(2 * np.pi * 5 * T)
+    made = [
+        record(u, 3.0 * u + 1.0, name="a"),
+        record(0.5 * u, 1.5 * u + 1.0, name="b", use="hold-out"),
+    ]
+    write_folder(tmp_path / "rig", made)
+    return tmp_path
+
+
+def said(found):
+    return " ".join(" ".join(screen.lines(found)).split())
+
+
+def test_it_says_what_is_left_beside_what_the_output_moves_by(rig):
+    """Of a gain of two for three, and no offset: rms of ``sin + 1``."""
+    found = looked(rig, "rig", saved(rig, block("gain", value=2.0)), effects=False)
+    left, moves = np.sqrt(0.5 + 1.0), 3.0 * np.sqrt(0.5)
+    assert f"leaves {left:.3g} µm rms" in said(found)
+    assert f"move by {moves:.3g} µm rms" in said(found)
+
+
+def test_a_model_of_other_signals_is_refused(rig):
+    other = Channel("voltage", "V")
+    Model("other", other, DISPLACEMENT, (block("gain", value=2.0),)).save(
+        rig / "other.yaml"
+    )
+    with pytest.raises(InputError, match=r"input: unit 'V', but .* has 'A'"):
+        looked(rig, "rig", str(rig / "other.yaml"))
+
+
+def test_the_command_runs_the_model(rig):
+    model = saved(rig, block("gain", value=2.0))
+    data = str(rig / "rig" / "dataset.yaml")
+    done = run_hystbench("check", data, "--no-effects", "--model", model)
+    assert done.returncode == 0, done.stderr
+    assert "It runs on all records" in " ".join(done.stdout.split())
+
+
+def test_effects_are_counted_beside_a_model_where_no_loop_fits(stage):
+    model = saved(stage, block("mechanism", **STAGE), name="stage-model")
+    alone, beside = looked(stage, "stage"), looked(stage, "stage", model)
+    assert not alone.base.fits
+    assert "With '--model MODEL' they are judged beside your simulator" in said(alone)
+    # What the model leaves is the noise alone.
+    assert beside.base.left == pytest.approx(NOISE, rel=0.1)
+    assert "beside the model 'stage-model' the records" in screen.headline(beside)
+    for text in (said(beside), page(beside)):
+        assert "loop" not in text.replace("hysteresis-loop", "")
+        assert "stage-model" in text
+
+
+def test_a_force_in_the_mode_of_a_model_is_not_said_to_have_none(stage):
+    model = saved(stage, block("mechanism", **STAGE))
+    found = looked(stage, "stage", model)
+    why = {item.effect: item.why for item in found.unjudged}
+    assert "acts inside the dynamics" in why["stiffness-hardening"]
+
+
+def test_an_effect_beside_a_model_is_as_strong_as_it_is_said_to_be(stage):
+    """The nonlinearity at the number told adds the share told, by its definition."""
+    model = saved(stage, block("mechanism", **STAGE))
+    found = looked(stage, "stage", model)
+    (item,) = (x for x in found.effects if x.effect == "sensor-nonlinearity")
+    added, whole = [], []
+    for given in (x for x in found.records if x.use == "fit"):
+        y = through(given.u, block("mechanism", **STAGE))
+        added.append(item.value * y ** {"quadratic": 2, "cubic": 3}[item.number])
+        whole.append(given.y)
+    share = np.sqrt(np.mean(np.square(added)) / np.mean([np.var(y) for y in whole]))
+    assert share == pytest.approx(item.seen_from, rel=0.05)
+
+
+def test_what_a_free_number_of_a_model_could_do_is_no_sign_of_an_effect(stage):
+    """A lag of a mode is, to first order, more of its damping."""
+    blocks = block("mechanism", **STAGE)
+    held = looked(stage, "stage", saved(stage, blocks, name="held"))
+    names = tuple(f"mechanism.{key}" for key in STAGE)
+    free = looked(stage, "stage", saved(stage, blocks, name="free", free=names))
+
+    def least(found):
+        return next(x for x in found.effects if x.effect == "drive-lag").seen_from
+
+    assert least(free) > 1.5 * least(held)
+
+
+def test_the_hysteresis_looked_for_beside_a_linear_model_is_none_of_its_own(stage):
+    """Some of it is another gain, which is taken off."""
+    found = looked(stage, "stage", saved(stage, block("mechanism", **STAGE)))
+    (item,) = (x for x in found.effects if x.effect == "hysteresis")
+    assert item.judged
+    assert item.form or item.number
+
+
+def test_a_free_mass_is_run_on_its_windows(tmp_path):
+    """What its unknown velocity does is left out of each, as in the search."""
+    made = []
+    plant = block("mechanism", mass=0.02, damping=0.05, stiffness=0.0)
+    for seed, use in enumerate(("fit", "hold-out")):
+        u = np.sign(np.sin(2 * np.pi * 1.3 * (1 + 0.2 * seed) * T + 0.4))
+        y = through(u, plant)
+        y = y + 1e-4 * np.random.default_rng(seed).standard_normal(len(u))
+        made.append(record(u, y, name=f"r{seed}", use=use))
+    write_folder(tmp_path / "slide", made, noise_rms=1e-4)
+    found = looked(tmp_path, "slide", saved(tmp_path, plant), effects=False)
+    assert found.base.fit[0].record.decay_s is not None
+    assert [len(x.simulated) for x in found.base.whole] == [len(T), len(T)]
+    assert found.base.left < 0.01 * found.base.moves
