@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from hystbench.inspection.input_kind import kind_of_input, turns_of
+from hystbench.inspection.input_kind import kind_of_input
 
 SEEDS = range(6)
 CORNER = 6.0
@@ -106,8 +106,3 @@ def test_a_signal_is_of_its_kind(make, kind, count, share):
         u = make(rng, np.arange(count) / count)
         found.append(kind_of_input(u + share * u.std() * rng.standard_normal(count)))
     assert found == [kind] * len(SEEDS)
-
-
-def test_turns_that_are_smaller_than_asked_are_none():
-    u = np.array([0.0, 1.0, 0.95, 2.0, 0.5, 0.55, 0.0, 3.0])
-    assert turns_of(u, 0.2) == [0, 3, 6, 7]

@@ -17,6 +17,7 @@ import numpy as np
 from hystbench.gap.thresholds import MOST
 from hystbench.periods import differences
 from hystbench.record import FloatArray
+from hystbench.turns import turning_places
 
 InputKind = Literal["sine", "sum of sines", "sweep", "steps", "ramps", "broadband"]
 
@@ -101,7 +102,7 @@ def _straight_between_turns(u: FloatArray) -> bool:
     A way counts by how far it goes: of a short one noise hides the slope. So most of
     them are to be straight, and so is their mean.
     """
-    turns = turns_of(u, TURN * float(np.ptp(u)))
+    turns = [0, *turning_places(u, TURN * float(np.ptp(u))), len(u) - 1]
     far = straight = told = 0.0
     mean = np.zeros(3)
     for first, last in pairwise(turns):
@@ -124,29 +125,6 @@ def _slope(values: FloatArray) -> float:
     """Give the slope of the straight line that fits samples best."""
     place = np.arange(len(values)) - (len(values) - 1) / 2
     return float(place @ values / (place @ place))
-
-
-def turns_of(u: FloatArray, least: float) -> list[int]:
-    """Give the first sample, those at which an input turns, and the last.
-
-    Parameters
-    ----------
-    u : ndarray, shape (n,)
-    least : float
-        By how much it has to go back.
-    """
-    turns, way, far = [0], 0.0, 0
-    values = u.tolist()
-    for k, value in enumerate(values):
-        if way == 0.0:
-            if abs(value - values[0]) >= least:
-                way, far = np.sign(value - values[0]), k
-        elif way * (value - values[far]) >= 0:
-            far = k
-        elif way * (values[far] - value) >= least:
-            turns.append(far)
-            way, far = -way, k
-    return [*turns, len(u) - 1]
 
 
 def _lines(about: FloatArray) -> FloatArray:

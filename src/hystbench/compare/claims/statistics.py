@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hystbench.record import FloatArray
+from hystbench.turns import turning_places
 
 
 def rank_correlation(x: Sequence[float], y: Sequence[float]) -> float:
@@ -25,29 +25,7 @@ def turning_points(x: FloatArray, swing: float) -> FloatArray:
 
     Smaller wiggles, such as noise, are passed over.
     """
-    found: list[float] = []
-    low = high = float(x[0])
-    rising: bool | None = None
-    for value in map(float, x[_extremes(x)]):
-        low, high = min(low, value), max(high, value)
-        if rising is not False and high - value > swing:
-            if rising:
-                found.append(high)
-            rising, low = False, value
-            high = value
-        elif rising is not True and value - low > swing:
-            if rising is False:
-                found.append(low)
-            rising, high = True, value
-            low = value
-    return np.array(found)
-
-
-def _extremes(x: FloatArray) -> NDArray[np.bool_]:
-    """Mark both ends and where x does not go on the way it came: few in a long x."""
-    step = np.diff(x)
-    inside = step[:-1] * step[1:] <= 0
-    return np.concatenate(([True], inside, [True]))[: len(x)]
+    return np.asarray(x[turning_places(x, swing)], dtype=float)
 
 
 def minor_turning_points(x: FloatArray) -> int:
