@@ -14,7 +14,7 @@ from hystbench.errors import InputError
 from hystbench.files import write_text
 from hystbench.inspection.columns import Flags
 from hystbench.inspection.draft import Draft, draft
-from hystbench.inspection.entries import yaml_text
+from hystbench.inspection.entries import dataset_text
 from hystbench.inspection.input_summary import summary_of
 from hystbench.options import In, command, of_class
 
@@ -42,7 +42,7 @@ def init(
         writes(place)  # refuses, before work is paid
     there = sys.stdin.isatty() and sys.stdout.isatty()
     found = draft(files, place, Flags(**given), _asked if there else _refused)
-    write_text(place, yaml_text(found.dataset.about))
+    write_text(place, dataset_text(found.dataset.about))
     for line in _said(place, found):
         click.echo(line)
     options.warn(found.warnings)

@@ -32,6 +32,7 @@ from hystbench.periods import find_period
 from hystbench.record import Mask, Record
 from hystbench.samples import UNIFORM_TOLERANCE
 from hystbench.units import seconds
+from hystbench.yaml_files import yaml_text
 
 HELD_OUT_PART = 3
 """Part of a lone record that is held out: a third."""
@@ -373,7 +374,7 @@ def _beyond(inputs: Mapping[str, InputSummary], names: list[str]) -> tuple[bool,
     return over > 0.1 * span, max(faster, 1.0)
 
 
-def yaml_text(about: Mapping[str, Any]) -> str:
+def dataset_text(about: Mapping[str, Any]) -> str:
     """Write a dataset.yaml, one line a key and one a record."""
     lines = [FIRST_COMMENT]
     for key, value in about.items():
@@ -391,9 +392,4 @@ def entry_text(entry: Mapping[str, Any]) -> str:
 
 
 def _flow(value: Any) -> str:
-    import yaml  # late: as everywhere
-
-    text: str = yaml.safe_dump(
-        value, default_flow_style=True, width=10**6, allow_unicode=True, sort_keys=False
-    )
-    return text.removesuffix("...\n").strip()
+    return yaml_text(value, 10**6, flow=True).removesuffix("...\n").strip()
