@@ -17,6 +17,13 @@ def of_stage(folder, **changes):
     return looked(folder, "stage", model, effects=False)
 
 
+def write_one(folder, y):
+    """Write one input with this output, and what is held out."""
+    u = wave(0)
+    made = [record(u, y, name="a"), record(u, y[::-1], name="b", use="hold-out")]
+    write_folder(folder / "stage", made)
+
+
 def test_nothing_is_said_of_a_model_that_fits(stage):
     assert not [item for item in of_stage(stage).findings if item.kind == "model"]
 
@@ -29,20 +36,15 @@ def test_units_that_are_a_thousand_off_are_told(stage):
 
 
 def test_another_zero_is_told(tmp_path):
-    u = wave(0)
-    y = through(u, block("mechanism", **STAGE)) + 40.0
-    made = [record(u, y, name="a"), record(u, y[::-1], name="b", use="hold-out")]
-    write_folder(tmp_path / "stage", made)
+    write_one(tmp_path, through(wave(0), block("mechanism", **STAGE)) + 40.0)
     (one,) = told(of_stage(tmp_path), "misfit")
     assert one.topic == "misfit offset"
     assert "With 40 um added" in one.text
 
 
 def test_a_position_for_a_velocity_is_told(tmp_path):
-    u = wave(0)
-    y = through(u, block("mechanism", **STAGE, output="velocity"))
-    made = [record(u, y, name="a"), record(u, y[::-1], name="b", use="hold-out")]
-    write_folder(tmp_path / "stage", made)
+    moving = block("mechanism", **STAGE, output="velocity")
+    write_one(tmp_path, through(wave(0), moving))
     (one,) = told(of_stage(tmp_path), "misfit")
     assert one.topic == "misfit rate"
     assert "Its rate of change, times 1," in one.text

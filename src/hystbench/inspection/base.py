@@ -49,12 +49,13 @@ class Base:
     @cached_property
     def left(self) -> float:
         """Rms of what it leaves of the records to fit, in the output's unit."""
-        return rms(*(item.residual[item.record.counted] for item in self.fit))
+        return left_of(self.fit)
 
     @cached_property
     def moves(self) -> float:
         """Rms of the outputs to fit, each about its mean."""
-        return rms(*(np.asarray(y - y.mean()) for y in self._outputs()))
+        outputs = (item.record.y[item.record.counted] for item in self.fit)
+        return rms(*(np.asarray(y - y.mean()) for y in outputs))
 
     @property
     def share_left(self) -> float:
@@ -66,9 +67,10 @@ class Base:
         """Whether it leaves less than half of the output's rms."""
         return self.share_left**2 <= LOOSE
 
-    def _outputs(self) -> Iterator[FloatArray]:
-        for item in self.fit:
-            yield item.record.y[item.record.counted]
+
+def left_of(compared: Sequence[Compared]) -> float:
+    """Give the rms of what is left of records, in the output's unit."""
+    return rms(*(item.residual[item.record.counted] for item in compared))
 
 
 def base_of(dataset: Dataset, records: Sequence[Record], given: str = "") -> Base:

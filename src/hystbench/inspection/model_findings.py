@@ -15,10 +15,10 @@ from hystbench.dataset import Dataset
 from hystbench.errors import InputError
 from hystbench.gap.bases.kinds import kind_of_base
 from hystbench.gap.fitting.on_records import run_base
+from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.thresholds import AS_GOOD, LOOSE, WORTH_A_WORD
-from hystbench.inspection.base import Base
+from hystbench.inspection.base import Base, left_of
 from hystbench.inspection.findings import Finding, finding
-from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.record import FloatArray
 from hystbench.sentences import listed
@@ -60,8 +60,7 @@ def _start(dataset: Dataset, base: Base) -> Iterator[Finding]:
     other = replace(base.model, chain=tuple(chain))
     records = tuple(item.record for item in base.fit)
     outputs = run_base(other, records, dataset.input_hold)
-    pairs = zip(records, outputs, strict=True)
-    left = rms(*((record.y - y)[record.counted] for record, y in pairs))
+    left = left_of([Compared(*pair) for pair in zip(records, outputs, strict=True)])
     if left**2 <= (1 - WORTH_A_WORD) * base.left**2:
         yield finding(
             "start",

@@ -87,12 +87,12 @@ def repeats_the_base(state: ModelState) -> bool:
     added = [state.chain[k] for k in own]
     base = [x for place, x in enumerate(state.chain) if place not in own]
     modes = [x for x in added if isinstance(x, Resonance)]
-    others = {type(x) for x in added} - {Resonance}
-    if others & {type(x) for x in base}:
+    kinds = {type(x) for x in added} - {Resonance}
+    if kinds & {type(x) for x in base}:
         return True
-    linear = (
-        [x.continuous().a for x in base if isinstance(x, LinearBlock)] if modes else []
-    )
+    if not modes:
+        return False
+    linear = [x.continuous().a for x in base if isinstance(x, LinearBlock)]
     poles = np.concatenate([np.linalg.eigvals(a) for a in linear] or [np.empty(0)])
     known = np.abs(poles[np.abs(poles.imag) > 0.0]) / (2 * np.pi)
     return any(np.any(np.abs(known / x.frequency_hz - 1.0) < ABOUT) for x in modes)
