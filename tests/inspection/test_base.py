@@ -6,6 +6,7 @@ import pytest
 from hystbench.errors import InputError
 from hystbench.inspection import screen
 from hystbench.inspection.page import page
+from hystbench.inspection.visible import could_do
 from hystbench.model import Model
 from hystbench.record import Channel
 from tests.conftest import run_hystbench
@@ -123,3 +124,15 @@ def test_a_free_mass_is_run_on_its_windows(tmp_path):
     assert found.base.fit[0].record.decay_s is not None
     assert [len(x.simulated) for x in found.base.whole] == [len(T), len(T)]
     assert found.base.left < 0.01 * found.base.moves
+
+
+@pytest.mark.parametrize(
+    ("about", "words"),
+    [
+        ((False, False), "gain, or offset"),
+        ((True, False), "gain, offset, or shape of the hysteresis"),
+        ((True, True), "gain, offset, shape of the hysteresis, or free number"),
+    ],
+)
+def test_what_a_base_could_do_as_well_is_told(about, words):
+    assert could_do(*about) == words

@@ -31,7 +31,7 @@ from hystbench.inspection.screen import (
     percent,
     quantity,
 )
-from hystbench.inspection.visible import REVEALED, SmallestSeen
+from hystbench.inspection.visible import REVEALED, SmallestSeen, could_do
 from hystbench.report.layout import page_environment
 from hystbench.report.markup import one_micro
 from hystbench.report.table import Cell, Heading, PageTable, number, table_of
@@ -62,7 +62,7 @@ def page(found: Check) -> str:
         f"{FLOORS[found.floor.method]}",
         leaves=_sentence(leaves(found)),
         called=found.base.called,
-        freed=" or free number" if found.base.model.free else "",
+        could=could_do(True, bool(found.base.model.free)),
         findings=found.findings,
         kinds=KINDS,
         records=_records(found),

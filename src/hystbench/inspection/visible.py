@@ -23,6 +23,7 @@ from hystbench.gap.thresholds import PARAMETER, PAYS
 from hystbench.inspection.shapes import Shape, shapes_of
 from hystbench.model import Model
 from hystbench.record import FloatArray, Hold, Record
+from hystbench.sentences import either
 
 REVEALED = 0.1
 """Share of the output's rms: an effect that must be larger to be seen is not
@@ -113,6 +114,13 @@ def seen_effects(
     for name, why in declined.items():
         found.append(SmallestSeen(name, why=why, judged=False))
     return tuple(sorted(found, key=lambda item: (item.seen_from, item.effect)))
+
+
+def could_do(has_loop: bool, is_free: bool) -> str:
+    """Say what of a base may be another: what it could do as well is taken off."""
+    words = ["gain", "offset"]
+    words += ["shape of the hysteresis"] * has_loop + ["free number"] * is_free
+    return either(words)
 
 
 def _own(state: ModelState) -> FloatArray:
@@ -267,14 +275,11 @@ class _Judge:
         if share <= REVEALED:
             return ""
         if item.absorbed > ABSORBED_SHARE:
-            shape = ", shape of the hysteresis" * (
-                self.state.simulation.loop is not None
+            could = could_do(
+                self.state.simulation.loop is not None, bool(self.state.free)
             )
-            free = ", free number" * bool(self.state.free)
-            could = f"gain, offset{shape}{free}"
-            last = " or ".join(could.rsplit(", ", 1))
             return (
-                f"{100 * item.absorbed:.4g} % of what it does is what another {last} "
+                f"{100 * item.absorbed:.4g} % of what it does is what another {could} "
                 "does too"
             )
         noise = f"the noise ({100 * self.floor / self.reach:.2g} % of the output)"
