@@ -52,7 +52,9 @@ class BesideBase:
 
     @property
     def laws_of_many_numbers(self) -> int:
-        """How many of its effects are by a law of many numbers."""
+        """How many of its effects are by a law of many numbers; no force is."""
+        if self.inside is not None:
+            return 0
         return sum(item.is_of_many_numbers for item in self.named.state.added)
 
     @property

@@ -159,10 +159,12 @@ static double hb_hysteretic(const double *f, double x, double way, double *integ
     return (f[4] == 2 ? hb_bouc_wen_square : hb_bouc_wen)(x, way, f[2], f[3], integral);
 }
 
-/* Stribeck's curve: an excess over the force of sliding that fades with the velocity. */
+/* Stribeck's curve: an excess over the force of sliding that fades with the velocity.
+ * Most have none, or are asked at rest: an exponential takes as long as all else. */
 static double hb_level(double sliding, double excess, double fades, double v)
 {
-    return sliding + (fades > 0 ? excess * exp(-(v / fades) * (v / fades)) : 0);
+    if (!(fades > 0) || excess == 0) return sliding;
+    return sliding + (v == 0 ? excess : excess * exp(-(v / fades) * (v / fades)));
 }
 
 /* The hypotenuse of one and y. */
@@ -391,27 +393,56 @@ static double hb_way_near(int count, const double *forces, const double *memory,
     return NAN;
 }
 
-/* Whether a force falls where the motion is faster: sticking and sliding may then both
- * fulfil a step, and the way that begins at rest is the first. */
-static int hb_falls(int count, const double *forces)
+/* Whether a force may fall so fast with the velocity that sticking and sliding both
+ * fulfil a step: by at least half of what makes two roots of one. Stribeck's curve falls
+ * by no more than sqrt(2 / e) of its excess, a unit of the velocity at which it fades.
+ * The way that begins at rest is then the first. */
+static int hb_falls(int count, const double *forces, double gives, double h)
 {
+    double falls = 0;
     for (int i = 0; i < count; i++) {
         const double *f = forces + HB_ROW * i;
-        if (((int)f[0] == 3 || (int)f[0] == 11) && f[2] > 0) return 1;
-        if ((int)f[0] == 8 && f[3] > 0 && f[4] > 0) return 1;
+        if (((int)f[0] == 3 || (int)f[0] == 11) && f[3] > 0) falls += f[2] / f[3];
+        if ((int)f[0] == 8 && f[4] > 0) falls += f[3] / f[4];
     }
-    return 0;
+    return 0.86 * falls * gives > 0.5 * h;
+}
+
+/* Whether a force alone slides at one force, without a gap: then its way is known. */
+static int hb_rubs(const double *f)
+{
+    return ((int)f[0] == 3 && (f[2] == 0 || !(f[3] > 0))) || ((int)f[0] == 7 && f[3] == 0);
+}
+
+/* The way of a part against such a force: it is held by a spring, and slides where that
+ * would be bent beyond the reach, which is where a square is solved. */
+static double hb_way_rubbed(const double *f, double memory, double alone, double gives)
+{
+    const int slider = (int)f[0] == 7;
+    const double reach = slider ? f[2] : hb_friction_reach(f, 0);
+    const double stiffness = gives * (slider ? f[1] : hb_sliding(f, 0) / f[4]);
+    const double from = hb_clip(reach, memory), pulls = alone - stiffness * from;
+    const double held = pulls / (1 + stiffness / 2), side = pulls < 0 ? -1 : 1;
+    if (from == memory && fabs(memory + held) <= reach) return held;
+    const double bends = reach - side * from, lost = stiffness * bends * bends;
+    const double slides = side * alone - stiffness * reach;
+    const double root = sqrt(slides * slides + 2 * lost);
+    return side * (slides > 0 ? (slides + root) / 2 : lost / (root - slides + 1e-300));
 }
 
 /* The way of a part, by Chandrupatla's method where a force falls, or where the one above
- * does not find it; NaN where there is none. The miss grows with the way at least as fast
+ * does not find it; NaN where there is none. The miss grows with the way nearly as fast
  * where no force falls: between zero and the way without forces, or the one with the
- * force of the beginning, there is then one root. */
+ * force of the beginning, there is then one root, and no way is farther from it than
+ * about its miss: at a billionth of it the next step is the last. */
 static double hb_way_of(int count, const double *forces, const double *memory, double q,
                         double alone, double gives, double h)
 {
 #define HB_MISS(way) hb_miss(count, forces, memory, q, alone, gives, h, way)
-    if (!hb_falls(count, forces)) {
+    if (count == 1 && h > 0 && hb_rubs(forces))
+        return hb_way_rubbed(forces, memory[0], alone, gives);
+    const int falls = hb_falls(count, forces, gives, h);
+    if (!falls) {
         const double near_by = hb_way_near(count, forces, memory, q, alone, gives, h);
         if (near_by == near_by) return near_by;
     }
@@ -428,12 +459,14 @@ static double hb_way_of(int count, const double *forces, const double *memory, d
     for (int i = 0; i < 100; i++) {
         double c = b, at_c = at_b;
         const double x = a + (t > 0 && t < 1 ? t : 0.5) * (b - a);
-        const double at_x = HB_MISS(x);
+        const double at_x = HB_MISS(x), slope = (at_x - at_a) / (x - a);
         if ((at_x > 0) == (at_a > 0))
             c = a, at_c = at_a;
         else
             b = a, at_b = at_a;
         a = x, at_a = at_x;
+        if (!falls && slope >= 0.5 && fabs(at_a) <= 1e-9 * fabs(a) + 1.1e-16 * fabs(q))
+            return a - at_a / slope;
         const double best = fabs(at_a) < fabs(at_b) ? a : b, apart = fabs(b - a);
         const double near = 4e-16 * fabs(best) + 1e-16 * fabs(alone) + 1.1e-16 * fabs(q);
         if (at_a == 0 || apart <= near) return at_a == 0 ? a : best;
