@@ -5,6 +5,10 @@ import pytest
 
 from hystbench.blocks.exponential_curve import ExponentialCurve
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.effect import goes_both_ways
+from hystbench.gap.effects.law import Passed
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from hystbench.record import Channel, Record
 from tests.gap.searched import among, search
@@ -57,6 +61,20 @@ def test_a_drive_that_gives_more_one_way_has_two_slopes():
     found = effect["parameters"]["difference"]
     assert found["value"] == pytest.approx(0.2, abs=4 * found["standard_error"])
     assert found["value"] == pytest.approx(0.2, rel=0.05)
+
+
+@pytest.mark.parametrize(("low", "offered"), [(-1.0, True), (0.0, False)])
+def test_of_an_input_that_goes_one_way_two_slopes_are_a_gain(low, offered):
+    """A gain that is a little off would be named an asymmetry."""
+    u = np.linspace(low, 1.0, COUNT)
+    given = (Record("run", DT, u, u, OPENING, FLOW, "measured", "fit"),)
+    simulation = Simulation((PIPE,), given, "zero-order", "quick")
+    forms = {item.form for item in effects()["asymmetry"].variants(simulation)}
+    assert ("two slopes" in forms) == offered
+    assert "exponential" in forms
+    passed = Passed(1.0, 1.0, DT, DT, goes_both_ways([u]))
+    around = {law.form for law in effects()["asymmetry"].around(passed)}
+    assert ("two slopes" in around) == offered
 
 
 def test_without_curvature_it_is_a_straight_line():

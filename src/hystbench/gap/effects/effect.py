@@ -6,6 +6,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar, Literal, get_args
 
+import numpy as np
+
 from hystbench.blocks import block_class
 from hystbench.blocks.base import Block, Place
 from hystbench.blocks.forced import ForcedDynamics
@@ -19,6 +21,7 @@ from hystbench.gap.effects.law import Changed, Filled, Law, Moved, Passed
 from hystbench.gap.effects.places import INSIDE, places_between_halves
 from hystbench.gap.effects.variant import Beside, Values, Variant, begun_from
 from hystbench.gap.simulation.simulation import Simulation
+from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.gap.view_kinds import ViewKind
 from hystbench.record import FloatArray
 
@@ -276,6 +279,16 @@ def start_of(chain: Sequence[Block]) -> str:
 def never_at_rest(signals: Sequence[FloatArray]) -> bool:
     """Tell whether a signal of some record keeps away from zero, on one side of it."""
     return any(len(z) > 0 and (z.min() > 0.0 or z.max() < 0.0) for z in signals)
+
+
+def goes_both_ways(signals: Sequence[FloatArray]) -> bool:
+    """Tell whether signals are on both sides of zero by a share of power that matters.
+
+    Else a law that differs by side is a gain.
+    """
+    above = sum(float(np.sum(np.maximum(z, 0.0) ** 2)) for z in signals)
+    below = sum(float(np.sum(np.minimum(z, 0.0) ** 2)) for z in signals)
+    return min(above, below) > UNNAMED_SHARE * (above + below)
 
 
 NOT_IN_CHAIN = (

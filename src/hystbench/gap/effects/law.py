@@ -42,6 +42,8 @@ class Passed(NamedTuple):
     """Time from which on a lag or a delay is an effect, in seconds. In a model that was
     identified from the records, less than an interval is how input and output were
     sampled."""
+    both_ways: bool = True
+    """Whether the input goes to both sides of zero."""
 
 
 @dataclass(frozen=True)

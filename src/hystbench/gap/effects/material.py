@@ -11,7 +11,7 @@ from hystbench.blocks import block_class
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.saturation import Saturation as Limit
-from hystbench.gap.effects.effect import Effect, never_at_rest
+from hystbench.gap.effects.effect import Effect, goes_both_ways, never_at_rest
 from hystbench.gap.effects.law import Law, Passed
 from hystbench.gap.effects.places import (
     drives_a_machine,
@@ -164,14 +164,8 @@ class Asymmetry(Effect):
             yield self._butterfly(simulation, known)
         if loop is None:
             yield from self._exponential(simulation)
-            yield self.inserted(
-                simulation,
-                0,
-                law=SLOPES,
-                form="two slopes",
-                unit={"difference": 1e-3},
-                limits={"difference": (-1.0, 1.0)},
-            )
+            if goes_both_ways(simulation.at(0)):
+                yield self._slopes(simulation)
 
     def around(self, passed: Passed) -> Iterator[Law]:
         """Offer three curves before the host.
@@ -186,8 +180,19 @@ class Asymmetry(Effect):
             yield self.curve(
                 "before", "exponential", law=EXPONENTIAL, curvature=curvature
             )
-        for size in (0.1, -0.1):
+        for size in (0.1, -0.1) if passed.both_ways else ():
             yield self.curve("before", "two slopes", law=SLOPES, difference=size)
+
+    def _slopes(self, simulation: Simulation) -> Variant:
+        """Offer two slopes, which are a gain where the input goes one way alone."""
+        return self.inserted(
+            simulation,
+            0,
+            law=SLOPES,
+            form="two slopes",
+            unit={"difference": 1e-3},
+            limits={"difference": (-1.0, 1.0)},
+        )
 
     def _squares(
         self, simulation: Simulation, place: int, form: str

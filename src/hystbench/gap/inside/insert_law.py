@@ -15,7 +15,7 @@ from hystbench.blocks.mechanism import Mechanism, slope_of
 from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.gap.effects import among
-from hystbench.gap.effects.effect import start_of
+from hystbench.gap.effects.effect import goes_both_ways, start_of
 from hystbench.gap.effects.law import Changed, Filled, Law, Moved, Passed
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added, Free, ModelState
@@ -65,7 +65,8 @@ def laws_for(
     times = Times.of(host.state.records, True) if times is None else times
     signals = [record.u for record in host.state.records], host.state.simulation.output
     given, shown = (max(float(np.max(np.abs(x))) for x in every) for every in signals)
-    passed, known = Passed(given, shown, *times), among(offered)
+    passed = Passed(given, shown, *times, goes_both_ways(signals[0]))
+    known = among(offered)
     around = {name: tuple(effect.around(passed)) for name, effect in known.items()}
     own: dict[str, Iterator[Law | Changed]]
     if of_stores(host):

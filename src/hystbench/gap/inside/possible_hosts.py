@@ -123,7 +123,8 @@ def hosts(
             # Two masses that both swing are a structure that is driven at its joint.
             if wanted("two masses") and not _of_two_modes(modes()):
                 yield from _of_two(best, further_modes_of(start), score)
-    if not identified and all(isinstance(block, Store) for block in start.chain):
+    timing = isinstance(delay, InputDelay)
+    if not identified and all(isinstance(x, Store) for x in start.chain[timing:]):
         words = "the base is stores already"
         yield Host(start, fitted(start, score), words, kind="stores")
         return
