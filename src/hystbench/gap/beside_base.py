@@ -98,9 +98,9 @@ class BesideBase:
         many does. And where it pays for its numbers beside the effects, these may stand
         for a base that is off.
         """
+        state, score = self.named.state, self.score_beside(self)
         if self.counts > 2 or self.laws_of_many_numbers:
             return True
-        state, score = self.named.state, self.score_beside(self)
         now = score_of(state, score)
         count, margin = len(state.added), self.margin
         shorter = [
@@ -113,8 +113,10 @@ class BesideBase:
             shorter.append((self.start, alone))
         least = now - PAYS
         beside = least if count else least - PAYS
+        # What moves a mode far is told by a fit, as slopes tell little of that.
+        far = repeats_the_base(state)
         return re_tuned_score(state, score, beside) < beside or any(
-            re_tuned_score(short, score, most) < most for short, most in shorter
+            re_tuned_score(short, score, most, far) < most for short, most in shorter
         )
 
 

@@ -7,18 +7,23 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from hystbench.blocks.relaxation_force import RelaxationForce
 from hystbench.gap.effects.effect import Declined, Effect
+from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.effects.variant import Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
 
 class Creep(Effect):
-    """One slow element, three a decade and a half apart, or all over some decades."""
+    """One slow element, three a decade and a half apart, or all over some decades.
+
+    Inside a mechanism whose spring is known, a force beside it that fades.
+    """
 
     name = "creep"
     shows = "slow-time"
     place = "mechanics"
-    laws: ClassVar = ("logarithmic-creep",)
+    laws: ClassVar = ("logarithmic-creep", "relaxation-force")
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer creep behind the hysteresis.
@@ -58,6 +63,20 @@ class Creep(Effect):
             )
         for form, power in POWERS.items():
             yield self._over_decades(simulation, form, power)
+
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
+        """Offer a force that fades, beside a spring that a given base states.
+
+        Beside one that was identified it would be a pole more of what is linear.
+        """
+        if moved.loose or moved.anywhere:
+            return
+        for times in (1.0, 10.0):
+            fades = RelaxationForce(
+                stiffness=0.1 * moved.force / moved.reach,
+                relaxation_time_s=times * moved.reach / moved.speed,
+            )
+            yield Law("relaxation", fades, ("stiffness", "relaxation_time_s"))
 
     def _over_decades(self, simulation: Simulation, form: str, power: float) -> Variant:
         """All time constants between two, as of a material without a time of its own.

@@ -6,12 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from hystbench.blocks.base import Block
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.linear import LinearBlock
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.relaxation_force import RelaxationForce
 from hystbench.blocks.resonance import Resonance
+from hystbench.blocks.structure import Structure
 from hystbench.gap.bases.known_about import LATE, in_time, stated
 from hystbench.gap.fitting.model_score import beside_of
 from hystbench.gap.fitting.on_records import free_within
+from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.score import Held, Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.thresholds import ABOUT, PARAMETER
@@ -21,7 +26,9 @@ LEAST = 5e-3
 """Share by which a number has to move to be told."""
 
 
-def re_tuned_score(state: ModelState, score: Score, wanted: float) -> float:
+def re_tuned_score(
+    state: ModelState, score: Score, wanted: float, far: bool = False
+) -> float:
     """Give the score of a model whose base is re-tuned, as slopes tell.
 
     Each number that is freed is charged by how far the records tell it.
@@ -33,10 +40,14 @@ def re_tuned_score(state: ModelState, score: Score, wanted: float) -> float:
     score : Score
     wanted : float
         Score that is of use: what cannot come below it is not computed.
+    far : bool
+        Whether numbers may have to move so far that a fit goes first.
     """
     if score.least(state.freedom) >= wanted:
         return np.inf
     loose = _loosened(state)
+    if far:
+        loose, _ = finished(loose, score)
     columns = loose.tangents
     if not np.isfinite(columns).all():
         return -np.inf
@@ -81,21 +92,36 @@ def repeats_the_base(state: ModelState) -> bool:
     """Tell whether an effect is of a kind that the base has, as far as it is known.
 
     A mode is of the base's own kind where the base has one about there. Any other
-    block, such as a spring, is where the base holds such a block.
+    block, such as a spring, is where the base holds such a block. A force that relaxes
+    is a damper to slow motions and a spring to fast ones, which all mechanisms have.
     """
     own = state.places_added
     added = [state.chain[k] for k in own]
     base = [x for place, x in enumerate(state.chain) if place not in own]
     modes = [x for x in added if isinstance(x, Resonance)]
     kinds = {type(x) for x in added} - {Resonance}
-    if kinds & {type(x) for x in base}:
+    if RelaxationForce in kinds or kinds & {type(x) for x in base}:
         return True
     if not modes:
         return False
-    linear = [x.continuous().a for x in base if isinstance(x, LinearBlock)]
-    poles = np.concatenate([np.linalg.eigvals(a) for a in linear] or [np.empty(0)])
-    known = np.abs(poles[np.abs(poles.imag) > 0.0]) / (2 * np.pi)
+    known = np.array([frequency for x in base for frequency in _swings(x)])
     return any(np.any(np.abs(known / x.frequency_hz - 1.0) < ABOUT) for x in modes)
+
+
+def _swings(block: Block) -> list[float]:
+    """Give the frequencies in Hz of the modes of a block that is linear without forces.
+
+    A mass with a spring has one, however it is damped.
+    """
+    if isinstance(block, LinearBlock):
+        poles = np.linalg.eigvals(block.continuous().a)
+        found = np.abs(poles[np.abs(poles.imag) > 0.0])
+    elif isinstance(block, Mechanism | Structure):
+        masses = [block.linear] if isinstance(block, Mechanism) else block.modes
+        found = np.array([np.sqrt(spring / mass) for mass, _, spring in masses])
+    else:
+        return []
+    return list(found / (2 * np.pi))
 
 
 def re_tuned_words(start: ModelState, state: ModelState) -> str:
