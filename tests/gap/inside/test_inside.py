@@ -58,7 +58,7 @@ from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
-from tests.gap.inside_host import search
+from tests.gap.inside_host import each_alone, search
 from tests.gap.solved import motion
 
 DT = 0.005
@@ -789,8 +789,7 @@ def test_a_rubber_stop_that_loses_energy_is_no_slider_with_gap():
     score = Score.plain(start.sample, 4e-6)
     rivals = ["stop", "slider-with-gap", "hysteretic-force", "stiffness-hardening"]
     host = Fitted(start, score.of(start.residual))
-    found = search(host, score, offered=rivals)
-    alone = [item for item in found if len(item.effects) == 1]
+    _, *alone = each_alone(host, score, offered=rivals)
     best = min(alone, key=lambda item: item.score)
     assert best.effects == ("stop",)
     assert best.state.chain[1].loss == pytest.approx(0.3, rel=0.2)
