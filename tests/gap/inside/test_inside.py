@@ -64,10 +64,10 @@ from tests.gap.solved import motion
 DT = 0.005
 NOISE = 0.02
 TIME = np.arange(1600) * DT
-SPRINGS = ["gravity", "stiffness-hardening", "stop", "friction", "drag"]
+SPRINGS = ["gravity", "stiffness-hardening", "stop"]
 """A weight that turns, and what it may be taken for."""
-BEFORE = ["drive-saturation", "asymmetry", "dead-zone", "stiffness-hardening", "stop"]
-"""Curves before a mass, and curves of its spring that bend its motion as well."""
+BEFORE = ["drive-saturation", "asymmetry", "dead-zone", "stiffness-hardening"]
+"""Curves before a mass, and one of its spring that bends its motion as well."""
 
 
 def record(name, u, y, units=("mm", "N"), use="fit"):
