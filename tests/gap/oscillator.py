@@ -48,10 +48,10 @@ def best(held, spring=spring, offered=OFFERED, noise=NOISE, turns=""):
     return min(found, key=lambda item: item.score)
 
 
-def tried(held, spring, offered, noise=NOISE, turns=""):
+def tried(held, spring, offered, noise=NOISE, turns="", by=search):
     """Put forces into a linear host that was fitted to the records."""
     records = tuple(records_of(held, spring, noise))
     begun = one_coordinate(records, Quantities("force", "position"), "zero-order")
     sample = ScoredSamples.of(records)
     score = Score.plain(sample, noise**2)
-    return search(best_host(list(begun), score), score, offered, turns)
+    return by(best_host(list(begun), score), score, offered, turns)

@@ -83,10 +83,10 @@ def test_a_hidden_effect_is_named_first(name, family, offered):
     assert second.score > first.score + SCALE, told(ranking)
 
 
-def verdict(names, family):
+def verdict(names, family, offered=None):
     """What the search says, round after round: the word, and the effects by name."""
     records, base = hidden(names, family)
-    start, floor = start_state(records, base)
+    start, floor = start_state(records, base, offered=offered)
     state = naming.add_effects(start, floor.rms).state
     left = what_is_left(start, state, floor.rms)
     bound = floor.method == "upper-bound"
@@ -99,7 +99,8 @@ def verdict(names, family):
 
 def test_two_effects_are_both_named_and_no_third():
     pair = ("creep", "drive-lag")
-    assert verdict(pair, "gpi") == ("named", set(pair))
+    offered = tuple(effect for name in pair for effect in of_its_place(name))
+    assert verdict(pair, "gpi", offered) == ("named", set(pair))
 
 
 @pytest.mark.parametrize("family", ["gpi", "preisach"])

@@ -11,9 +11,9 @@ from tests.gap.closing import closed_beside
 from tests.gap.made import evidence_of
 from tests.gap.searched import among
 
-DT, COUNT, NOISE = 0.01, 1500, 0.3
+DT, COUNT, NOISE = 0.01, 700, 0.3
 MASS, DAMPING, SPRING, DRAG = 0.5, 0.05, 20.0, 3.0
-LIKELY = Asked(vocabulary=among("drag", "friction", "hysteretic-force", "saturation"))
+LIKELY = Asked(vocabulary=among("drag", "friction", "saturation"))
 
 
 def accelerated(u):
@@ -43,9 +43,7 @@ def sines(seed, size):
 def test_a_drag_that_is_most_of_the_damping_is_named_alone():
     rng = np.random.default_rng(5)
     given = []
-    for k, (size, use) in enumerate(
-        [(20.0, "fit"), (5.0, "fit"), (60.0, "fit"), (40.0, "hold-out")]
-    ):
+    for k, (size, use) in enumerate([(20.0, "fit"), (60.0, "fit"), (40.0, "hold-out")]):
         u = sines(k, size)
         y = accelerated(u) + NOISE * rng.standard_normal(COUNT)
         about = Channel("force", "N"), Channel("acceleration", "m/s^2"), "twin", use

@@ -82,16 +82,11 @@ def evidence_of(motions, noise, tones=()):
     return made.evidence_of("isolator", records, "linear", noise, "force", "position")
 
 
-LIKELY = Asked(
-    vocabulary=among(
-        *("stiffness-hardening", "drag", "stop", "mains-pickup"),
-        *("input-delay", "sensor-lag", "asymmetry"),
-    )
-)
-"""What is put in here, and what each of them may be taken for."""
+FORCES = Asked(vocabulary=among("stiffness-hardening", "drag", "stop", "asymmetry"))
+"""What is put in here inside, and what it may be taken for."""
 
 
-def closed(model, evidence, path, asked=LIKELY):
+def closed(model, evidence, path, asked=FORCES):
     path.write_text(model)
     return closed_beside(path, evidence, asked)
 
@@ -105,7 +100,9 @@ def test_what_steps_miss_of_an_exact_model_is_no_effect(motions, tmp_path):
 
 
 def test_a_tone_is_found_beside_a_spring_that_hardens(motions, tmp_path):
-    content = closed(LINEAR, evidence_of(motions, 0.01, MAINS), tmp_path / "m.yaml")
+    likely = Asked(vocabulary=among("stiffness-hardening", "drag", "mains-pickup"))
+    evidence = evidence_of(motions, 0.01, MAINS)
+    content = closed(LINEAR, evidence, tmp_path / "m.yaml", likely)
     assert content["verdict"] == "named"
     spring, tone = content["effects"]
     assert (spring["name"], spring["place"]) == ("stiffness-hardening", "inside")
@@ -143,7 +140,7 @@ def test_a_given_mechanism_is_its_own_host(motions, tmp_path):
     path.write_text(LINEAR.replace(f"{SPRING}}}", f"{SPRING}, gain: 1.0}}"))
     evidence = evidence_of(motions, 0.01)
     base, _ = load_base(str(path), evidence)
-    model = closed_gap(evidence, base, LIKELY).decision.model
+    model = closed_gap(evidence, base, FORCES).decision.model
     mechanism, stiffness = model.chain
     assert replace(mechanism, hold="default") == base.chain[0]
     assert stiffness.cubic == pytest.approx(CUBIC, rel=0.05)
@@ -161,7 +158,9 @@ def test_a_lag_shorter_than_a_sample_is_found_beside_a_spring(motions, tmp_path)
             forced = y[k] - lag * slope
             behind[k] = forced + kept * (behind[k - 1] - y[k - 1] + lag * slope)
         late.append((u, behind))
-    content = closed(LINEAR, evidence_of(late, 0.002), tmp_path / "m.yaml")
+    times = "input-delay", "sensor-lag"
+    likely = Asked(vocabulary=among("stiffness-hardening", "drag", *times))
+    content = closed(LINEAR, evidence_of(late, 0.002), tmp_path / "m.yaml", likely)
     by_place = {item["place"]: item for item in content["effects"]}
     spring, lagging = by_place.pop("inside"), *by_place.values()
     assert spring["name"] == "stiffness-hardening"
@@ -182,7 +181,8 @@ def test_no_force_is_tried_where_one_effect_of_a_chain_leaves_noise(
     monkeypatch.setattr(
         "hystbench.gap.search.named_inside", lambda *given: pytest.fail("tried")
     )
-    content = closed(LINEAR, evidence_of(late, 0.01), tmp_path / "m.yaml")
+    likely = Asked(vocabulary=among("stiffness-hardening", "input-delay"))
+    content = closed(LINEAR, evidence_of(late, 0.01), tmp_path / "m.yaml", likely)
     assert [item["name"] for item in content["effects"]] == ["input-delay"]
 
 

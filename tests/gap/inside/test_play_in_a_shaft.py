@@ -61,7 +61,7 @@ def test_it_is_a_stop_in_the_place_of_the_shaft_s_spring(base):
     asked = base, Quantities("torque", "velocity"), True, score
     (host,) = hosts(*asked, kinds=("structure",))
     assert [x.name for x in host.fitted.state.chain][:2] == ["structure", "other-modes"]
-    offered = ["stop", "friction"]
+    offered = ["stop", "stiffness-hardening"]
     offer = partial(laws_for, offered=offered)
     best = min(singles(host.fitted, offer, score), key=lambda item: item.score)
     assert best.effects == ("stop",)

@@ -12,9 +12,7 @@ from tests.gap.solved import motion
 DT, COUNT, NOISE = 0.1, 1500, 0.1
 RATE, LAG, PUMP = 3.2, 1.1, 0.12  # deg/s, s, s
 LIKELY = Asked(
-    vocabulary=among(
-        *("slew-limit", "drag", "drive-saturation", "friction", "drive-lag"),
-    )
+    vocabulary=among("slew-limit", "drag", "drive-saturation", "drive-lag"),
 )
 """What a servo's limit may be taken for."""
 

@@ -34,7 +34,7 @@ from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
-from tests.gap.inside_host import search
+from tests.gap.inside_host import each_alone, search
 from tests.gap.searched import among
 from tests.gap.searched import search as decided
 
@@ -97,7 +97,7 @@ def test_the_law_may_be_in_either_of_a_slow_and_a_fast_store(powers):
     laws = ["outflow", "sensor-nonlinearity"]
     best = min(
         (
-            chosen(search(host.fitted, score, laws, other=host.other), score.floor)
+            chosen(each_alone(host.fitted, score, laws, other=host.other), score.floor)
             for host in every
         ),
         key=lambda item: item.score,

@@ -7,11 +7,13 @@ import pytest
 import yaml
 
 from hystbench.blocks.calls import Calls, counted
+from hystbench.blocks.sensor_lag import SensorLag
 from hystbench.errors import InputError
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.naming.forecast_calls import calls_of_a_round, foretell
 from hystbench.gap.records.evidence import Evidence
+from hystbench.model import Model
 from tests.gap.closing import close_gap
 from tests.gap.conftest import without_rendering
 from tests.gap.made import CURRENT, record
@@ -182,6 +184,7 @@ def test_quick_work_is_not_told_of():
 
 def test_a_model_without_a_function_has_no_calls():
     given = evidence()
-    base, _ = load_base("linear", given)
+    output = given.fit[0].output
+    base = Model("rig", CURRENT, output, (SensorLag(time_constant_s=0.004),))
     start, _ = start_state(given.fit, base, given.input_hold)
     assert calls_of_a_round(start) == 0
