@@ -59,7 +59,7 @@ def test_effects_are_counted_beside_a_model_where_no_loop_fits(stage):
     model = saved(stage, block("mechanism", **STAGE), name="stage-model")
     alone, beside = looked(stage, "stage"), looked(stage, "stage", model)
     assert not alone.base.fits
-    assert "With '--model MODEL' they are judged beside your simulator" in said(alone)
+    assert "With '--model FILE' they are judged beside your simulator" in said(alone)
     # What the model leaves is the noise alone.
     assert beside.base.left == pytest.approx(NOISE, rel=0.1)
     assert "beside the model 'stage-model' the records" in screen.headline(beside)

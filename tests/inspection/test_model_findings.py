@@ -56,6 +56,16 @@ def test_what_nothing_plain_would_mend_has_its_likely_reasons(stage):
     assert "its units, the quantity that it gives" in one.text
 
 
+def test_other_units_that_leave_half_of_it_are_no_likely_reason(tmp_path):
+    """A missing effect is: as a weight on an arm, it looks like another gain in part."""
+    moves = through(wave(0), block("mechanism", **STAGE))
+    rest = np.std(moves) * np.random.default_rng(1).standard_normal(len(moves))
+    write_one(tmp_path, 0.6 * moves + 0.3 * rest)
+    (one,) = told(of_stage(tmp_path), "misfit")
+    assert one.topic == "misfit"
+    assert "it lacks a strong effect" in one.text
+
+
 def test_a_model_that_leaves_as_much_as_the_output_moves_explains_nothing(stage):
     """A thousandth of the gain leaves all but a thousandth; a stiff one a part."""
     (one,) = told(of_stage(stage, gain=1e-3), "misfit")

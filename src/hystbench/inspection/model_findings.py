@@ -116,7 +116,10 @@ def _quantity_given(model: Model) -> tuple[str, str, bool] | None:
 
 
 def _misfit(base: Base) -> Finding:
-    """Say that a model leaves more than half, and what would mend it, if that shows."""
+    """Say that a model leaves more than half, and what would mend it, if that shows.
+
+    It mends what leaves at most half of that: else an effect may be missing.
+    """
     nothing = base.share_left**2 >= 1 - AS_GOOD
     output = base.fit[0].record.output
     told: dict[str, Any] = {
@@ -128,7 +131,7 @@ def _misfit(base: Base) -> Finding:
     }
     for topic in ("offset", "units", "rate"):
         numbers, left = _would_leave(base, topic)
-        if left**2 <= LOOSE * base.moves**2:
+        if left**2 <= LOOSE * base.left**2:
             told |= {"would": 100 * left / base.moves, "unit": output.unit}
             told |= dict(zip(("offset", "gain"), numbers, strict=False))
             return finding(f"misfit {topic}", **told)

@@ -19,7 +19,7 @@ from hystbench.report.markup import one_micro
 FLOORS = {
     "repeats": "measured by repeats",
     "declared": "declared",
-    "upper-bound": "an upper bound, as no period comes twice",
+    "upper-bound": "an upper bound if it is white, as no period comes twice",
 }
 KINDS = {
     "wrong": "refused by 'hystbench gap'",
@@ -298,7 +298,8 @@ def _can(found: Check) -> str:
         return (
             "which effects the records can reveal is not told, as the loop they would "
             f"be judged on does not fit: it leaves {percent(base.share_left)} of the "
-            "output's rms. With '--model MODEL' they are judged beside your simulator"
+            "output's rms. With '--model FILE' they are judged beside your simulator, "
+            "with '--model linear' beside a linear model of these records"
         )
     beside = f"beside {base.called} " if base.given else ""
     can = f"{beside}the records to fit can reveal {seen} of the {every} effects judged"
