@@ -57,7 +57,7 @@ def test_what_nothing_plain_would_mend_has_its_likely_reasons(stage):
 
 
 def test_other_units_that_leave_half_of_it_are_no_likely_reason(tmp_path):
-    """A missing effect is: as a weight on an arm, it looks like another gain in part."""
+    """A missing effect is: a weight on an arm looks like another gain in part."""
     moves = through(wave(0), block("mechanism", **STAGE))
     rest = np.std(moves) * np.random.default_rng(1).standard_normal(len(moves))
     write_one(tmp_path, 0.6 * moves + 0.3 * rest)

@@ -18,7 +18,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.effects.law import Law
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.host_places import own_numbers
 from hystbench.gap.inside.insert_law import with_law
 from hystbench.gap.inside.joint import joints, structure
@@ -97,6 +97,15 @@ def test_so_does_one_with_a_real_pole_and_what_passes_at_once(base, output):
     np.testing.assert_allclose(
         whole.residual, start.residual, atol=1e-8 * np.ptp(start.residual)
     )
+
+
+@pytest.mark.parametrize("identified", [True, False])
+def test_the_offset_of_a_base_is_fitted_if_the_base_was_identified(base, identified):
+    """A curve behind the modes has a mean, which such a base took for an offset."""
+    off = base.with_chain((*base.chain, Gain(value=1.0, offset=0.05)))
+    whole = structure(off, "position", others_too=identified)
+    place = len(whole.chain) - 1
+    assert (Free(place, "offset") in whole.free) == identified
 
 
 def test_the_shapes_go_with_the_force_that_they_came_with(base):

@@ -55,7 +55,7 @@ def structure(
         any other there is none.
     output : {"position", "velocity", "acceleration"}
     others_too : bool
-        Whether the numbers of what is left, real poles, are free as well.
+        Whether the numbers of what is left, real poles, and the offset are free too.
     """
     block, *behind = start.chain
     if not isinstance(block, TransferFunction):
@@ -95,9 +95,11 @@ def structure(
     own = _written(modes, block, direct)
     free = [Free(0, name, k) for name in MODES for k in range(len(modes))]
     free += [Free(0, "direct")] if direct else []
+    chain = (own, *rest, *behind)
     if others_too:
         free += [x for k, item in enumerate(rest, 1) for x in numbers_of(item, k)]
-    chain = (own, *rest, *behind)
+        # A curve or a weight has a mean, which the offset of the base took.
+        free += [Free(k, "offset") for k, x in enumerate(chain) if isinstance(x, Gain)]
     return replace(start, chain=chain, free=tuple(free)).settled()
 
 

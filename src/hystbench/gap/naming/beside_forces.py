@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from hystbench.gap.effects import among
-from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.edit_chain import without_effect
+from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import finished, finished_to_the_end
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.add_effects import Named, SoFar, names, pays
@@ -45,16 +46,21 @@ def beside_forces(
     named = replace(named, state=state, gone=(*named.gone, *gone))
     gap = max(start.power(floor), floor)
     while (more := _with_one_beside(named, floor_rms, gap, share)) is not None:
+        if len(more.rounds) > len(named.rounds):
+            first = more.rounds[-1].ranking[0]
+            say(f"inside: beside it {first.effect}: gain {first.gain:.1f}")
         named = more
-        first = named.rounds[-1].ranking[0]
-        say(f"inside: beside it {first.effect}: gain {first.gain:.1f}")
     return named
 
 
 def _with_one_beside(
     named: Named, floor_rms: float, gap: float, share: float
 ) -> Named | None:
-    """Add the signal that the input does not explain and that does best, if it pays."""
+    """Add the signal that the input does not explain and that does best, if it pays.
+
+    Forces are fitted anew beside it. It has to matter itself there: else it has only
+    led them out of a place where a fit had stopped. They then go on without it.
+    """
     floor, state = floor_rms**2, named.state
     known = [
         item
@@ -68,11 +74,13 @@ def _with_one_beside(
     if not pays(first, state, floor, SoFar(state, gap, share)):
         return None
     assert first.state is not None  # noqa: S101  (for the type checker)
-    # The forces were fitted anew beside it: what it takes itself has to matter.
-    without = replace(first.state, beside=first.state.beside[:-1]).power(floor)
-    if without - first.state.power(floor) <= share * gap:
-        return None
     one = Round(state, first.score + first.gain, ranking, True)
-    # Forces were fitted with the signal in what is left.
-    state, _ = finished(first.state, make_score(first.state, floor_rms, forms=False))
-    return replace(named, state=state, rounds=(*named.rounds, one))
+    # They were fitted with the signal in what is left.
+    score = make_score(first.state, floor_rms, forms=False)
+    beside, _ = finished(first.state, score)
+    alone = without_effect(beside, len(beside.added) - 1)
+    if alone.power(floor) - beside.power(floor) > share * gap:
+        return replace(named, state=beside, rounds=(*named.rounds, one))
+    alone, value = finished(alone, score)
+    better = value < score_of(state, score) - FURTHER
+    return replace(named, state=alone) if better else None
