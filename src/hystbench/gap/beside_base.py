@@ -98,9 +98,9 @@ class BesideBase:
         many does. And where it pays for its numbers beside the effects, these may stand
         for a base that is off.
         """
-        state, score = self.named.state, self.score_beside(self)
         if self.counts > 2 or self.laws_of_many_numbers:
             return True
+        state, score = self.named.state, self.score_beside(self)
         now = score_of(state, score)
         count, margin = len(state.added), self.margin
         shorter = [

@@ -13,7 +13,7 @@ from tests.conftest import ROOT
 PASSED = Passed(1.0, 1.0, 1e-3, 1e-3)
 GIVEN = PASSED._replace(shortest=0.0)
 """The same of a model that was given."""
-MOVED = Moved(1.0, 1.0, 1.0, turns="rad", stiffness=1.0, loose=True)
+MOVED = Moved(1.0, 1.0, 1.0, turns="rad", stiffness=1.0, loose=True, known=True)
 PLACES = ("before", "inside", "behind", "around", "beside")
 CURVES = {
     "square and cube": ("asymmetry", "stiffness-hardening", "sensor-nonlinearity"),

@@ -6,11 +6,16 @@ from scipy.signal import lsim
 
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.asked import Asked
+from hystbench.gap.fitting.least_squares import Fitted
+from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.inside.insert_law import laws_for
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.run import closed_gap
 from hystbench.model import Model
 from hystbench.record import Channel, Record
 from tests.gap.made import evidence_of
 from tests.gap.searched import among
+from tests.gap.small import block
 
 DT, COUNT = 0.004, 1200
 MASS, DAMPING, SPRING = 1.0, 2.5, 900.0
@@ -34,8 +39,8 @@ def answer(vocabulary, noise, fades=0.0, damping=DAMPING, spring=SPRING):
         u = size / 3 * sum(waves) * np.clip(time / 0.5, 0, 1)
         y = moved(u, fades, damping, spring) + noise * rng.standard_normal(COUNT)
         given.append(Record(name, DT, u, y, FORCE, PLACE, "twin", use))
-    block = Mechanism(mass=MASS, damping=DAMPING, stiffness=SPRING, hold="linear")
-    base = Model("stage", FORCE, PLACE, (block,))
+    stage = Mechanism(mass=MASS, damping=DAMPING, stiffness=SPRING, hold="linear")
+    base = Model("stage", FORCE, PLACE, (stage,))
     evidence = evidence_of("stage", given, "linear", noise, "force", "position")
     return closed_gap(evidence, base, Asked(vocabulary=among(*vocabulary)))
 
@@ -68,3 +73,30 @@ def test_a_mass_whose_numbers_are_a_little_off_lacks_no_mode_and_no_creep(off, n
     """
     content = answer(("resonance", "creep"), noise, **off).decision.content
     assert (content["verdict"], content["effects"]) == ("parameters", [])
+
+
+@pytest.mark.parametrize("known", [True, False])
+@pytest.mark.parametrize("host", ["mechanism", "impedance", "structure"])
+def test_beside_a_spring_that_was_identified_no_force_that_fades_is_offered(
+    host, known
+):
+    """It would be a pole more of what is linear, whatever the forces act in."""
+    numbers = {
+        "mechanism": {"mass": MASS, "damping": DAMPING, "stiffness": SPRING},
+        "impedance": {"mass": MASS, "damping": DAMPING, "stiffness": SPRING},
+        "structure": {
+            "stiffness": [SPRING],
+            "damping": [DAMPING],
+            "modal_constant": [1.0],
+            "drive": [1.0],
+            "joint": [1.0],
+        },
+    }[host]
+    u = np.sin(DT * np.arange(COUNT))
+    records = (Record("a", DT, u, u, FORCE, PLACE, "twin", "fit"),)
+    free = () if known else (Free(0, "stiffness", 0 if host == "structure" else None),)
+    sample = ScoredSamples.of(records)
+    state = ModelState((block(host, **numbers),), records, sample, free, hold="linear")
+    offered = laws_for(Fitted(state, 0.0))
+    assert ("creep" in offered) == known
+    assert "friction" in offered

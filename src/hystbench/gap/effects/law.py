@@ -29,6 +29,8 @@ class Moved:
     """Stiffness of its linear spring, and of a weight; zero without either."""
     loose: bool = False
     """Whether nobody knows that it has a spring."""
+    known: bool = False
+    """Whether its spring is known, as of a base that was given."""
 
 
 class Passed(NamedTuple):

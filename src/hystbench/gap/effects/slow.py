@@ -69,7 +69,7 @@ class Creep(Effect):
 
         Beside one that was identified it would be a pole more of what is linear.
         """
-        if moved.loose or moved.anywhere:
+        if moved.anywhere or not moved.known:
             return
         for times in (1.0, 10.0):
             fades = RelaxationForce(

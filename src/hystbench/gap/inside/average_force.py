@@ -48,11 +48,11 @@ def evened(state: ModelState) -> ModelState:
     if place < number:
         known = any(np.isfinite(x.low) for x in state.free if x.block == number)
         # A gain does what a mass, a damper and a spring do together.
-        known = known or not _any_is_free(
+        known = known or not any_is_free(
             state, number, "gain", "mass", "modal_constant"
         )
         return state if known else _as_strong(state, place)
-    loose = _any_is_free(state, number, "stiffness", "damping")
+    loose = any_is_free(state, number, "stiffness", "damping")
     if not (isinstance(law, Force) and loose):
         return state
     own = chain[number + 1 :]
@@ -170,6 +170,6 @@ def _unknown(state: ModelState, place: int) -> dict[str, Free]:
     return {free.parameter: free for free in own if free.given is None}
 
 
-def _any_is_free(state: ModelState, place: int, *names: str) -> bool:
+def any_is_free(state: ModelState, place: int, *names: str) -> bool:
     """Tell whether some number of a block may be anything."""
     return not _unknown(state, place).keys().isdisjoint(names)

@@ -19,7 +19,12 @@ from hystbench.gap.effects.effect import goes_both_ways, start_of
 from hystbench.gap.effects.law import Changed, Filled, Law, Moved, Passed
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added, Free, ModelState
-from hystbench.gap.inside.average_force import relieved, spring_of, without_spring
+from hystbench.gap.inside.average_force import (
+    any_is_free,
+    relieved,
+    spring_of,
+    without_spring,
+)
 from hystbench.gap.inside.host_places import host_of
 from hystbench.gap.inside.joint import has_no_joint
 from hystbench.record import Record
@@ -120,6 +125,7 @@ def how_it_moves(state: ModelState, turns: str) -> Moved:
         anywhere,
         spring,
         without_spring(state, place) is not state,
+        not any_is_free(state, place, "stiffness"),
     )
 
 

@@ -123,8 +123,9 @@ def hosts(
             # Two masses that both swing are a structure that is driven at its joint.
             if wanted("two masses") and not _of_two_modes(modes()):
                 yield from _of_two(best, further_modes_of(start), score)
-    timing = isinstance(delay, InputDelay)
-    if not identified and all(isinstance(x, Store) for x in start.chain[timing:]):
+    behind_timing = start.chain[isinstance(delay, InputDelay) :]
+    of_stores = behind_timing and all(isinstance(x, Store) for x in behind_timing)
+    if of_stores and not identified:
         words = "the base is stores already"
         yield Host(start, fitted(start, score), words, kind="stores")
         return
