@@ -84,6 +84,8 @@ class Record:
     lead : int
         Samples at the beginning that remember what was before the record. Models run
         over them; scores leave them out.
+    past : int
+        How many of these were put before the record: the period that came before.
     """
 
     name: str
@@ -99,6 +101,7 @@ class Record:
     interpolated: Mask | None = None
     decay_s: float | None = None
     lead: int = 0
+    past: int = 0
 
     def __post_init__(self) -> None:
         """Freeze the arrays: a record is evidence."""
@@ -119,8 +122,8 @@ class Record:
 
     @property
     def time(self) -> FloatArray:
-        """Time of each sample in seconds, from zero."""
-        return cast(FloatArray, np.arange(len(self)) * self.dt)
+        """Time of each sample in seconds, from zero; of what came before, below it."""
+        return cast(FloatArray, (np.arange(len(self)) - self.past) * self.dt)
 
     @property
     def counted(self) -> Mask:
@@ -186,6 +189,7 @@ class Record:
             simulated=None if simulated is None else simulated[kept].copy(),
             interpolated=None if lost is None else lost[kept].copy(),
             lead=min(len(range(first, self.lead, step)), len(u)),
+            past=min(len(range(first, self.past, step)), len(u)),
         )
 
     def save(self, path: str | Path) -> None:

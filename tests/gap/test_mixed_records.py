@@ -1,5 +1,6 @@
 """One record in a steady state and one from rest: each begins as it does."""
 
+import csv
 from dataclasses import replace
 
 import numpy as np
@@ -13,10 +14,16 @@ from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Ratio
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.one_coordinate import best_host, one_coordinate
+from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
+from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
+from tests.gap.closing import close_gap
+from tests.gap.made import CURRENT, DISPLACEMENT, play_sum, record
+from tests.gap.searched import among
+from tests.gap.small import block
 
 DT, COUNT, NOISE = 0.01, 800, 1e-3
 LAW = ([1.0], [1.0, 2.0, 25.0])
@@ -88,3 +95,43 @@ def test_blocks_of_quick_steps_are_made_once(records):
     (first,), (second,) = quick._steps(chain), quick._steps(chain)
     assert first.hold == "linear"
     assert first is second
+
+
+THRESHOLDS, WEIGHTS = [0.0, 0.3, 0.8], [1.0, 0.8, 0.6]
+LAG_S, ROUGH = 2.5e-3, 0.02
+
+
+@pytest.fixture(scope="module")
+def loops():
+    """Loops behind a lag of the drive: one from rest, others cut out of a motion."""
+    random, found = np.random.default_rng(4), []
+    lag = block("drive-lag", time_constant_s=LAG_S)
+    begun = (("slow", 800, 0, "fit"), ("fast", 80, 1, "fit"), ("held", 160, 2, ""))
+    for name, period, cut, use in begun:
+        turns = 2 * np.pi * np.arange(1, 5) / period
+        u = np.sin(np.outer(np.arange(800 + cut * period), turns)) @ AMPLITUDES
+        y = play_sum(lag.simulate(u, u, 1e-3), THRESHOLDS, WEIGHTS)
+        y += ROUGH * random.standard_normal(len(u))
+        kept = slice(cut * period, None)
+        about = {"name": name, "period_samples": period, "use": use or "hold-out"}
+        found.append(record(u[kept], y[kept], **about))
+    return Evidence("made", tuple(found[:2]), (found[2],))
+
+
+AMPLITUDES = 1.2 / np.arange(1, 5)
+
+
+def test_a_lag_shows_beside_a_loop_that_was_moving_before(loops, tmp_path):
+    plays = {"thresholds": THRESHOLDS[1:], "weights": WEIGHTS[1:]}
+    chain = (block("prandtl-ishlinskii", **plays),)  # the first is the signal itself
+    base = Model("plays", CURRENT, DISPLACEMENT, chain)
+    alike = among("drive-lag", "sensor-lag", "hysteresis-shape", "drift")
+    found = close_gap(loops, base, tmp_path, report=False, vocabulary=alike)
+    assert [item["name"] for item in found.content["effects"]] == ["drive-lag"]
+    (held,) = loops.hold_out
+    with (tmp_path / "holdout" / "held.csv").open(newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [float(x["time_s"]) for x in rows] == pytest.approx(held.time)
+    assert [float(x["measured"]) for x in rows] == pytest.approx(held.y)
+    after = np.array([float(x["after"]) for x in rows])
+    assert np.std(held.y - after) < 2 * ROUGH

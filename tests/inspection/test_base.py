@@ -38,6 +38,23 @@ def test_it_says_what_is_left_beside_what_the_output_moves_by(rig):
     assert f"move by {moves:.3g} µm rms" in said(found)
 
 
+def test_a_loop_is_run_over_the_period_before_a_steady_motion(tmp_path):
+    """Cut out of a motion, it would else begin on its first branch from rest."""
+    u = np.sin(2 * np.pi * 5 * np.arange(1000) / 1000)
+    plays = {"thresholds": [0.4], "weights": [1.0]}
+    loop = block("prandtl-ishlinskii", **plays)
+    y = loop.simulate(u, u, 1e-3)[250:]
+    y += NOISE * np.random.default_rng(4).standard_normal(len(y))
+    cut = {"period_samples": 200}
+    made = [record(u[250:], y, name=name, use=use, **cut) for name, use in USED]
+    write_folder(tmp_path / "rig", made)
+    found = looked(tmp_path, "rig", saved(tmp_path, loop), effects=False)
+    assert found.base.left < 1.1 * NOISE
+
+
+USED = ("a", "fit"), ("b", "hold-out")
+
+
 def test_a_model_of_other_signals_is_refused(rig):
     other = Channel("voltage", "V")
     Model("other", other, DISPLACEMENT, (block("gain", value=2.0),)).save(

@@ -15,7 +15,7 @@ import numpy as np
 from hystbench.command_files import writes
 from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.asked import USUAL, Asked
-from hystbench.gap.bases.lead import without_leads
+from hystbench.gap.bases.lead import begun_beside, without_leads
 from hystbench.gap.bases.linear import IdentifiedModel, is_identified
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.on_records import compared_records, run_base, start_state
@@ -140,7 +140,7 @@ def decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Dec
     vocabulary = asked.vocabulary.in_device(evidence.device_kind)
     asked = replace(asked, vocabulary=vocabulary, say=say_in_words(asked.say))
     about = base, evidence.input_hold, evidence.quantities, asked.say
-    fit = without_leads(evidence.fit, *about)
+    fit = without_leads(begun_beside(base, evidence.fit), *about)
     evidence = replace(evidence.deciding, fit=fit)
     first = base
     base, built_in = build_in(base, evidence, vocabulary.fixed, asked.say)
@@ -180,11 +180,12 @@ def as_found(
 ) -> Evidence:
     """Leave out the leads of hold-out records, as of fit records.
 
+    Beside a base that was not identified a steady motion has a past.
     They are asked for beside the base, and again beside what was found: the base's own
     error may hide a start.
     """
     if not is_identified(base):
-        return evidence
+        return replace(evidence, hold_out=begun_beside(base, evidence.hold_out))
     about = base, evidence.input_hold, evidence.quantities, say
     records = evidence.hold_out
     for model in (None, augmented(found.base, found.state)):
@@ -204,7 +205,7 @@ def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> 
     """
     names = ("time_s", "measured", "before", "after")
     for record, outputs in zip(records, outcome.outputs, strict=True):
-        signals = (record.time, record.y, *outputs)
+        signals = (x[record.past :] for x in (record.time, record.y, *outputs))
         columns = {name: x.tolist() for name, x in zip(names, signals, strict=True)}
         write_columns(folder / "holdout" / f"{record.name}.csv", columns, 9)
     outcome.model.save(folder / "model.yaml")
@@ -292,7 +293,11 @@ def _decided_in(folder: Path, evidence: Evidence, base: Model) -> Decided:
     """Give back what :func:`decide_in` wrote."""
     kept, content = read_json(folder / NAMED), read_json(folder / DECISION)
     floor, own = Floor(**kept["floor"]), OwnValues.of_mapping(content["record_values"])
-    leads = zip(evidence.fit, kept["leads"], strict=True)
+    first = base
+    if kept["identified"]:
+        named = f"{folder / NAMED}: identified"
+        first = IdentifiedModel.from_mapping(kept["identified"], named)
+    leads = zip(begun_beside(first, evidence.fit), kept["leads"], strict=True)
     fit = tuple(replace(record, lead=lead) for record, lead in leads)
     fit = own.taken_off(fit, evidence.input_hold)
     start, _ = start_state(fit, base, evidence.input_hold, evidence.noise_rms)
@@ -301,10 +306,6 @@ def _decided_in(folder: Path, evidence: Evidence, base: Model) -> Decided:
         Rung(item["name"], state_of(item["state"], start)) for item in kept["rungs"]
     )
     box = black_box(compared_records(start), floor.rms)
-    first = base
-    if kept["identified"]:
-        named = f"{folder / NAMED}: identified"
-        first = IdentifiedModel.from_mapping(kept["identified"], named)
     vocabulary = Vocabulary.of(kept["without"], kept["with"])
     vocabulary = vocabulary.in_device(evidence.device_kind)
     built_in = BuiltIn.of_mapping(kept["built_in"]) if kept["built_in"] else None

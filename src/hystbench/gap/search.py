@@ -198,6 +198,16 @@ def _beside(
         return most_inside(in_a_chain(), floor.rms)
 
     of_two_filters = bool(places_between_halves(start.simulation))
+    if of_two_filters:  # what the curve hides of a start is no reason to try forces
+        found = augmented(base, in_a_chain().state)
+        about = base, hold, evidence.quantities, say, found
+        shorter = without_leads(start.records, *about)
+        if shorter is not start.records:
+            start, floor = start_state(shorter, base, hold, declared, offered)
+            first, in_a_chain = (
+                start,
+                cache(partial(add_effects, start, floor.rms, asked)),
+            )
     # A base of two filters already tells that a curve lies between them, so the chain
     # is tried first. So it is beside a given base: forces must beat that.
     if of_two_filters or (quantities is not None and not identified):
@@ -227,8 +237,8 @@ def _beside(
     chain = in_a_chain() if start is first else add_effects(start, floor.rms, asked)
     if inside is None and chain.state.added:
         found = augmented(base, chain.state)
-        about = base, hold, evidence.quantities, say
-        shorter = without_leads(start.records, *about, found)
+        about = base, hold, evidence.quantities, say, found
+        shorter = without_leads(start.records, *about)
         if shorter is not start.records:
             start, floor = start_state(shorter, base, hold, declared, offered)
             chain = add_effects(start, floor.rms, asked)

@@ -10,6 +10,7 @@ import numpy as np
 
 from hystbench.blocks import block_class
 from hystbench.dataset import Dataset
+from hystbench.gap.bases.lead import begun_beside
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.evidence import evidence_of
@@ -100,7 +101,9 @@ def base_of(dataset: Dataset, records: Sequence[Record], given: str = "") -> Bas
     evidence = evidence_of(dataset, records)
     base, note = load_base(given, evidence)
     parts = (*evidence.fit, *evidence.hold_out)
-    outputs = run_base(base, parts, hold)
+    begun = begun_beside(base, parts)
+    pairs = zip(begun, run_base(base, begun, hold), strict=True)
+    outputs = (y[item.past :] for item, y in pairs)
     compared = [Compared(part, y) for part, y in zip(parts, outputs, strict=True)]
     fit = tuple(compared[: len(evidence.fit)])
     return Base(base, given, note, tuple(_put_together(records, compared)), fit)

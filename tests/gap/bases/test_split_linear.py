@@ -39,14 +39,16 @@ def behind(y, response):
     return np.fft.irfft(np.fft.rfft(y) * response(2j * np.pi * f), len(y))
 
 
-def measured(curve, *, noise=0.01, front=FRONT, back=BACK, count=COUNT):
+def measured(
+    curve, *, noise=0.01, front=FRONT, back=BACK, count=COUNT, sizes=(1, 1, 1, 1)
+):
     """Records of front, curve and back in steady state, and one held out."""
     rng = np.random.default_rng(3)
     records = []
-    for seed in range(4):
+    for seed, size in enumerate(sizes):
         sines = multisine(seed, highest_hz=90.0, lines=60, count=count, dt=DT)
-        u = steady(sines, count=count, dt=DT) / 6
-        w = steady(sines, front, count=count, dt=DT) / 6
+        u = size * steady(sines, count=count, dt=DT) / 6
+        w = size * steady(sines, front, count=count, dt=DT) / 6
         y = behind(curve(w), back) + noise * rng.standard_normal(count)
         use = "hold-out" if seed == 3 else "fit"
         records.append(record(u, 2 * y + 0.3, name=f"r{seed}", dt=DT, use=use))
@@ -115,6 +117,17 @@ def test_without_a_curve_inside_the_base_is_one_block():
     model, note = load_base("linear", records)
     assert "series" not in note
     assert [block.name for block in model.chain] == ["transfer-function", "gain"]
+
+
+def test_a_gain_that_falls_with_the_level_is_the_curve():
+    """One linear model fits both levels better than two with a gain between them."""
+    records = measured(lambda w: np.minimum(w, 0.5), sizes=(1, 0.5, 1, 1))
+    model, note = load_base("linear", replace(records, fit=records.fit[:2]))
+    assert "two in series" in note
+    model = model.with_hold("band-limited")
+    found = search("made", records.fit[:2], model, vocabulary=CURVES)
+    first = found.content["effects"][0]
+    assert (first["name"], first["place"]) == ("saturation", INSIDE)
 
 
 def test_the_curve_is_named_in_its_place(split, clipped_records):

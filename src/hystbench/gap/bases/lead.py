@@ -20,6 +20,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.bases.orders import LEAD
 from hystbench.gap.progress import Say, silent
+from hystbench.gap.records.pasts import with_pasts
 from hystbench.gap.thresholds import MOST
 from hystbench.model import Model
 from hystbench.quantities import Quantities
@@ -36,6 +37,14 @@ HALF = 0.5
 ONE_PLACE = 0.1
 """Share of the rms of an output about its mean that is no other place to begin at: a
 level that is off by so much takes a hundredth of the power, and dies out."""
+
+
+def begun_beside(base: Model, records: tuple[Record, ...]) -> tuple[Record, ...]:
+    """Give records with the periods before those that begin in a steady motion.
+
+    A base that is identified needs none: it has a start of its own.
+    """
+    return records if is_identified(base) else with_pasts(records)
 
 
 def without_leads(
@@ -103,7 +112,7 @@ def lead_warnings(records: Sequence[Record]) -> list[str]:
     told = [
         f"{item.name} ({sized(item.lead * item.dt, 's')})"
         for item in records
-        if item.lead
+        if item.lead > item.past
     ]
     if not told:
         return []

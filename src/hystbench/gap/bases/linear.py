@@ -30,7 +30,7 @@ from hystbench.gap.bases.unsigned import with_signs
 from hystbench.gap.bases.wiener_hammerstein import HalvesError
 from hystbench.gap.records.coarser import coarser
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.thresholds import LOOSE, NUMBER_PAYS
+from hystbench.gap.thresholds import LOOSE, MOST, NUMBER_PAYS
 from hystbench.model import Model
 from hystbench.record import FloatArray, Mask
 
@@ -244,7 +244,9 @@ def _halves(
         return None
     count = sum(int(mask.sum()) for mask in everything.whole)
     chain, error = chain_of(task, halves)
-    if error > (1 + NUMBER_PAYS) ** 2 * min(item.ratio.cost for item in found):
+    # Most of what it leaves has to be what any linear model leaves: a curve without an
+    # odd part leaves nothing to a linear base.
+    if MOST * error > min(item.ratio.cost for item in found):
         return None
     unit = everything.evidence.output.unit
     words = (

@@ -1,0 +1,85 @@
+"""Records that begin in a steady motion: the period that came before is put back.
+
+A hysteresis remembers the turns of its input, and a model begins each record at rest.
+A record whose output repeats from its first period on was cut out of a longer one, in
+which the same period had come before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from hystbench.gap.thresholds import ABOVE_NOISE
+from hystbench.record import FloatArray, Record
+
+ROUNDED = 1e-6
+"""Share of the largest value that is no difference: files have six digits or more."""
+
+
+def with_pasts(records: Sequence[Record]) -> tuple[Record, ...]:
+    """Put a period before records that begin in a steady motion.
+
+    Models run over it, from rest; scores leave it out. The other records, and those
+    that have a lead, stay as they are.
+
+    Parameters
+    ----------
+    records : sequence of Record
+    """
+    return tuple(
+        _with_past(record) if not record.lead and is_steady(record) else record
+        for record in records
+    )
+
+
+def is_steady(record: Record) -> bool:
+    """Tell whether a record's first period is as those behind it.
+
+    That is so where both input and output differ between the first two periods by no
+    more than noise: by what differs between later ones, or, where there are but two,
+    by what differs from sample to sample.
+    """
+    period = record.period_samples
+    if period is None or len(record) < 2 * period or record.decay_s is not None:
+        return False
+    count = len(record) // period
+    measured = record.counted[: count * period].reshape(count, period).all(axis=0)
+    if np.count_nonzero(measured) < 2:
+        return False
+    signals = (record.u, record.y)
+    return all(
+        _alike(signal[: count * period].reshape(count, period)[:, measured])
+        for signal in signals
+    )
+
+
+def _alike(periods: FloatArray) -> bool:
+    """Tell whether the first of periods, shape (count, samples), is as the second."""
+    first, *later = (a - b for a, b in pairwise(periods))
+    # White noise differs twice as much between neighbours as it has power.
+    noise = np.mean(np.square(later)) if later else np.mean(np.diff(first) ** 2) / 2
+    rounding = (ROUNDED * np.max(np.abs(periods))) ** 2
+    return bool(np.mean(first**2) <= (1 + ABOVE_NOISE) * noise + rounding)
+
+
+def _with_past(record: Record) -> Record:
+    period = record.period_samples or 0
+    lost, simulated = record.interpolated, record.simulated
+    u, y = (np.append(values[:period], values) for values in (record.u, record.y))
+    if lost is not None:
+        lost = np.append(lost[:period], lost)
+    if simulated is not None:
+        simulated = np.append(simulated[:period], simulated)
+    return replace(
+        record,
+        u=u,
+        y=y,
+        simulated=simulated,
+        interpolated=lost,
+        lead=period,
+        past=period,
+    )
