@@ -28,7 +28,8 @@ class SlewLimit(Block, name="slew-limit", place="drive"):
         """Follow the input at a limited rate."""
         v = np.empty(len(z))
         rate = self.rate * dt
-        kernels.call("hb_slew_limit", len(z), rate, np.ascontiguousarray(z), v)
+        z = np.ascontiguousarray(z, np.float64)
+        kernels.call("hb_slew_limit", len(z), rate, z, v)
         return v
 
     def step(self, sampling: Sampling) -> Step:

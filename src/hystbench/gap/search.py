@@ -9,7 +9,7 @@ from functools import cache, partial
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.known_about import known_about
 from hystbench.gap.bases.lead import without_leads
-from hystbench.gap.bases.linear import is_identified
+from hystbench.gap.bases.linear import found_beside, is_identified
 from hystbench.gap.beside_base import BesideBase, stays
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.candidates import Limits
@@ -197,8 +197,8 @@ def _beside(
     def most_forces() -> float:
         return most_inside(in_a_chain(), floor.rms)
 
-    of_two_filters = bool(places_between_halves(start.simulation))
-    if of_two_filters:  # what the curve hides of a start is no reason to try forces
+    known = bool(places_between_halves(start.simulation)) or found_beside(base)
+    if known:  # what that effect hides of a start is no reason to try forces
         found = augmented(base, in_a_chain().state)
         about = base, hold, evidence.quantities, say, found
         shorter = without_leads(start.records, *about)
@@ -208,10 +208,11 @@ def _beside(
                 start,
                 cache(partial(add_effects, start, floor.rms, asked)),
             )
-    # A base of two filters already tells that a curve lies between them, so the chain
-    # is tried first. So it is beside a given base: forces must beat that.
-    if of_two_filters or (quantities is not None and not identified):
-        chain_leaves_little = of_two_filters and _why_enough(
+    # A base of two filters already tells that a curve lies between them, and one that
+    # was found beside an effect that there is one: so the chain is tried first. So it
+    # is beside a given base: forces must beat that.
+    if known or (quantities is not None and not identified):
+        chain_leaves_little = known and _why_enough(
             start, in_a_chain().state, floor, share
         )
         if quantities and (chain_leaves_little or most_forces() < 1):

@@ -102,9 +102,11 @@ def base_of(dataset: Dataset, records: Sequence[Record], given: str = "") -> Bas
     base, note = load_base(given, evidence)
     parts = (*evidence.fit, *evidence.hold_out)
     begun = begun_beside(base, parts)
-    pairs = zip(begun, run_base(base, begun, hold), strict=True)
-    outputs = (y[item.past :] for item, y in pairs)
-    compared = [Compared(part, y) for part, y in zip(parts, outputs, strict=True)]
+    outputs = run_base(base, begun, hold)
+    compared = [
+        Compared(part, y[item.past :])
+        for part, item, y in zip(parts, begun, outputs, strict=True)
+    ]
     fit = tuple(compared[: len(evidence.fit)])
     return Base(base, given, note, tuple(_put_together(records, compared)), fit)
 

@@ -268,10 +268,12 @@ def test_two_that_score_alike_share_the_confidence():
         ([("drive-lag", 0.1, []), ("sensor-lag", 0.1, [])], False),
         ([("drive-lag", 0.3, ["creep"]), ("sensor-lag", 0.1, [])], True),
         ([("creep", 0.9, []), ("drift", 0.3, [])], True),
+        ([("creep", 0.9, []), ("drift", 0.01, [])], False),
+        ([("creep", 0.01, [])], True),
         ([], True),
     ],
 )
-def test_several_names_stand_where_one_is_likelier_right_than_wrong(told, stands):
+def test_several_names_stand_where_one_is_likely_and_none_excluded(told, stands):
     keys = ("name", "confidence", "cannot_be_told_from")
     effects = [dict(zip(keys, item, strict=True)) for item in told]
     doubt = likelier_wrong(effects)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -24,6 +24,7 @@ from hystbench.gap.bases.orders import (
     with_plainest_start,
 )
 from hystbench.gap.bases.output_error import without_mean
+from hystbench.gap.bases.slow_drive import behind_a_slow_drive
 from hystbench.gap.bases.spectral import fit_ratio
 from hystbench.gap.bases.split_linear import best_split, chain_of, is_bent
 from hystbench.gap.bases.unsigned import with_signs
@@ -36,16 +37,26 @@ from hystbench.record import FloatArray, Mask
 
 LINEAR = "linear"
 """Name of the base that is identified as a linear model."""
+UNSIGNED, SLOW = "sensor-nonlinearity", "slew-limit"
+"""Names of effects that a linear model is found beside."""
 
 
 @dataclass(frozen=True)
 class IdentifiedModel(Model):
     """A linear model that was identified from the fit records, with the gap in them."""
 
+    beside: str = ""
+    """Name of an effect that it was found beside; the effect is no part of it."""
+
 
 def is_identified(base: Model) -> bool:
     """Tell whether a base was identified from the records and may be re-tuned."""
     return isinstance(base, IdentifiedModel) and bool(base.free)
+
+
+def found_beside(base: Model) -> bool:
+    """Tell whether a base was identified beside an effect that is no part of it."""
+    return isinstance(base, IdentifiedModel) and base.beside != ""
 
 
 def with_its_numbers_free(base: Model) -> Model:
@@ -71,7 +82,7 @@ def with_its_numbers_free(base: Model) -> Model:
 class Linear(NamedTuple):
     """A linear base, and how it was found."""
 
-    model: Model
+    model: IdentifiedModel
     note: str
     """One sentence."""
     fit_rms: float
@@ -80,16 +91,14 @@ class Linear(NamedTuple):
     of the output, both after the first tenth of each record."""
     constant_rms: float
     """Error of a constant on these folds."""
-    signed: bool = False
-    """Whether it is of an output with a sign that the sensor may not show."""
 
 
 def identified_linear(evidence: Evidence) -> Linear:
     """Find the linear model that simulates the fit records best.
 
-    The model is of the output. If the output is never below zero, one of an output with
-    a sign is tried too. It is taken if it leaves less than a quarter of the power on
-    folds.
+    The model is of input and output. One of an output with a sign is tried too if the
+    output is never below zero, and one behind a drive that goes no faster than a rate.
+    Either is taken if it leaves less than a quarter of the power on folds.
 
     Parameters
     ----------
@@ -102,16 +111,14 @@ def identified_linear(evidence: Evidence) -> Linear:
         If no linear model predicts the folds better than a constant.
     """
     best, unit = linear_of(evidence), evidence.output.unit
-    signed = with_signs(evidence)
-    if signed is not None:
-        other = linear_of(signed)
-        if other.fold_rms**2 < LOOSE * best.fold_rms**2:
+    for effect, words, without, other in _beside_an_effect(evidence):
+        found = linear_of(other)
+        if found.fold_rms**2 < LOOSE * best.fold_rms**2:
             note = (
-                f"{other.note}, of an output with a sign that the sensor may not show "
-                f"(without a sign {best.fold_rms:.4g} {unit} on folds)"
+                f"{found.note}, {words} ({without} {best.fold_rms:.4g} {unit} on folds)"
             )
-            constant = best.constant_rms
-            best = other._replace(note=note, constant_rms=constant, signed=True)
+            model, constant = replace(found.model, beside=effect), best.constant_rms
+            best = found._replace(model=model, note=note, constant_rms=constant)
     fold, still = best.fold_rms, best.constant_rms
     if fold > (1 - NUMBER_PAYS) * still:
         raise InputError(
@@ -120,6 +127,25 @@ def identified_linear(evidence: Evidence) -> Linear:
             "output that follows the input, or a model file in --model"
         )
     return best
+
+
+def _beside_an_effect(
+    evidence: Evidence,
+) -> Iterator[tuple[str, str, str, Evidence]]:
+    """Give records as they are without an effect that no linear model shows.
+
+    With the effect's name, and words for a base of them and for one of the records as
+    they are.
+    """
+    signed = with_signs(evidence)
+    if signed is not None:
+        words = "of an output with a sign that the sensor may not show"
+        yield UNSIGNED, words, "without a sign", signed
+    slowed = behind_a_slow_drive(evidence)
+    if slowed is not None:
+        slow, rate = slowed
+        words = f"behind a drive of {rate:.4g} {evidence.input.unit}/s at most"
+        yield SLOW, words, "without that limit", slow
 
 
 def linear_of(evidence: Evidence) -> Linear:

@@ -22,6 +22,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.bases.kinds import COMMAND, IDENTIFIED, kind_of_base
 from hystbench.gap.bases.linear import (
+    UNSIGNED,
     IdentifiedModel,
     identified_linear,
     with_its_numbers_free,
@@ -101,7 +102,9 @@ def _identified(word: str, evidence: Evidence) -> tuple[Model, str]:
     if word == "gpi":
         return identified_gpi(evidence)
     found = identified_linear(evidence)
-    if found.signed:  # re-tuned without a sign it would be another model
+    if (
+        found.model.beside == UNSIGNED
+    ):  # re-tuned without a sign it would be another model
         return found.model, found.note
     return with_its_numbers_free(found.model), found.note
 

@@ -14,6 +14,7 @@ from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.thresholds import (
     ABOVE_NOISE,
     AS_GOOD,
+    BY_CHANCE,
     DOUBT,
     LOOSE,
     MOST,
@@ -201,11 +202,13 @@ def confidence(
 
 
 def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
-    """Say that of several names none is likelier right than wrong; or nothing.
+    """Say that several names are likelier wrong than right; or nothing.
 
-    Then they stand in for each other, and for what they are together. One name alone
-    is what explains the gap best, however little its numbers are known. A name counts
-    with those that it cannot be told from: one of them is right.
+    They are where none of them is likelier right: then they stand in for each other,
+    and for what they are together. They are where one of them is as good as excluded:
+    the others were found beside it. One name alone is what explains the gap best,
+    however little its numbers are known. A name counts with those that it cannot be
+    told from: one of them is right.
 
     Parameters
     ----------
@@ -213,10 +216,13 @@ def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
         As gap.json holds them.
     """
     sure = [x["confidence"] * (1 + len(x["cannot_be_told_from"])) for x in effects]
-    if len(sure) < 2 or max(sure) >= MOST:
+    if len(sure) < 2 or (max(sure) >= MOST and min(sure) >= BY_CHANCE):
         return ""
     told = " and ".join(f"{x['name']} {x['confidence']:.2f}" for x in effects)
-    return f"no name is likelier right than wrong: {told}"
+    if max(sure) < MOST:
+        return f"no name is likelier right than wrong: {told}"
+    least = effects[int(np.argmin(sure))]["name"]
+    return f"the names stand together, and {least} is next to excluded: {told}"
 
 
 def error_of(

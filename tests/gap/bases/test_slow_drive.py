@@ -1,0 +1,84 @@
+"""A linear base behind a drive that goes no faster than a rate."""
+
+import numpy as np
+import pytest
+
+from hystbench.gap import search as search_module
+from hystbench.gap.bases.load import load_base
+from hystbench.gap.bases.slow_drive import behind_a_slow_drive
+from hystbench.gap.records.evidence import Evidence
+from hystbench.quantities import Quantities
+from tests.gap.made import record, sine
+from tests.gap.searched import among, search
+
+DT, RATE, LAG_S, NOISE = 1e-3, 20.0, 0.03, 0.002
+FINE = 20
+
+
+def through(u, rate):
+    """What the drive and a lag make of an input, in twenty steps a sample."""
+    now = out = 0.0
+    found = []
+    steps = np.interp(np.arange(FINE * len(u)) / FINE, np.arange(len(u)), u)
+    for k, value in enumerate(steps.tolist()):
+        if k % FINE == 0:
+            found.append(out)
+        now += max(min(value - now, rate * DT / FINE), -rate * DT / FINE)
+        out += (now - out) * -np.expm1(-DT / FINE / LAG_S)
+    return 3.0 * np.array(found)
+
+
+def device(rate):
+    random = np.random.default_rng(2)
+    tones = sine(2.0) + 0.7 * sine(5.1) + 0.4 * sine(11.3)
+    inputs = {"slow": sine(0.5), "fast": sine(8.0), "tones": 0.6 * tones}
+    records = []
+    for name, u in inputs.items():
+        y = through(u, rate) + NOISE * random.standard_normal(len(u))
+        records.append(record(u, y, name=name, dt=DT))
+    return Evidence("made", tuple(records), (), "linear")
+
+
+@pytest.fixture(scope="module")
+def limited():
+    return device(RATE)
+
+
+def test_the_rate_is_that_of_the_drive(limited):
+    found = behind_a_slow_drive(limited)
+    assert found is not None
+    slowed, rate = found
+    assert rate == pytest.approx(RATE, rel=0.02)
+    steepest = max(np.abs(np.diff(x.u)).max() for x in slowed.fit)
+    assert steepest <= rate * DT * (1 + 1e-9)
+
+
+def test_without_a_limit_there_is_none():
+    assert behind_a_slow_drive(device(1e3)) is None
+
+
+def test_the_base_is_what_is_behind_the_drive(limited):
+    model, note = load_base("linear", limited)
+    assert "behind a drive of" in note
+    assert "without that limit" in note
+    lag = model.chain[0]
+    assert len(lag.denominator) == 2
+    assert lag.denominator[0] / lag.denominator[1] == pytest.approx(LAG_S, rel=0.02)
+    assert lag.numerator[-1] / lag.denominator[-1] == pytest.approx(3.0, rel=0.01)
+
+
+def test_the_limit_is_named_and_no_force_looked_for(limited, monkeypatch):
+    def look(*_):
+        raise AssertionError("forces were looked for")
+
+    monkeypatch.setattr(search_module, "named_inside", look)
+    base = load_base("linear", limited)[0].with_hold("linear")
+    found = search(
+        *("made", limited.fit, base, "linear"),
+        vocabulary=among("slew-limit", "drive-lag", "drive-saturation", "friction"),
+        quantities=Quantities("force", "position"),
+    )
+    (effect,) = found.content["effects"]
+    assert (found.content["verdict"], effect["name"]) == ("named", "slew-limit")
+    rate = effect["parameters"]["rate"]["value"]
+    assert rate == pytest.approx(RATE, rel=0.02)
