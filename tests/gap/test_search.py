@@ -16,12 +16,15 @@ from hystbench.gap.experiment.separation import RivalPair
 from hystbench.gap.experiment.tell_apart import next_experiment
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.on_records import start_state
+from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.choose import most_inside
 from hystbench.gap.judging.left import Left
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
 from hystbench.gap.search import judge_and_tell
+from hystbench.gap.thresholds import FURTHER, PAYS
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
 from tests.gap.searched import search
@@ -279,9 +282,12 @@ def test_forces_have_to_be_fewer_than_what_leaves_nothing(alike, effects, most):
     state = found["sensor-lag"]
     named = Named(replace(state, added=state.added * effects), ())
     assert most_inside(named, floor.rms) == most
-    # Where a gap is left any number of forces may close it.
+    # Where a gap is left as many may be more as could pay for themselves.
     base = replace(named, state=alike[1])
-    assert most_inside(base, floor.rms) == np.inf
+    score = Score.plain(base.state.sample, floor.rms**2)
+    left = score_of(base.state, score) - score.least(base.state.freedom)
+    there = len(base.state.added)
+    assert most_inside(base, floor.rms) == there + (left - PAYS) // FURTHER > there
     # A path bends to whatever is there, and leaves nothing to any law.
     path = state.added[0]._replace(effect="drift", form="winding path")
     free = replace(named, state=replace(state, added=(path,)))

@@ -33,7 +33,7 @@ from hystbench.gap.inside.named_inside import (
 from hystbench.gap.inside.one_coordinate import Kind
 from hystbench.gap.inside.timing import better_timed, in_time_words, timed_as_named
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
-from hystbench.gap.naming.add_effects import add_effects
+from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.naming.begun_otherwise import begun_as_named
 from hystbench.gap.naming.beside_forces import beside_forces
 from hystbench.gap.naming.poles_of_base import named_beside_them, with_poles_named
@@ -193,10 +193,6 @@ def _beside(
     identified = is_identified(base)
     in_a_chain = cache(partial(add_effects, start, floor.rms, asked))
 
-    @cache
-    def most_forces() -> float:
-        return most_inside(in_a_chain(), floor.rms)
-
     known = bool(places_between_halves(start.simulation)) or found_beside(base)
     if known:  # what that effect hides of a start is no reason to try forces
         found = augmented(base, in_a_chain().state)
@@ -204,10 +200,8 @@ def _beside(
         shorter = without_leads(start.records, *about)
         if shorter is not start.records:
             start, floor = start_state(shorter, base, hold, declared, offered)
-            first, in_a_chain = (
-                start,
-                cache(partial(add_effects, start, floor.rms, asked)),
-            )
+            in_a_chain = cache(partial(add_effects, start, floor.rms, asked))
+            first = start
     # A base of two filters already tells that a curve lies between them, and one that
     # was found beside an effect that there is one: so the chain is tried first. So it
     # is beside a given base: forces must beat that.
@@ -215,13 +209,15 @@ def _beside(
         chain_leaves_little = known and _why_enough(
             start, in_a_chain().state, floor, share
         )
-        if quantities and (chain_leaves_little or most_forces() < 1):
+        if quantities and (
+            chain_leaves_little or most_inside(in_a_chain(), floor.rms) < 1
+        ):
             say("no force could gain what matters, so none is tried inside")
             quantities = None
     if quantities is not None:
         whole = start, floor
         start, floor, inside, own = _with_forces(
-            base, start, floor, quantities, declared, asked, most_forces, kinds
+            base, start, floor, quantities, declared, asked, in_a_chain, kinds
         )
         if inside is not None and not beats_base(inside, start, floor.rms):
             say("inside: what stands for the base leaves more than the base does")
@@ -274,16 +270,21 @@ def _with_forces(
     quantities: Quantities,
     declared: float | None,
     asked: Asked,
-    most: Callable[[], float],
+    in_a_chain: Callable[[], Named],
     kinds: tuple[Kind, ...],
 ) -> tuple[ModelState, Floor, Inside | None, OwnValues]:
     """Look for forces inside the dynamics, beside what is a record's own.
 
     What is given back first is the base on the records without what was found to be
     their own. After the first look only such hosts are tried as it has found best.
+    Records get offsets of their own only where a chain leaves much as well: forces that
+    are wrong leave much of which an offset takes some.
     """
     identified, records, hold = is_identified(base), start.records, start.hold
     say, shorter, whole, own = asked.say, records, (start, floor), NONE
+
+    def most() -> float:
+        return most_inside(in_a_chain(), whole[1].rms)
 
     def again(found: Model) -> bool:
         nonlocal shorter
@@ -306,18 +307,26 @@ def _with_forces(
         start, floor = start_state(shorter, base, hold, declared, start.offered)
     if inside is None:  # no force shows where a motion begins
         start, floor = whole
-    if not _leaves_little(inside, floor) and own_offsets(records, quantities):
+    if (
+        not _leaves_little(inside, floor)
+        and own_offsets(records, quantities)
+        and _leaves_much(in_a_chain().state, *whole)
+    ):
         start, inside, own = apart_inside(start, inside, floor.rms, look, say)
     return start, floor, inside, own
+
+
+def _leaves_much(state: ModelState, start: ModelState, floor: Floor) -> bool:
+    """Tell whether effects leave more of the base's gap than a name may."""
+    square = floor.rms**2
+    return state.power(square) > LOOSE * start.power(square)
 
 
 def _leaves_little(inside: Inside | None, floor: Floor) -> bool:
     """Tell whether forces leave so little that no record needs numbers of its own."""
     if inside is None:
         return False
-    square = floor.rms**2
-    left = inside.named.state.power(square)
-    return left <= LOOSE * inside.start.power(square)
+    return not _leaves_much(inside.named.state, inside.start, floor)
 
 
 def _why_enough(

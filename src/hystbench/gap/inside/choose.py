@@ -157,16 +157,17 @@ def _candidate(item: Fitted, already: frozenset[str], now: float) -> Candidate:
 def most_inside(chain: Named, floor_rms: float) -> float:
     """Give how many effects inside could do better than what a chain has found.
 
-    They have to lower its score by what an effect has to gain. Where it leaves so
-    little that nothing can, they have to be fewer. A free form, as a path is, bends to
-    much of what is there: it says nothing of what could do better.
+    They have to lower its score by what an effect has to gain, and by what a further
+    one has for each that they are more. Where it leaves so little that nothing can,
+    they have to be fewer. A free form, as a path is, bends to much of what is there: it
+    says nothing of what could do better.
     """
     state = chain.state
     if any(item.form in effects()[item.effect].free_forms for item in state.added):
         return np.inf
     score = Score.plain(state.sample, floor_rms**2)
     left = score_of(state, score) - score.least(state.freedom)
-    return np.inf if left >= PAYS else len(state.added) - 1
+    return len(state.added) + float((left - PAYS) // FURTHER if left >= PAYS else -1)
 
 
 def least(found: Sequence[Fitted]) -> Fitted:

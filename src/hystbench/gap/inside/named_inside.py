@@ -290,9 +290,9 @@ def beats_chain(
 ) -> bool:
     """Tell whether effects inside do better than those in a chain.
 
-    They have to lower the score on folds by as much as any effect; what the chain
-    has to pay for each effect more than they are counts. Both models are refitted
-    without those records.
+    They have to lower the score on folds by as much as any effect; what either has to
+    pay for each effect more than the other counts. Both models are refitted without
+    those records.
     """
     state, chain = inside.named.state, named.state
     score = Score.plain(state.sample, floor_rms**2)
@@ -301,7 +301,7 @@ def beats_chain(
     say(f"inside: on folds {abs(gain):.1f} {better} than what a chain has found")
     more = len(chain.added) - len(state.added) - inside.counts
     gain -= state.moved_charge - chain.moved_charge
-    return gain + FURTHER * max(more, 0) >= PAYS
+    return gain + FURTHER * more >= PAYS
 
 
 def quantities_if_linear(base: Model, evidence: Evidence) -> Quantities | None:
