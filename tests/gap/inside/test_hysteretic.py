@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from hystbench.blocks.iwan_force import IwanForce
+from hystbench.gap.effects.forces import EVEN_FORCE
 from hystbench.gap.thresholds import SCALE
 from tests.gap.inside_host import each_alone
 from tests.gap.oscillator import NOISE, best, spring, tried
@@ -94,3 +96,17 @@ def test_a_loop_of_exponent_two_is_one_force_and_no_friction_beside_it():
     assert law.yield_distance == pytest.approx(0.1, rel=0.1)
     assert law.sharing == pytest.approx(0.4, abs=0.1)
     assert np.sqrt(np.mean(item.state.residual**2)) < 2 * NOISE
+
+
+@pytest.mark.parametrize(
+    ("exponent", "beyond"), [(EVEN_FORCE, 0.5), (EVEN_FORCE - 1, 1 / 11), (0.0, 0.99)]
+)
+def test_below_an_exponent_most_of_the_force_gives_way_at_once(exponent, beyond):
+    """Of the force, the integral of ``r^(1 + exponent)``, over two decades of ways."""
+    block = IwanForce(
+        stiffness=1.0, slip_distance=1.0, exponent=exponent, first_slip=0.01
+    )
+    shares, thresholds = block.elements()
+    forces = shares * thresholds
+    late = forces[thresholds > 0.1].sum() / forces.sum()
+    assert late == pytest.approx(beyond, abs=0.06)

@@ -187,6 +187,9 @@ class Gravity(InsideEffect):
 STEEPEST = 1.0
 """Exponent of plays, at most. Of a joint it is below zero (Segalman); a large one makes
 one way at which all slip, which is dry friction that gives way."""
+EVEN_FORCE = -2.0
+"""Exponent at which every decade of thresholds holds as much force. Below it most of
+the force gives way with the first slip, however long the slip distance is."""
 LATEST = 0.5
 """Share of the slip distance at which the first plays slip, at most: with one that is
 as late as the last all slip at once, too."""
@@ -250,7 +253,7 @@ class HystereticForce(InsideEffect):
             (*plays, "first_slip"),
             ranges={
                 "slip_distance": (SLIDES * moved.reach, np.inf),
-                "exponent": (-np.inf, STEEPEST),
+                "exponent": (EVEN_FORCE, STEEPEST),
                 "first_slip": (0.0, LATEST),
             },
         )
