@@ -126,6 +126,14 @@ class Record:
         return cast(FloatArray, (np.arange(len(self)) - self.past) * self.dt)
 
     @property
+    def as_measured(self) -> Record:
+        """The record without the period that was put before it."""
+        if not self.past:
+            return self
+        alone = self.cut(slice(self.past, None))
+        return replace(alone, period_samples=self.period_samples)
+
+    @property
     def counted(self) -> Mask:
         """Samples that a score may count, shape (n,): measured, and behind the lead."""
         behind = np.arange(len(self)) >= self.lead
@@ -161,7 +169,7 @@ class Record:
         if self.decay_s is not None:
             about.append(self.decay_s)
         if self.lead:
-            about.append({"lead": self.lead})
+            about.append({"lead": self.lead, "past": self.past})
         whole = blake2b(json.dumps(about).encode(), digest_size=16)
         for array in (self.u, self.y, self.simulated):
             whole.update(b"none" if array is None else array.tobytes())

@@ -9,7 +9,9 @@ from scipy.signal import lsim
 
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.sensor_lag import SensorLag
+from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.starts import possible_starts
+from hystbench.gap.bases.lead import begun_beside
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Ratio
 from hystbench.gap.fitting.score import Score
@@ -99,6 +101,8 @@ def test_blocks_of_quick_steps_are_made_once(records):
 
 THRESHOLDS, WEIGHTS = [0.0, 0.3, 0.8], [1.0, 0.8, 0.6]
 LAG_S, ROUGH = 2.5e-3, 0.02
+# The first of the operators is the signal itself.
+PLAYS = block("prandtl-ishlinskii", thresholds=THRESHOLDS[1:], weights=WEIGHTS[1:])
 
 
 @pytest.fixture(scope="module")
@@ -122,9 +126,7 @@ AMPLITUDES = 1.2 / np.arange(1, 5)
 
 
 def test_a_lag_shows_beside_a_loop_that_was_moving_before(loops, tmp_path):
-    plays = {"thresholds": THRESHOLDS[1:], "weights": WEIGHTS[1:]}
-    chain = (block("prandtl-ishlinskii", **plays),)  # the first is the signal itself
-    base = Model("plays", CURRENT, DISPLACEMENT, chain)
+    base = Model("plays", CURRENT, DISPLACEMENT, (PLAYS,))
     alike = among("drive-lag", "sensor-lag", "hysteresis-shape", "drift")
     found = close_gap(loops, base, tmp_path, report=False, vocabulary=alike)
     assert [item["name"] for item in found.content["effects"]] == ["drive-lag"]
@@ -135,3 +137,25 @@ def test_a_lag_shows_beside_a_loop_that_was_moving_before(loops, tmp_path):
     assert [float(x["measured"]) for x in rows] == pytest.approx(held.y)
     after = np.array([float(x["after"]) for x in rows])
     assert np.std(held.y - after) < 2 * ROUGH
+
+
+@pytest.mark.parametrize("periods", [2, 3])
+def test_all_records_may_be_cut_out_of_a_motion(loops, tmp_path, periods):
+    first = slice(periods * 80)
+    fit = [
+        replace(record(x.u[first], x.y[first], name=name), period_samples=80)
+        for name, x in (("a", loops.fit[1]), ("b", loops.fit[1]))
+    ]
+    lone = Evidence("made", tuple(fit), loops.hold_out)
+    base = Model("plays", CURRENT, DISPLACEMENT, (PLAYS,))
+    alike = among("drive-lag", "sensor-lag")
+    found = close_gap(lone, base, tmp_path, report=False, vocabulary=alike)
+    assert "lag" in found.content["effects"][0]["name"]
+    assert np.isfinite(found.content["black_box"]["explained_on_folds"])
+
+
+def test_a_column_of_a_simulator_begins_where_the_record_does(loops):
+    columns = [replace(x, simulated=PLAYS.simulate(x.u, x.u, x.dt)) for x in loops.fit]
+    chain = (SimulatedColumn(column="simulated", records=tuple(columns)),)
+    base = Model("column", CURRENT, DISPLACEMENT, chain)
+    assert begun_beside(base, loops.fit) is loops.fit

@@ -180,9 +180,8 @@ def as_found(
 ) -> Evidence:
     """Leave out the leads of hold-out records, as of fit records.
 
-    Beside a base that was not identified a steady motion has a past.
     They are asked for beside the base, and again beside what was found: the base's own
-    error may hide a start.
+    error may hide a start. Beside another base a steady motion gets its past.
     """
     if not is_identified(base):
         return replace(evidence, hold_out=begun_beside(base, evidence.hold_out))
@@ -258,7 +257,7 @@ def decide_in(
             {"name": item.name, "state": state_mapping(item.state)}
             for item in decision.rungs
         ],
-        "identified": base.to_mapping() if is_identified(base) else None,
+        "identified": base.to_mapping() if isinstance(base, IdentifiedModel) else None,
         "without": list(decided.vocabulary.without),
         "with": list(decided.vocabulary.fixed),
         "built_in": None if built_in is None else built_in.mapping(),

@@ -9,7 +9,7 @@ from functools import cache, partial
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.known_about import known_about
 from hystbench.gap.bases.lead import without_leads
-from hystbench.gap.bases.linear import found_beside, is_identified
+from hystbench.gap.bases.linear import beside_of, is_identified
 from hystbench.gap.beside_base import BesideBase, stays
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.candidates import Limits
@@ -193,7 +193,7 @@ def _beside(
     identified = is_identified(base)
     in_a_chain = cache(partial(add_effects, start, floor.rms, asked))
 
-    known = bool(places_between_halves(start.simulation)) or found_beside(base)
+    known = bool(places_between_halves(start.simulation) or beside_of(base))
     if known:  # what that effect hides of a start is no reason to try forces
         found = augmented(base, in_a_chain().state)
         about = base, hold, evidence.quantities, say, found
@@ -202,9 +202,9 @@ def _beside(
             start, floor = start_state(shorter, base, hold, declared, offered)
             in_a_chain = cache(partial(add_effects, start, floor.rms, asked))
             first = start
-    # A base of two filters already tells that a curve lies between them, and one that
-    # was found beside an effect that there is one: so the chain is tried first. So it
-    # is beside a given base: forces must beat that.
+    # A base of two filters tells that a curve lies between them. One that was found
+    # beside an effect tells that there is this effect. So the chain is tried first. So
+    # it is beside a given base: forces must beat that.
     if known or (quantities is not None and not identified):
         chain_leaves_little = known and _why_enough(
             start, in_a_chain().state, floor, share
@@ -277,8 +277,8 @@ def _with_forces(
 
     What is given back first is the base on the records without what was found to be
     their own. After the first look only such hosts are tried as it has found best.
-    Records get offsets of their own only where a chain leaves much as well: forces that
-    are wrong leave much of which an offset takes some.
+    Records get offsets of their own only where a chain leaves much as well. Wrong
+    forces leave much, and an offset would take some of it.
     """
     identified, records, hold = is_identified(base), start.records, start.hold
     say, shorter, whole, own = asked.say, records, (start, floor), NONE

@@ -68,7 +68,7 @@ how far the confidences are off by it is measured by the contest.
 """
 BY_CHANCE = 0.05
 """Significance level of tests: what chance gives more often than this counts as
-chance.
+chance. A name of several that is less probable than that is next to excluded.
 
 The usual level.
 """
@@ -110,7 +110,7 @@ LOOSE = 0.25
 - A name does not stand where more than this of the gap is left.
 - An effect may not widen the gap by more, as it can where a wrong shape hides it.
 - A wrong shape of the hysteresis matters where it takes more.
-- Records get no numbers of their own where forces inside leave less.
+- Records get no numbers of their own where forces inside, or a chain, leave less.
 - A curve between two filters must take as much, and one more degree of a path on
   hold-out records.
 - What differs from period to period is noise only if no more than this of it repeats.
@@ -123,7 +123,8 @@ MOST = 0.5
 # With nothing named: whether there is a gap.
 
 ABOVE_NOISE = MOST
-"""Power above the floor, in floors, that is not noise.
+"""Power above the floor, in floors, that is not noise; the same of what differs between
+the first periods of a steady motion, in powers of its noise.
 
 An rms of 1.22 times the noise's, 1.8 dB. A power is known to 20 % from a record's
 weight, so it is two and a half standard errors.

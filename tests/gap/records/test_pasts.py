@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hystbench.gap.records.folds import make_folds
+from hystbench.gap.records.nuisance import left_over
 from hystbench.gap.records.pasts import is_steady, with_pasts
 from tests.gap.made import play_sum, record, sine
 
@@ -74,3 +76,46 @@ def test_what_was_not_measured_tells_nothing():
     (found,) = with_pasts([replace(cut, y=y, interpolated=lost)])
     assert found.past == PERIOD
     assert found.interpolated.sum() == 2 * lost.sum()
+
+
+@pytest.mark.parametrize("periods", [2, 3, 4])
+def test_what_goes_on_from_period_to_period_may_have_begun_here(periods):
+    """Creep from rest, and a drift that hides the first branch of a loop."""
+    u, y = loop(periods, noise=0.001)
+    times = np.arange(len(u)) / PERIOD
+    creep = record(u, u - 0.5 * np.expm1(-times / 10), period_samples=PERIOD)
+    drift = record(u, y + 0.3 * times, period_samples=PERIOD)
+    assert not is_steady(creep)
+    assert not is_steady(drift)
+
+
+def test_an_oscillation_that_dies_out_is_no_steady_motion():
+    """Four samples a cycle: from one to the next it differs as noise does."""
+    cut = steady(2)
+    rings = np.exp(-np.arange(len(cut)) / 60) * np.cos(np.arange(len(cut)) * np.pi / 2)
+    assert not is_steady(replace(cut, y=cut.y + 0.5 * rings))
+
+
+def test_blocks_of_folds_lie_behind_the_past():
+    (found,) = with_pasts([steady(2)])
+    folds = make_folds([found], whole=False)
+    judged = [int(fold.validation[0].sum()) for fold in folds]
+    assert sum(judged) == 2 * PERIOD
+    assert min(judged) > 0
+
+
+def test_the_record_is_given_back_without_its_past():
+    cut = steady(3)
+    (found,) = with_pasts([cut])
+    alone = found.as_measured
+    assert alone.digest == cut.digest
+    assert cut.as_measured is cut
+
+
+def test_the_first_part_of_a_hold_out_record_lies_behind_the_past():
+    """An offset that is new in it is told from its first 30 %."""
+    (found,) = with_pasts([steady(2, noise=0.0)])
+    simulated = play_sum(found.u, *LOOP) - 5.0
+    left, scored = left_over(found, simulated, lambda item: np.ones((len(item), 1)))
+    assert np.flatnonzero(scored)[0] == PERIOD + round(0.3 * 2 * PERIOD)
+    assert left[scored] == pytest.approx(0.0, abs=1e-9)

@@ -17,7 +17,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.store import Store
 from hystbench.blocks.structure import Structure
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.bases.linear import is_identified
+from hystbench.gap.bases.linear import IdentifiedModel, is_identified
 from hystbench.gap.bases.orders import LEAD
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.pasts import with_pasts
@@ -42,9 +42,12 @@ level that is off by so much takes a hundredth of the power, and dies out."""
 def begun_beside(base: Model, records: tuple[Record, ...]) -> tuple[Record, ...]:
     """Give records with the periods before those that begin in a steady motion.
 
-    A base that is identified needs none: it has a start of its own.
+    A linear base that was identified needs none, as it has a start of its own. A column
+    of a simulator that ran elsewhere begins where the record does.
     """
-    return records if is_identified(base) else with_pasts(records)
+    own = isinstance(base, IdentifiedModel)
+    reruns = all(block.reruns for block in base.chain)
+    return records if own or not reruns else with_pasts(records)
 
 
 def without_leads(

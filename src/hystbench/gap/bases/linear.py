@@ -54,9 +54,9 @@ def is_identified(base: Model) -> bool:
     return isinstance(base, IdentifiedModel) and bool(base.free)
 
 
-def found_beside(base: Model) -> bool:
-    """Tell whether a base was identified beside an effect that is no part of it."""
-    return isinstance(base, IdentifiedModel) and base.beside != ""
+def beside_of(base: Model) -> str:
+    """Name the effect that a base was identified beside; nothing for most."""
+    return base.beside if isinstance(base, IdentifiedModel) else ""
 
 
 def with_its_numbers_free(base: Model) -> Model:
@@ -110,14 +110,16 @@ def identified_linear(evidence: Evidence) -> Linear:
     InputError
         If no linear model predicts the folds better than a constant.
     """
-    best, unit = linear_of(evidence), evidence.output.unit
+    plain, unit = linear_of(evidence), evidence.output.unit
+    best = plain
     for effect, words, without, other in _beside_an_effect(evidence):
         found = linear_of(other)
         if found.fold_rms**2 < LOOSE * best.fold_rms**2:
             note = (
-                f"{found.note}, {words} ({without} {best.fold_rms:.4g} {unit} on folds)"
+                f"{found.note}, {words} ({without} {plain.fold_rms:.4g} {unit} on "
+                "folds)"
             )
-            model, constant = replace(found.model, beside=effect), best.constant_rms
+            model, constant = replace(found.model, beside=effect), plain.constant_rms
             best = found._replace(model=model, note=note, constant_rms=constant)
     fold, still = best.fold_rms, best.constant_rms
     if fold > (1 - NUMBER_PAYS) * still:
@@ -132,10 +134,10 @@ def identified_linear(evidence: Evidence) -> Linear:
 def _beside_an_effect(
     evidence: Evidence,
 ) -> Iterator[tuple[str, str, str, Evidence]]:
-    """Give records as they are without an effect that no linear model shows.
+    """Give effects that no linear model shows, with records that are freed of each.
 
-    With the effect's name, and words for a base of them and for one of the records as
-    they are.
+    Beside the name stand words for a base of these records, and for one of the records
+    as they were measured.
     """
     signed = with_signs(evidence)
     if signed is not None:
@@ -270,8 +272,8 @@ def _halves(
         return None
     count = sum(int(mask.sum()) for mask in everything.whole)
     chain, error = chain_of(task, halves)
-    # Most of what it leaves has to be what any linear model leaves: a curve without an
-    # odd part leaves nothing to a linear base.
+    # It may leave twice what the best linear model leaves: a curve without an odd part
+    # leaves nothing to a linear base.
     if MOST * error > min(item.ratio.cost for item in found):
         return None
     unit = everything.evidence.output.unit

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -24,6 +26,7 @@ from hystbench.gap.bases.kinds import COMMAND, IDENTIFIED, kind_of_base
 from hystbench.gap.bases.linear import (
     UNSIGNED,
     IdentifiedModel,
+    beside_of,
     identified_linear,
     with_its_numbers_free,
 )
@@ -92,9 +95,17 @@ def _kept(
             evidence.identification,
         ],
         compute,
-        lambda found: [found[0].to_mapping(), found[1]],
-        lambda kept: (of.from_mapping(kept[0], "a base that was kept"), kept[1]),
+        lambda found: [found[0].to_mapping(), found[1], beside_of(found[0])],
+        lambda kept: (_given_back(of, kept[0], kept[2]), kept[1]),
     )
+
+
+def _given_back(of: type[Model], content: Any, beside: str) -> Model:
+    """Give a base that was kept, and what it was found beside."""
+    model = of.from_mapping(content, "a base that was kept")
+    if isinstance(model, IdentifiedModel):
+        return replace(model, beside=beside)
+    return model
 
 
 def _identified(word: str, evidence: Evidence) -> tuple[Model, str]:
@@ -102,9 +113,8 @@ def _identified(word: str, evidence: Evidence) -> tuple[Model, str]:
     if word == "gpi":
         return identified_gpi(evidence)
     found = identified_linear(evidence)
-    if (
-        found.model.beside == UNSIGNED
-    ):  # re-tuned without a sign it would be another model
+    # Re-tuned without a sign it would be another model.
+    if found.model.beside == UNSIGNED:
         return found.model, found.note
     return with_its_numbers_free(found.model), found.note
 

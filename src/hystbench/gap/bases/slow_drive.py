@@ -28,7 +28,7 @@ RATES = 10
 ENOUGH = 2000
 """Samples of each record that rates are compared on, about where it moves fastest."""
 STEPS = 12
-"""Further ones between those beside the best."""
+"""Rates tried between the neighbours of the best."""
 
 
 def behind_a_slow_drive(evidence: Evidence) -> tuple[Evidence, float] | None:
@@ -43,7 +43,8 @@ def behind_a_slow_drive(evidence: Evidence) -> tuple[Evidence, float] | None:
     tuple or None
         The records, and the rate in units of the input a second; None where no rate
         lets a linear model leave less than a quarter of the power that one leaves
-        without a limit.
+        without a limit. Steps within a sample, and a noisy input, hide the rate: those
+        tried are shares of the fastest move from one sample to the next.
     """
     records = evidence.fit
     if any(record.decay_s is not None for record in records):

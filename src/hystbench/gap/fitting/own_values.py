@@ -129,6 +129,7 @@ class OwnValues:
 
         Nothing where it lowers the score by less than its numbers are charged.
         """
+        record, simulated = record.as_measured, simulated[record.past :]
         until = round(FIRST * len(record))
         own = values_of_record(record, simulated, self.kinds, until)
         squares = [
@@ -188,7 +189,10 @@ def own_values(
     kinds : sequence of str
         Those that may differ.
     """
-    pairs = list(zip(records, simulated, strict=True))
+    pairs = [
+        (record.as_measured, signal[record.past :])
+        for record, signal in zip(records, simulated, strict=True)
+    ]
     weight = record_weight(len(pairs))
 
     def costs(owns: Sequence[Own]) -> FloatArray:

@@ -261,7 +261,8 @@ def first_periods(record: Record, scored: int) -> Record:
     period = record.period_samples
     if not period or not record.repeats or record.decay_s is not None:
         return record
-    count = max(2, ceil(LEAST * len(record) / (scored * period)))
+    measured = len(record) - record.past
+    count = max(2, ceil(LEAST * measured / (scored * period))) + record.past // period
     if count * period >= len(record):
         return record
     cut = record.cut(slice(count * period))

@@ -182,7 +182,7 @@ def bounded(
         kept.append(None if len(beyond) else output)
         if len(beyond):
             why = (refused or {}).get(record.name)
-            start = float(beyond[0] * record.dt)
+            start = float(record.time[beyond[0]])
             what = f"cannot be run on {record.name}: {why}"
             if why is None:
                 what = (

@@ -158,9 +158,9 @@ def most_inside(chain: Named, floor_rms: float) -> float:
     """Give how many effects inside could do better than what a chain has found.
 
     They have to lower its score by what an effect has to gain, and by what a further
-    one has for each that they are more. Where it leaves so little that nothing can,
-    they have to be fewer. A free form, as a path is, bends to much of what is there: it
-    says nothing of what could do better.
+    effect has to for each that the chain does not have. Where the chain leaves so
+    little that nothing can, they have to be fewer. A free form, as a path is, bends to
+    much of what is there: it says nothing of what could do better.
     """
     state = chain.state
     if any(item.form in effects()[item.effect].free_forms for item in state.added):

@@ -204,9 +204,9 @@ def confidence(
 def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
     """Say that several names are likelier wrong than right; or nothing.
 
-    They are where none of them is likelier right: then they stand in for each other,
-    and for what they are together. They are where one of them is as good as excluded:
-    the others were found beside it. One name alone is what explains the gap best,
+    If no name is likelier right than wrong, they stand in for each other, and for what
+    they are together. If one is next to excluded, so are the others, which were found
+    beside it. One name alone is what explains the gap best,
     however little its numbers are known. A name counts with those that it cannot be
     told from: one of them is right.
 

@@ -215,12 +215,13 @@ def over_time(samples: ViewSamples) -> ViewPicture:
     """Draw the mean residual over blocks of whole periods, record behind record."""
     lines, start = [], 0.0
     for k, item in enumerate(samples.compared):
-        n, dt = len(item.record), item.record.dt
+        residual, dt = item.residual[item.record.past :], item.record.dt
+        n = len(residual)
         main = float(samples.main_frequencies[k])
         period = item.record.period_samples or round(1 / max(main * dt, 1 / n))
         # Whole periods, so that what repeats cancels alike in every block.
         size = min(n, max(1, period) * max(1, -(-n // (MOST_BLOCKS * max(1, period)))))
-        means = block_means(item.residual[: n // size * size], size)
+        means = block_means(residual[: n // size * size], size)
         at = start + (np.arange(len(means)) + 0.5) * size * dt
         lines.append(series(("first", "second")[k % 2], at, means, item.record.name))
         start += len(means) * size * dt

@@ -109,9 +109,9 @@ def _by_block(records: Sequence[Record]) -> tuple[Fold, ...]:
 
 
 def _edges(record: Record) -> list[int]:
-    """Where blocks begin, and the end."""
-    unit = record.period_samples or 1
-    if len(record) // unit < BLOCKS:
+    """Where blocks begin, behind the past of a record, and the end."""
+    unit, count = record.period_samples or 1, len(record) - record.past
+    if count // unit < BLOCKS:
         unit = 1
-    units = len(record) // unit
-    return [unit * (units * block // BLOCKS) for block in range(BLOCKS)] + [len(record)]
+    starts = [unit * (count // unit * block // BLOCKS) for block in range(BLOCKS)]
+    return [record.past + start for start in (*starts, count)]

@@ -82,7 +82,8 @@ def left_over(
         residual = without_nuisance(residual, record.of_start, everything)
     if nuisance is None:
         return residual, record.counted
-    late = np.arange(len(record)) >= round(FIRST * len(record))
+    first = round(FIRST * (len(record) - record.past))
+    late = np.arange(len(record)) >= record.past + first
     rest = without_nuisance(residual, nuisance(record), ~late & record.counted)
     return rest, late & record.counted
 

@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from hystbench.gap.thresholds import ABOVE_NOISE
+from hystbench.gap.thresholds import ABOVE_NOISE, MOST
 from hystbench.record import FloatArray, Record
 
 ROUNDED = 1e-6
@@ -41,7 +41,9 @@ def is_steady(record: Record) -> bool:
 
     That is so where both input and output differ between the first two periods by no
     more than noise: by what differs between later ones, or, where there are but two,
-    by what differs from sample to sample.
+    by what differs from sample to sample and no more in the first half than in the
+    second. A trend is none: what goes on from period to period, as creep does, may have
+    begun with the record.
     """
     period = record.period_samples
     if period is None or len(record) < 2 * period or record.decay_s is not None:
@@ -60,10 +62,17 @@ def is_steady(record: Record) -> bool:
 def _alike(periods: FloatArray) -> bool:
     """Tell whether the first of periods, shape (count, samples), is as the second."""
     first, *later = (a - b for a, b in pairwise(periods))
+    whole = np.mean(first**2)
+    if whole <= (ROUNDED * np.max(np.abs(periods))) ** 2:
+        return True
+    early, late = (np.mean(x**2) for x in np.array_split(first, 2))
+    if not later and early > (1 + ABOVE_NOISE) * late:
+        return False
     # White noise differs twice as much between neighbours as it has power.
     noise = np.mean(np.square(later)) if later else np.mean(np.diff(first) ** 2) / 2
-    rounding = (ROUNDED * np.max(np.abs(periods))) ** 2
-    return bool(np.mean(first**2) <= (1 + ABOVE_NOISE) * noise + rounding)
+    line = np.polynomial.legendre.legfit(np.linspace(-1, 1, len(first)), first, 1)
+    trend = line[0] ** 2 + line[1] ** 2 / 3
+    return bool(whole <= (1 + ABOVE_NOISE) * noise and trend <= MOST * whole)
 
 
 def _with_past(record: Record) -> Record:
