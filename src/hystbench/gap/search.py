@@ -22,7 +22,7 @@ from hystbench.gap.fitting.re_tuning_gain import (
 )
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.choose import most_inside
+from hystbench.gap.inside.choose import has_free_form, most_inside
 from hystbench.gap.inside.named_inside import (
     Inside,
     apart_inside,
@@ -226,7 +226,8 @@ def _beside(
         beside = beside_forces(inside.named, inside.start, floor.rms, share, say)
         inside = replace(inside, named=beside)
     # A base that was given is re-tuned where it is a host: that may stand for a chain.
-    if inside is not None and identified:
+    # So may a free form beside forces.
+    if inside is not None and identified and not has_free_form(inside.named.state):
         enough = _why_enough(inside.start, inside.named.state, floor, share)
         if enough:
             say(f"inside: {enough}, so no chain of effects is tried")

@@ -226,6 +226,41 @@ def test_forces_are_looked_for_again_without_the_starts_that_they_show(monkeypat
     assert seen == [[0, 0], [0, 197]]
 
 
+@pytest.mark.parametrize(("form", "chain"), [("", False), ("winding path", True)])
+def test_beside_a_path_that_bends_to_all_a_chain_is_tried_too(form, chain, monkeypatch):
+    """The spring leaves nothing, and so may any force with a path of every record."""
+    host = block("mechanism", mass=1.0, damping=6.0, stiffness=100.0)
+    spring = block("stiffness", quadratic=0.0, cubic=70.0)
+    channels, t = (Channel("f", "N"), Channel("x", "mm")), 0.01 * np.arange(1000)
+    u = 30 * np.sin(2.0 * t) + 30 * np.sin(7.3 * t)
+    y = Model("plant", *channels, (host, spring)).simulate(u, 0.01)
+    y += 1e-3 * np.random.default_rng(1).standard_normal(len(y))
+    given = (Record("r", 0.01, u, y, *channels, "measured", "fit"),)
+    base = IdentifiedModel("linear", *channels, (host,), ("mechanism.mass",))
+    tried = []
+
+    def look(base, start, *_, **__):
+        added = Added("drift" if form else "stop", "inside", form, (1,), {}, 1.0)
+        state = replace(start, chain=(host, spring), added=(added,)).settled()
+        return Inside(base, start, Named(state), "")
+
+    def in_a_chain(start, *_):
+        tried.append(start)
+        raise FarEnoughError
+
+    def stop(*_):
+        raise FarEnoughError
+
+    monkeypatch.setattr(search_module, "named_inside", look)
+    monkeypatch.setattr(search_module, "beside_forces", lambda named, *_: named)
+    monkeypatch.setattr(search_module, "add_effects", in_a_chain)
+    monkeypatch.setattr(search_module, "judge_and_tell", stop)
+    about = {"declared": 1e-3, "quantities": Quantities("force", "position")}
+    with pytest.raises(FarEnoughError):
+        search("made", given, base, **about)
+    assert bool(tried) == chain
+
+
 def test_forces_are_looked_for_again_without_the_offsets_of_records(monkeypatch):
     """Beside the spring that was found, one record is moved by 3 mm and no other is."""
     host = block("mechanism", mass=1.0, damping=6.0, stiffness=100.0)

@@ -154,6 +154,11 @@ def _candidate(item: Fitted, already: frozenset[str], now: float) -> Candidate:
     )
 
 
+def has_free_form(state: ModelState) -> bool:
+    """Tell whether an effect has a form that bends to much of what is there."""
+    return any(x.form in effects()[x.effect].free_forms for x in state.added)
+
+
 def most_inside(chain: Named, floor_rms: float) -> float:
     """Give how many effects inside could do better than what a chain has found.
 
@@ -163,7 +168,7 @@ def most_inside(chain: Named, floor_rms: float) -> float:
     much of what is there: it says nothing of what could do better.
     """
     state = chain.state
-    if any(item.form in effects()[item.effect].free_forms for item in state.added):
+    if has_free_form(state):
         return np.inf
     score = Score.plain(state.sample, floor_rms**2)
     left = score_of(state, score) - score.least(state.freedom)
