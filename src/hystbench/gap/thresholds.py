@@ -113,6 +113,7 @@ LOOSE = 0.25
 - Records get no numbers of their own where forces inside, or a chain, leave less.
 - A curve between two filters must take as much, and one more degree of a path on
   hold-out records.
+- Of what two filters leave without that curve, no linear model may spare more.
 - What differs from period to period is noise only if no more than this of it repeats.
 
 The name is to take the larger part of the rms, not of the power alone.

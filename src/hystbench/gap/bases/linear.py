@@ -26,12 +26,12 @@ from hystbench.gap.bases.orders import (
 from hystbench.gap.bases.output_error import without_mean
 from hystbench.gap.bases.slow_drive import behind_a_slow_drive
 from hystbench.gap.bases.spectral import fit_ratio
-from hystbench.gap.bases.split_linear import best_split, chain_of, is_bent
+from hystbench.gap.bases.split_linear import ENOUGH, best_split, chain_of, is_bent
 from hystbench.gap.bases.unsigned import with_signs
 from hystbench.gap.bases.wiener_hammerstein import HalvesError
 from hystbench.gap.records.coarser import coarser
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.thresholds import LOOSE, MOST, NUMBER_PAYS
+from hystbench.gap.thresholds import LOOSE, NUMBER_PAYS
 from hystbench.model import Model
 from hystbench.record import FloatArray, Mask
 
@@ -272,9 +272,10 @@ def _halves(
         return None
     count = sum(int(mask.sum()) for mask in everything.whole)
     chain, error = chain_of(task, halves)
-    # It may leave twice what the best linear model leaves: a curve without an odd part
-    # leaves nothing to a linear base.
-    if MOST * error > min(item.ratio.cost for item in found):
+    # It may leave a third more than the best linear model: a curve without an odd part
+    # leaves nothing to a linear base, and a sharp one at an end shapes poles that do
+    # nothing without it.
+    if ENOUGH * error > min(item.ratio.cost for item in found):
         return None
     unit = everything.evidence.output.unit
     words = (
