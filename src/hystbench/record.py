@@ -161,6 +161,11 @@ class Record:
         speed = np.gradient(self.u, self.dt)
         return float(np.sqrt(np.mean(speed**2) / np.mean(self.u**2)))
 
+    @property
+    def fastest(self) -> float:
+        """Largest rate of the input between two samples, in its unit a second."""
+        return float(np.abs(np.diff(self.u)).max() / self.dt)
+
     @cached_property
     def digest(self) -> str:
         """Digest of what the record holds: two that are alike have the same."""

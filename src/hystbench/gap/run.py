@@ -165,14 +165,17 @@ def show(
     Returns
     -------
     evidence : Evidence
-        Without the leads of hold-out records that begin in the middle of a motion.
+        Without the leads of hold-out records that begin in the middle of a motion, and
+        without what was put before others.
     outcome : Outcome
     """
     fitted, vocabulary = decided.fitted, decided.vocabulary
     evidence = as_found(evidence, decided.base, fitted, say_in_words(say))
-    return evidence, show_on_hold_out(
+    outcome = show_on_hold_out(
         fitted, decided.content, evidence, vocabulary, decided.built_in
     )
+    measured = tuple(record.as_measured for record in evidence.hold_out)
+    return replace(evidence, hold_out=measured), outcome
 
 
 def as_found(
@@ -204,7 +207,7 @@ def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> 
     """
     names = ("time_s", "measured", "before", "after")
     for record, outputs in zip(records, outcome.outputs, strict=True):
-        signals = (x[record.past :] for x in (record.time, record.y, *outputs))
+        signals = (record.time, record.y, *outputs)
         columns = {name: x.tolist() for name, x in zip(names, signals, strict=True)}
         write_columns(folder / "holdout" / f"{record.name}.csv", columns, 9)
     outcome.model.save(folder / "model.yaml")

@@ -193,13 +193,18 @@ def _beside(
     identified = is_identified(base)
     in_a_chain = cache(partial(add_effects, start, floor.rms, asked))
 
+    def begun_as(chain: Named) -> tuple[ModelState, Floor]:
+        """Begin without the leads that what was named in a chain shows."""
+        about = base, hold, evidence.quantities, say, augmented(base, chain.state)
+        shorter = without_leads(start.records, *about)
+        if shorter is start.records:
+            return start, floor
+        return start_state(shorter, base, hold, declared, offered)
+
     known = bool(places_between_halves(start.simulation) or beside_of(base))
     if known:  # what that effect hides of a start is no reason to try forces
-        found = augmented(base, in_a_chain().state)
-        about = base, hold, evidence.quantities, say, found
-        shorter = without_leads(start.records, *about)
-        if shorter is not start.records:
-            start, floor = start_state(shorter, base, hold, declared, offered)
+        start, floor = begun_as(in_a_chain())
+        if start is not first:
             in_a_chain = cache(partial(add_effects, start, floor.rms, asked))
             first = start
     # A base of two filters tells that a curve lies between them. One that was found
@@ -234,11 +239,9 @@ def _beside(
             return BesideBase(base, start, floor, None, inside, own, inside)
     chain = in_a_chain() if start is first else add_effects(start, floor.rms, asked)
     if inside is None and chain.state.added:
-        found = augmented(base, chain.state)
-        about = base, hold, evidence.quantities, say, found
-        shorter = without_leads(start.records, *about)
-        if shorter is not start.records:
-            start, floor = start_state(shorter, base, hold, declared, offered)
+        before = start
+        start, floor = begun_as(chain)
+        if start is not before:
             chain = add_effects(start, floor.rms, asked)
     tried = inside
     if inside is not None and not beats_chain(inside, chain, floor.rms, say):
@@ -284,6 +287,7 @@ def _with_forces(
     identified, records, hold = is_identified(base), start.records, start.hold
     say, shorter, whole, own = asked.say, records, (start, floor), NONE
 
+    @cache
     def most() -> float:
         return most_inside(in_a_chain(), whole[1].rms)
 

@@ -186,13 +186,7 @@ class Gap:
         from hystbench.interface.picture import drawn, gap  # late: it draws
 
         records = self.closed.evidence.hold_out[:DRAWN]
-        outputs = [
-            (before[record.past :], after[record.past :])
-            for record, (before, after) in zip(
-                records, self.closed.outcome.outputs[:DRAWN], strict=True
-            )
-        ]
-        records = tuple(record.as_measured for record in records)
+        outputs = self.closed.outcome.outputs[:DRAWN]
         floor = self.content["gap"]["noise_floor"]
         return drawn(
             lambda axes: gap(axes, records, outputs, floor), len(records), 2, 2.2

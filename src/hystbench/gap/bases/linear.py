@@ -37,7 +37,7 @@ from hystbench.record import FloatArray, Mask
 
 LINEAR = "linear"
 """Name of the base that is identified as a linear model."""
-UNSIGNED, SLOW = "sensor-nonlinearity", "slew-limit"
+NO_SIGN, SLOW = "sensor-nonlinearity", "slew-limit"
 """Names of effects that a linear model is found beside."""
 
 
@@ -142,7 +142,7 @@ def _beside_an_effect(
     signed = with_signs(evidence)
     if signed is not None:
         words = "of an output with a sign that the sensor may not show"
-        yield UNSIGNED, words, "without a sign", signed
+        yield NO_SIGN, words, "without a sign", signed
     slowed = behind_a_slow_drive(evidence)
     if slowed is not None:
         slow, rate = slowed

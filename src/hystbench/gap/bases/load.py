@@ -24,7 +24,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.bases.kinds import COMMAND, IDENTIFIED, kind_of_base
 from hystbench.gap.bases.linear import (
-    UNSIGNED,
+    NO_SIGN,
     IdentifiedModel,
     beside_of,
     identified_linear,
@@ -114,7 +114,7 @@ def _identified(word: str, evidence: Evidence) -> tuple[Model, str]:
         return identified_gpi(evidence)
     found = identified_linear(evidence)
     # Re-tuned without a sign it would be another model.
-    if found.model.beside == UNSIGNED:
+    if found.model.beside == NO_SIGN:
         return found.model, found.note
     return with_its_numbers_free(found.model), found.note
 

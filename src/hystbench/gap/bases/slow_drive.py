@@ -49,10 +49,9 @@ def behind_a_slow_drive(evidence: Evidence) -> tuple[Evidence, float] | None:
     records = evidence.fit
     if any(record.decay_s is not None for record in records):
         return None  # what a free mass forgets of its start depends on its input
-    fastest = max(float(np.max(np.abs(np.diff(x.u)))) / x.dt for x in records)
+    fastest = max(record.fastest for record in records)
     if fastest == 0:
         return None
-
     parts = [_about_the_fastest(record) for record in records]
 
     def left(share: float) -> float:

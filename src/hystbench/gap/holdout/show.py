@@ -39,7 +39,8 @@ class Outcome:
     """Keys of gap.json: ``gap``, ``records``, ``ladder``, ``runs_away`` and
     ``black_box``, then all of it."""
     outputs: list[tuple[FloatArray, FloatArray]]
-    """Outputs before and after, of each record; NaN where the model runs away on it."""
+    """Outputs before and after, of each record as it was measured; NaN where the model
+    runs away on it."""
 
 
 def score_hold_out(fitted: FitResult, records: tuple[Record, ...]) -> Outcome:
@@ -80,9 +81,13 @@ def score_hold_out(fitted: FitResult, records: tuple[Record, ...]) -> Outcome:
             fitted.black_box, records, before, found.records, floor, nuisance
         ),
     }
-    shown = [
+    outputs = [
         (record.y - old, record.y - (np.nan if new is None else new))
         for record, (old, new) in zip(records, found.residuals, strict=True)
+    ]
+    shown = [
+        (before[record.past :], after[record.past :])
+        for record, (before, after) in zip(records, outputs, strict=True)
     ]
     model = augmented(base, state).with_hold(state.hold)
     return Outcome(model, content, shown)

@@ -206,9 +206,9 @@ def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
 
     If no name is likelier right than wrong, they stand in for each other, and for what
     they are together. If one is next to excluded, so are the others, which were found
-    beside it. One name alone is what explains the gap best,
-    however little its numbers are known. A name counts with those that it cannot be
-    told from: one of them is right.
+    beside it. One name alone is what explains the gap best, however little its numbers
+    are known. A name counts with those that it cannot be told from: one of them is
+    right.
 
     Parameters
     ----------

@@ -18,6 +18,8 @@ from hystbench.record import FloatArray, Record
 
 ROUNDED = 1e-6
 """Share of the largest value that is no difference: files have six digits or more."""
+SIGNALS = ("u", "y", "simulated", "interpolated")
+"""What a record has of each sample."""
 
 
 def with_pasts(records: Sequence[Record]) -> tuple[Record, ...]:
@@ -65,11 +67,14 @@ def _alike(periods: FloatArray) -> bool:
     whole = np.mean(first**2)
     if whole <= (ROUNDED * np.max(np.abs(periods))) ** 2:
         return True
-    early, late = (np.mean(x**2) for x in np.array_split(first, 2))
-    if not later and early > (1 + ABOVE_NOISE) * late:
-        return False
-    # White noise differs twice as much between neighbours as it has power.
-    noise = np.mean(np.square(later)) if later else np.mean(np.diff(first) ** 2) / 2
+    if later:
+        noise = np.mean(np.square(later))
+    else:
+        early, late = (np.mean(x**2) for x in np.array_split(first, 2))
+        if early > (1 + ABOVE_NOISE) * late:
+            return False
+        # White noise differs twice as much between neighbours as it has power.
+        noise = np.mean(np.diff(first) ** 2) / 2
     line = np.polynomial.legendre.legfit(np.linspace(-1, 1, len(first)), first, 1)
     trend = line[0] ** 2 + line[1] ** 2 / 3
     return bool(whole <= (1 + ABOVE_NOISE) * noise and trend <= MOST * whole)
@@ -77,18 +82,7 @@ def _alike(periods: FloatArray) -> bool:
 
 def _with_past(record: Record) -> Record:
     period = record.period_samples or 0
-    lost, simulated = record.interpolated, record.simulated
-    u, y = (np.append(values[:period], values) for values in (record.u, record.y))
-    if lost is not None:
-        lost = np.append(lost[:period], lost)
-    if simulated is not None:
-        simulated = np.append(simulated[:period], simulated)
-    return replace(
-        record,
-        u=u,
-        y=y,
-        simulated=simulated,
-        interpolated=lost,
-        lead=period,
-        past=period,
-    )
+    again = np.r_[:period, : len(record)]
+    signals = {name: getattr(record, name) for name in SIGNALS}
+    longer = {name: x[again] for name, x in signals.items() if x is not None}
+    return replace(record, **longer, lead=period, past=period)
