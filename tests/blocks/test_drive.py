@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
 
 from hystbench.blocks.dead_zone import DeadZone
+from hystbench.blocks.drive_lag import DriveLag
 from hystbench.blocks.drive_saturation import DriveSaturation
 from hystbench.blocks.input_delay import InputDelay, later
 from hystbench.blocks.slew_limit import SlewLimit
@@ -80,6 +82,46 @@ def test_slew_limit_catches_up_within_an_interval_and_turns():
     z = np.array([0.0, 1.0, -1.0])
     v = SlewLimit(rate=0.5 / DT).simulate(z, z, DT)
     np.testing.assert_allclose(v, [0.0, 0.5, 0.6 - 0.8 * 0.5], rtol=1e-14)
+
+
+def amplified(z, rate, lag):
+    """Solve the law of an amplifier of limited rate for straight lines, finely."""
+
+    def law(t, v):
+        return rate * np.tanh((np.interp(t, times, z) - v) / (rate * lag))
+
+    times = DT * np.arange(len(z))
+    fine = {"t_eval": times, "rtol": 1e-10, "atol": 1e-12, "max_step": DT / 4}
+    return solve_ivp(law, (0.0, times[-1]), z[:1], **fine).y[0]
+
+
+@pytest.mark.parametrize("rate", [20.0, 200.0, 2000.0])
+def test_a_soft_limit_of_the_rate_is_of_second_order(rate):
+    z = np.sin(2 * np.pi * 10 * DT * np.arange(200))  # 63 a second at most
+    errors = []
+    for parts in (1, 4):  # both steps are shorter than an eighth of the lag
+        fine = np.interp(np.arange(0, 199, 1 / parts), np.arange(200), z)
+        block = SlewLimit(rate=rate, time_constant_s=9 * DT)
+        v = block.simulate(fine, fine, DT / parts)[::parts]
+        errors.append(np.abs(v - amplified(z, rate, 9 * DT)[:199]).max())
+    assert errors[0] < 1e-3
+    assert errors[1] < errors[0] / 12
+
+
+def test_a_soft_limit_that_nothing_reaches_is_a_lag():
+    z = 1e-6 * np.sin(2 * np.pi * 10 * DT * np.arange(300))
+    soft = SlewLimit(rate=1.0, time_constant_s=8 * DT).simulate(z, z, DT)
+    lag = DriveLag(time_constant_s=8 * DT).simulate(z, z, DT)
+    np.testing.assert_allclose(soft, lag, atol=2e-3 * 1e-6)
+
+
+def test_a_soft_limit_of_no_lag_is_the_hard_one():
+    z = np.sin(2 * np.pi * 10 * DT * np.arange(300))
+    hard = SlewLimit(rate=30.0).simulate(z, z, DT)
+    soft = SlewLimit(rate=30.0, time_constant_s=1e-9).simulate(z, z, DT)
+    near = SlewLimit(rate=30.0, time_constant_s=DT / 30).simulate(z, z, DT)
+    np.testing.assert_array_equal(soft, hard)
+    np.testing.assert_allclose(near, hard, atol=30.0 * DT / 10)
 
 
 @pytest.mark.parametrize("delay", [-1.6, -1.0, -0.5, 0.0, 0.4, 1.0, 7.3, 63.5])

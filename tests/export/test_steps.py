@@ -135,6 +135,9 @@ def mixed():
             ("resonance", EXAMPLES["resonance"]),
             ("gain", {"value": -0.5}),
         ),
+        "an amplifier's limit of the rate": chain_of(
+            ("slew-limit", {"rate": 100.0, "time_constant_s": 2.5 * DT}),
+        ),
         "two low-passes of heat": chain_of(
             ("thermal-drift",
              {**EXAMPLES["thermal-drift"], "second_time_constant_s": 0.01}),

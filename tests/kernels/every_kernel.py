@@ -145,6 +145,7 @@ def blocks(x):
     yield "records", lag.simulate_records([x, 0.5 * x[::-1]], [DT, 2 * DT])
     each = (
         SlewLimit(rate=50.0),
+        SlewLimit(rate=50.0, time_constant_s=2 * DT),
         StiffnessHardening(
             coefficient=0.5, frequency_hz=300.0, damping_ratio=0.05, participation=0.4
         ),

@@ -8,6 +8,10 @@ from hystbench.blocks.parameter import TINY, number
 from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
+QUICK = 64.0
+"""Sampling intervals over the time constant from which the lag is neglected: far more
+than records show."""
+
 
 class SlewLimit(Block, name="slew-limit", place="drive"):
     """Output that follows its input with ``|dv/dt| <= rate``.
@@ -16,23 +20,42 @@ class SlewLimit(Block, name="slew-limit", place="drive"):
     between samples: where the output catches up within an interval, it follows from
     there on.
 
+    With a time constant it is an amplifier whose first stage gives no more than a
+    current, by the law of a pair of transistors [2]_: ``dv/dt = rate tanh((z - v) /
+    (rate tau))``. Small signals lag by ``tau``, large ones are limited. Of second order
+    in the smaller of a sampling interval and an eighth of ``tau``.
+
     References
     ----------
     .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton University
        Press, 2021: saturation, rate limits and dead zones of actuators.
+    .. [2] J. E. Solomon, The monolithic op amp: a tutorial study, IEEE Journal of
+       Solid-State Circuits 9 (1974) 314-332.
     """
 
     rate: float = number("U/s", "largest rate of the output", TINY)
+    time_constant_s: float = number(
+        "s", "lag tau of small signals; 0 for none", 0.0, 1e3, default=0.0
+    )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Follow the input at a limited rate."""
         v = np.empty(len(z))
         rate = self.rate * dt
         z = np.ascontiguousarray(z, np.float64)
-        kernels.call("hb_slew_limit", len(z), rate, z, v)
+        if self._lags(dt):
+            kernels.call("hb_soft_slew", len(z), rate, dt / self.time_constant_s, z, v)
+        else:
+            kernels.call("hb_slew_limit", len(z), rate, z, v)
         return v
 
     def step(self, sampling: Sampling) -> Step:
         """Follow the input, which goes straight from its last sample."""
-        states = {"started": 1, "before": 1, "now": 1}
-        return Step("slew_limit", {"rate": self.rate * sampling.dt}, states)
+        numbers = {"rate": self.rate * sampling.dt}
+        if self._lags(sampling.dt):
+            numbers["share"] = sampling.dt / self.time_constant_s
+            return Step("soft_slew", numbers, {"started": 1, "before": 1, "x": 1})
+        return Step("slew_limit", numbers, {"started": 1, "before": 1, "now": 1})
+
+    def _lags(self, dt: float) -> bool:
+        return QUICK * self.time_constant_s > dt

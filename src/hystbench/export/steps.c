@@ -161,6 +161,25 @@ static double hb_slew_limit(double rate, double *started, double *before, double
     return *now;
 }
 
+/* x is (z - v) / (R tau): the input moves by half of its way, x relaxes, the input moves
+ * on. */
+static double hb_soft_slew(double rate, double share, double *started, double *before,
+                           double *x, double z)
+{
+    const int parts = (int)ceil(8 * share);
+    const double h = share / parts, fade = exp(-h);
+    if (*started == 0) *before = z;
+    const double half = 0.5 * (z - *before) / rate * h;
+    for (int part = 0; *started != 0 && part < parts; part++) {
+        *x += half;
+        *x = fabs(*x) > 20 + h ? *x - copysign(h, *x) : asinh(sinh(*x) * fade);
+        *x += half;
+    }
+    *started = 1;
+    *before = z;
+    return z - *x * rate / share;
+}
+
 /* x(k) = phi x(k-1) + sum_j drive_j v(k-j), y = output x + direct v. */
 static double hb_linear(int size, int points, int ahead, const double *phi,
                         const double *drive, const double *output, double direct, int settled,

@@ -27,6 +27,27 @@ EXPORT void hb_slew_limit(index_t n, double rate, const double *z, double *out)
     }
 }
 
+/* dv/dt = R tanh((z - v) / (R tau)), with rate = R dt and share = dt / tau.  Strang's
+ * splitting: the input moves by half of its way, x = (z - v) / (R tau) relaxes while the
+ * input rests, sinh x = sinh x0 exp(-t / tau), and the input moves on.  Of second order
+ * in the part of an interval that a step is, at most an eighth of tau. */
+EXPORT void hb_soft_slew(index_t n, double rate, double share, const double *z, double *out)
+{
+    const int parts = (int)ceil(8 * share);
+    const double h = share / parts, fade = exp(-h);
+    double x = 0;
+    for (index_t k = 0; k < n; k++) {
+        const double move = k > 0 ? (z[k] - z[k - 1]) / rate * h : 0;
+        for (int part = 0; k > 0 && part < parts; part++) {
+            x += 0.5 * move;
+            /* far off it goes at the full rate, and sinh would overflow */
+            x = fabs(x) > 20 + h ? x - copysign(h, x) : asinh(sinh(x) * fade);
+            x += 0.5 * move;
+        }
+        out[k] = z[k] - x * rate / share;
+    }
+}
+
 /* s > 0 with s + scale (s / unit)^power = all, power at least 1: the steps of Halley
  * from a guess.  The error after a step is of the order of the cube of the step, so that
  * one of a thousandth is the last. */

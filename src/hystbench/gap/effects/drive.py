@@ -120,6 +120,16 @@ class SlewLimit(Effect):
                 grids={"rate": rates},
                 limits={"rate": (slowest, float(rates[-1]))},
             )
+            # An amplifier lags below its limit as well, and nears it smoothly.
+            lags = logarithmic(simulation.step, simulation.span / 100, 1.5)
+            yield self.inserted(
+                simulation,
+                place,
+                form="soft",
+                grids={"rate": rates[-1] * SOFT_SHARES, "time_constant_s": lags},
+                limits={"rate": (slowest, float(rates[-1]))},
+                refused={"rate": "upper", "time_constant_s": "either"},
+            )
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer a servo that goes no faster, a little and far below its fastest."""
@@ -129,6 +139,8 @@ class SlewLimit(Effect):
             yield Law("of a servo", block, ("rate",))
 
 
+SOFT_SHARES = np.array([0.1, 0.3, 0.6, 0.95])
+"""Rates of an amplifier that also lags, over the fastest of its input."""
 STEP = 0.25
 """Largest move in the two intervals beside a step together, as a share of the step."""
 

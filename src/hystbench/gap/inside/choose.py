@@ -198,6 +198,10 @@ def best_of_each(found: Sequence[Fitted]) -> list[Fitted]:
 
 
 def may_gain(item: Fitted, score: Score) -> bool:
-    """Tell whether a further force could gain what it has to pay."""
+    """Tell whether a further force could gain what it has to pay.
+
+    Of a model that diverges nothing can be told.
+    """
     pays = FURTHER if item.effects else PAYS
-    return item.score - score.least(item.state.freedom) > pays
+    left = item.score - score.least(item.state.freedom)
+    return np.isfinite(left) and left > pays
