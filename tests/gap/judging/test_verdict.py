@@ -270,6 +270,9 @@ def test_two_that_score_alike_share_the_confidence():
         ([("creep", 0.9, []), ("drift", 0.3, [])], True),
         ([("creep", 0.9, []), ("drift", 0.01, [])], False),
         ([("creep", 0.01, [])], True),
+        ([("creep", 0.4, []), ("hysteresis-shape", 0.98, [])], False),
+        ([("creep", 0.6, []), ("hysteresis-shape", 0.3, [])], True),
+        ([("hysteresis-shape", 0.3, [])], True),
         ([], True),
     ],
 )

@@ -19,6 +19,7 @@ from hystbench.gap.thresholds import (
     LOOSE,
     MOST,
     SCALE,
+    SHAPE,
     WORTH_A_WORD,
 )
 from hystbench.periods import find_period
@@ -208,7 +209,7 @@ def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
     they are together. If one is next to excluded, so are the others, which were found
     beside it. One name alone is what explains the gap best, however little its numbers
     are known. A name counts with those that it cannot be told from: one of them is
-    right.
+    right. A wrong shape of the base's own hysteresis makes no other name likelier.
 
     Parameters
     ----------
@@ -216,10 +217,15 @@ def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
         As gap.json holds them.
     """
     sure = [x["confidence"] * (1 + len(x["cannot_be_told_from"])) for x in effects]
-    if len(sure) < 2 or (max(sure) >= MOST and min(sure) >= BY_CHANCE):
+    missing = [
+        value
+        for item, value in zip(effects, sure, strict=True)
+        if item["name"] != SHAPE
+    ]
+    if len(sure) < 2 or (max(missing) >= MOST and min(sure) >= BY_CHANCE):
         return ""
     told = " and ".join(f"{x['name']} {x['confidence']:.2f}" for x in effects)
-    if max(sure) < MOST:
+    if max(missing) < MOST:
         return f"no name is likelier right than wrong: {told}"
     least = effects[int(np.argmin(sure))]["name"]
     return f"the names stand together, and {least} is next to excluded: {told}"
