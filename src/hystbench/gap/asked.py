@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import UNNAMED_SHARE
@@ -18,13 +18,18 @@ class Asked:
     """What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
     What is not given is taken from the fit records."""
     unnamed_share: float = UNNAMED_SHARE
-    """Share of the power of the gap that may stay unnamed beside a name. The search
-    holds it against all that is left, the verdict against what follows known
-    signals."""
+    """Share of the power of the gap that follows known signals and may stay unnamed
+    beside a name. The verdict holds it against that; the search, against all that is
+    left, no more than the usual share (:attr:`sought`)."""
     vocabulary: Vocabulary = EVERYTHING
     """Effects that may be named, and those that are in the model from the start."""
     say: Say = silent
     """Told a line of progress at a time."""
+
+    @property
+    def sought(self) -> Asked:
+        """The same for the search: to let more stay is no reason to look for less."""
+        return replace(self, unnamed_share=min(self.unnamed_share, UNNAMED_SHARE))
 
 
 USUAL = Asked()

@@ -84,26 +84,27 @@ def search(
         If the base does not run on the records, or no excitation fits the limits.
     """
     limits = Limits.of(evidence.fit, asked.limits) if asked.limits else None
-    found = _beside(base, evidence, asked, quantities)
+    sought, say = asked.sought, asked.say
+    found = _beside(base, evidence, sought, quantities)
     identified = is_identified(base)
     shifted = _in_better_time(found) if identified else None
     if shifted is not None:
-        asked.say("the input may be taken at another time: naming beside that")
-        again = _beside(shifted, evidence, asked, quantities, found.hosts)
+        say("the input may be taken at another time: naming beside that")
+        again = _beside(shifted, evidence, sought, quantities, found.hosts)
         found = found if stays(found, again) else again
-        asked.say("it is" if found is again else "that explains no more: it is not")
+        say("it is" if found is again else "that explains no more: it is not")
     if identified:
-        found = _begun_otherwise(found, evidence, asked, quantities)
-        found = _of_more_poles(found, evidence, asked)
+        found = _begun_otherwise(found, evidence, sought, quantities)
+        found = _of_more_poles(found, evidence, sought)
     about = None if identified else known_about(base, evidence.fit)
     if about is not None and found.may_be_simpler():
-        asked.say("the base's numbers or timing may be off: naming beside that")
-        again = _beside(about, evidence, asked, quantities, found.hosts)
+        say("the base's numbers or timing may be off: naming beside that")
+        again = _beside(about, evidence, sought, quantities, found.hosts)
         if stays(found, again, re_tuned=True):
-            asked.say("that explains no more: they stay as they are")
+            say("that explains no more: they stay as they are")
         else:
             found = again
-    found = _apart(found, asked)
+    found = _apart(found, sought)
     base, start, inside = found.base, found.start, found.inside
     if inside is not None:
         base, start = inside.base, inside.start

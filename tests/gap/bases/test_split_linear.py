@@ -157,7 +157,6 @@ def test_no_force_is_looked_for_where_the_curve_leaves_nothing(
     kinds = Quantities("force", "position")
     found = search(
         *("made", clipped_records.fit, model),
-        unnamed_share=0.1,
         quantities=kinds,
         vocabulary=among("saturation"),
     )
