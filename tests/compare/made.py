@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.compare.evidence import Run
+from hystbench.compare.runs import Run
 from hystbench.published import load_errors, load_text, signals, sine_frequency
 from hystbench.record import Channel, Record
 

@@ -5,8 +5,8 @@ import pytest
 from hystbench.compare.beside import Holding, read_holdings, read_spreads
 from hystbench.compare.cells import CELL_COLUMNS, compare_cells
 from hystbench.compare.claims import CLAIM_COLUMNS, judge_all
-from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import or_diverged, write_fields
+from hystbench.compare.runs import ClaimEvidence
 from tests.conftest import table
 
 from .made import published_runs

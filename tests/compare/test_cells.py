@@ -5,8 +5,8 @@ import math
 import pytest
 
 from hystbench.compare.cells import CELL_COLUMNS, compare_cells
-from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import or_diverged, write_fields
+from hystbench.compare.runs import ClaimEvidence
 from tests.conftest import table
 
 from .made import make_run, published_runs

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from hystbench.compare.cells import OFF_COLUMNS, compare_cells, off_cells
-from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import write_fields
+from hystbench.compare.runs import ClaimEvidence
 from tests.conftest import table
 
 from .made import make_record, make_run, published_runs

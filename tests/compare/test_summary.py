@@ -11,7 +11,7 @@ from hystbench.compare.beside import Drawn, Edge, Holding, Ranking
 from hystbench.compare.cells import ComparedCell, compare_cells
 from hystbench.compare.claims import CLAIMS, judge_all
 from hystbench.compare.claims.claim import Judgement
-from hystbench.compare.evidence import ClaimEvidence
+from hystbench.compare.runs import ClaimEvidence
 from hystbench.compare.summary import (
     claim_counts,
     constant_tap_finding,

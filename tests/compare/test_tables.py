@@ -8,7 +8,7 @@ import pytest
 
 from hystbench.compare.cells import compare_cells
 from hystbench.compare.comparison import Comparison
-from hystbench.compare.evidence import ClaimEvidence
+from hystbench.compare.runs import ClaimEvidence
 from hystbench.compare.tables import PrintedTable, paper_table
 from hystbench.compare.verdict import (
     first_result,

@@ -17,7 +17,7 @@ from hystbench.challenge.spec import CaseSpec, kind_of
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state
-from hystbench.gap.judging.left import what_is_left
+from hystbench.gap.judging.leftover import what_is_left
 from hystbench.gap.judging.unnamed import what_is_unnamed
 from hystbench.gap.judging.verdict import judge
 from hystbench.gap.locate import locate

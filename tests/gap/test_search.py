@@ -20,7 +20,7 @@ from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.choose import most_inside
-from hystbench.gap.judging.left import Left
+from hystbench.gap.judging.leftover import Leftover
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
 from hystbench.gap.search import judge_and_tell
@@ -33,15 +33,17 @@ from tests.gap.small import block, hysteresis, measured
 
 def test_what_stays_says_of_what_it_is_a_share():
     """5 % of what no shape explains stays, and 40 % of the whole residual."""
-    said = Left(before=100.0, after=5.0, all_before=1000.0, all_after=400.0).sentence
+    said = Leftover(
+        before=100.0, after=5.0, all_before=1000.0, all_after=400.0
+    ).sentence
     assert "on the fit records 40 % of the gap's power above the noise floor" in said
     assert "part that no wrong shape of the hysteresis could leave, 5 %" in said
 
 
 def test_one_figure_is_told_where_both_are_alike():
-    assert Left(100.0, 5.0, 1000.0, 60.0).sentence.count("%") == 1
+    assert Leftover(100.0, 5.0, 1000.0, 60.0).sentence.count("%") == 1
     # The whole may be the lesser share: then it is the one that decides.
-    said = Left(100.0, 50.0, 1000.0, 60.0).sentence
+    said = Leftover(100.0, 50.0, 1000.0, 60.0).sentence
     assert "6 %" in said
     assert "50 %" not in said
 

@@ -8,7 +8,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state
-from hystbench.gap.holdout.outcome import with_what_was_asked
+from hystbench.gap.holdout.withdraw import with_what_was_asked
 from hystbench.gap.naming.built_in import build_in
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.records.evidence import load_evidence

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from statistics import median
 from typing import Literal
 
-from hystbench.compare.evidence import ClaimEvidence, Run
+from hystbench.compare.runs import ClaimEvidence, Run
 from hystbench.metrics import rms
 from hystbench.published import FILTERS, METRICS, Metric
 from hystbench.published.consistency import Standing, check, standings

@@ -16,9 +16,9 @@ from hystbench.compare.cells import (
 )
 from hystbench.compare.claims import CLAIM_COLUMNS, judge_all
 from hystbench.compare.claims.claim import Judgement
-from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.measured import ERROR_COLUMNS, errors_table
 from hystbench.compare.rows import or_diverged, write_fields
+from hystbench.compare.runs import ClaimEvidence
 from hystbench.compare.summary import summarise
 from hystbench.compare.tables import TITLES, PrintedTable, paper_table
 from hystbench.compare.verdict import first_result, print_tables, verdict_page

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from hystbench.compare.evidence import Run, read_run
 from hystbench.compare.rows import write_fields
+from hystbench.compare.runs import Run, read_run
 from hystbench.compare.tables import PrintedTable, error_kind
 from hystbench.files import write_text
 from hystbench.published import in_order

@@ -14,7 +14,7 @@ from typing import Any, get_args
 from hystbench.compare.beside import Edge, Ranking
 from hystbench.compare.cells import NEAR_FACTOR, ComparedCell, rms_error_percent
 from hystbench.compare.claims.claim import Basis, Judgement, Verdict
-from hystbench.compare.evidence import Cell, ClaimEvidence
+from hystbench.compare.runs import Cell, ClaimEvidence
 from hystbench.published import FILTERS
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hystbench.compare.evidence import Run, read_run
+from hystbench.compare.runs import Run, read_run
 from hystbench.record import FloatArray, Record, load_record
 from hystbench.written import check_unchanged
 

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from hystbench.compare.cells import NOT_RUN, ComparedCell
-from hystbench.compare.evidence import read_run
 from hystbench.compare.rows import read_items
+from hystbench.compare.runs import read_run
 from hystbench.figures import style
 
 # Blue and red stay apart for all kinds of colour blindness, and white is agreement.

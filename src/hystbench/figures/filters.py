@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from hystbench.compare.beside import Edge
-from hystbench.compare.evidence import read_run
 from hystbench.compare.rows import read_items
+from hystbench.compare.runs import read_run
 from hystbench.errors import InputError
 from hystbench.figures import style
 from hystbench.files import read_json

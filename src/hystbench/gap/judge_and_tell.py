@@ -30,7 +30,7 @@ from hystbench.gap.judging.effect_rows import (
     ranking_rows,
     simulator_mapping,
 )
-from hystbench.gap.judging.left import Left, size_follows, what_is_left
+from hystbench.gap.judging.leftover import Leftover, size_follows, what_is_left
 from hystbench.gap.judging.unnamed import Unnamed, what_is_unnamed
 from hystbench.gap.judging.verdict import (
     Verdict,
@@ -167,7 +167,7 @@ class _Judged(NamedTuple):
 def _judged(
     start: ModelState,
     named: Named,
-    left: Left,
+    left: Leftover,
     floor: Floor,
     before: Sequence[Compared],
     own: OwnValues,
@@ -206,7 +206,7 @@ def _judged(
 
 
 def _effects(
-    named: Named, model: Model, left: Left, floor: Floor, trust: float
+    named: Named, model: Model, left: Leftover, floor: Floor, trust: float
 ) -> list[dict[str, Any]]:
     """Tell the effects with their numbers and errors."""
     state, by_effect = named.state, named.reasons
@@ -259,7 +259,7 @@ def _used_up(calls: Calls) -> str:
 
 
 def _fit(
-    start: ModelState, state: ModelState, floor: Floor, left: Left
+    start: ModelState, state: ModelState, floor: Floor, left: Leftover
 ) -> dict[str, Any]:
     """Tell what is gone on the fit records, and how much no other record knows."""
     square = floor.rms**2

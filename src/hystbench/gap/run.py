@@ -22,8 +22,8 @@ from hystbench.gap.fitting.on_records import compared_records, run_base, start_s
 from hystbench.gap.fitting.own_steps import too_long_steps
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import state_mapping, state_of
-from hystbench.gap.holdout.outcome import show_on_hold_out
-from hystbench.gap.holdout.show import Outcome
+from hystbench.gap.holdout.scored import Outcome
+from hystbench.gap.holdout.withdraw import show_on_hold_out
 from hystbench.gap.inside.named_inside import quantities_if_linear
 from hystbench.gap.judge_and_tell import Decision
 from hystbench.gap.naming.built_in import BuiltIn, build_in
@@ -170,7 +170,9 @@ def show(
     outcome : Outcome
     """
     fitted, vocabulary = decided.fitted, decided.vocabulary
-    evidence = as_found(evidence, decided.base, fitted, say_in_words(say))
+    evidence = hold_out_begun_like_fit(
+        evidence, decided.base, fitted, say_in_words(say)
+    )
     outcome = show_on_hold_out(
         fitted, decided.content, evidence, vocabulary, decided.built_in
     )
@@ -178,7 +180,7 @@ def show(
     return replace(evidence, hold_out=measured), outcome
 
 
-def as_found(
+def hold_out_begun_like_fit(
     evidence: Evidence, base: Model, found: FitResult, say: Say = silent
 ) -> Evidence:
     """Leave out the leads of hold-out records, as of fit records.

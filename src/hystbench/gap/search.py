@@ -7,9 +7,9 @@ from dataclasses import replace
 from functools import cache, partial
 
 from hystbench.gap.asked import USUAL, Asked
-from hystbench.gap.bases.known_about import known_about
 from hystbench.gap.bases.lead import without_leads
-from hystbench.gap.bases.linear import beside_of, is_identified
+from hystbench.gap.bases.linear import effect_found_with, is_identified
+from hystbench.gap.bases.roughly_known import roughly_known
 from hystbench.gap.beside_base import BesideBase, stays
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.candidates import Limits
@@ -96,7 +96,7 @@ def search(
     if identified:
         found = _begun_otherwise(found, evidence, sought, quantities)
         found = _of_more_poles(found, evidence, sought)
-    about = None if identified else known_about(base, evidence.fit)
+    about = None if identified else roughly_known(base, evidence.fit)
     if about is not None and found.may_be_simpler():
         say("the base's numbers or timing may be off: naming beside that")
         again = _beside(about, evidence, sought, quantities, found.hosts)
@@ -202,7 +202,7 @@ def _beside(
             return start, floor
         return start_state(shorter, base, hold, declared, offered)
 
-    known = bool(places_between_halves(start.simulation) or beside_of(base))
+    known = bool(places_between_halves(start.simulation) or effect_found_with(base))
     if known:  # what that effect hides of a start is no reason to try forces
         start, floor = begun_as(in_a_chain())
         if start is not first:

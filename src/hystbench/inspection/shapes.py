@@ -11,7 +11,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Declined
 from hystbench.gap.effects.variant import Variant
-from hystbench.gap.fitting.beside import beside_columns
+from hystbench.gap.fitting.added_signals import beside_columns
 from hystbench.gap.fitting.state import ModelState
 from hystbench.record import FloatArray
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from hystbench.compare.evidence import Cell, Run
+from hystbench.compare.runs import Cell, Run
 from hystbench.identification.algorithm import identify_slow_loop
 from hystbench.rdgpi import RateDependentGPI, identify_rdgpi
 from hystbench.record import Record

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.adaptive import make_filter
-from hystbench.compare.evidence import ClaimEvidence, Run
+from hystbench.compare.runs import ClaimEvidence, Run
 from hystbench.errors import refuse_unknown
 from hystbench.files import finite_or_none
 from hystbench.filters import MOST_CORRECTION

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from hystbench.adaptive import make_filter, steps_of
-from hystbench.compare.evidence import Cell, Run
+from hystbench.compare.runs import Cell, Run
 from hystbench.errors import InputError
 from hystbench.filters import AdaptiveFilter, Result, run_many
 from hystbench.metrics import mean_square_error, relative_error

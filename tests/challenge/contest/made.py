@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from hystbench.challenge.contest.score import judge
+from hystbench.challenge.contest.score import judge_answer
 from hystbench.gap.schema import SCHEMA
 
 
@@ -131,4 +131,4 @@ def answer(content, status="answered"):
 
 def judged(about, content, confirm=lambda names: names, case="c", solver="s", **more):
     """Judge an answer to a case; ``more`` is of the answer."""
-    return judge(solver, case, about, answer(content, **more), SCHEMA, confirm)
+    return judge_answer(solver, case, about, answer(content, **more), SCHEMA, confirm)

@@ -7,7 +7,7 @@ import pytest
 from hystbench.commands.jobs.twins import results_on_runs, write_twins
 from hystbench.compare.beside import read_holdings, read_spreads
 from hystbench.compare.claims import CLAIMS
-from hystbench.compare.evidence import ClaimEvidence
+from hystbench.compare.runs import ClaimEvidence
 from hystbench.twins.parts import CONFIGURED, TwinExperiment, TwinOutcome
 from tests.compare.made import published_runs
 

@@ -13,14 +13,14 @@ from hystbench.compare.claims import (
     judge_all,
     read_claim,
 )
-from hystbench.compare.claims.claim import condition, judge
+from hystbench.compare.claims.claim import condition, judge_claim
 from hystbench.compare.claims.operators import (
     at_two_speeds,
     loop_asymmetry,
     sine,
 )
-from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import write_fields
+from hystbench.compare.runs import ClaimEvidence
 from hystbench.order_errors import OrderError
 from hystbench.published import FILTERS, Printed
 from tests.compare.made import (
@@ -273,7 +273,7 @@ def test_claim_is_reproduced_or_not(name):
     for evidence, verdict in zip(
         CASES[name], ("reproduced", "not reproduced"), strict=True
     ):
-        judgement = judge(BY_ID[name], evidence)
+        judgement = judge_claim(BY_ID[name], evidence)
         holds = BY_ID[name].holds(evidence)
         assert holds == (verdict == "reproduced"), judgement.evidence
         wanted = "refuted by the paper" if name in REFUTED else verdict
@@ -282,7 +282,7 @@ def test_claim_is_reproduced_or_not(name):
 
 @pytest.mark.parametrize("name", sorted(NEVER_TESTABLE))
 def test_claim_is_never_testable_and_says_why(name):
-    judgement = judge(BY_ID[name], runs())
+    judgement = judge_claim(BY_ID[name], runs())
     assert judgement.verdict == "not testable"
     assert judgement.evidence
 
@@ -295,23 +295,23 @@ def test_claim_without_its_runs_is_not_testable(name):
     holds, why = BY_ID[name].ours(ClaimEvidence())
     assert holds is None
     assert "not run" in why
-    verdict = judge(BY_ID[name], ClaimEvidence()).verdict
+    verdict = judge_claim(BY_ID[name], ClaimEvidence()).verdict
     assert verdict == ("refuted by the paper" if name in REFUTED else "not testable")
 
 
 def test_one_missing_run_is_named():
     found = published_runs()
     del found[SINES[3], "gpo"]
-    judgement = judge(BY_ID["gpo-re-rises"], ClaimEvidence(runs=found))
+    judgement = judge_claim(BY_ID["gpo-re-rises"], ClaimEvidence(runs=found))
     assert judgement.verdict == "not testable"
     assert judgement.evidence == "not run: gpo on sine-060hz"
 
 
 def test_a_diverged_run_is_worse_than_any():
     beaten = runs({(CHIRP, "gpo"): None})
-    assert judge(BY_ID["chirp-gpo-best"], beaten).verdict == "not reproduced"
+    assert judge_claim(BY_ID["chirp-gpo-best"], beaten).verdict == "not reproduced"
     others = runs({(CHIRP, model): None for model in FILTERS[1:]})
-    assert judge(BY_ID["chirp-gpo-best"], others).verdict == "reproduced"
+    assert judge_claim(BY_ID["chirp-gpo-best"], others).verdict == "reproduced"
 
 
 # Read off the paper's tables by hand.
@@ -338,7 +338,7 @@ BORN_OUT = {
 @pytest.mark.parametrize("name", ["order-sharp", "order-slow"])
 def test_divergence_at_the_lowest_order_is_no_fall(name):
     evidence = order_points(lambda n: math.inf if n == 1 else 1 / n**2)
-    found = judge(BY_ID[name], evidence)
+    found = judge_claim(BY_ID[name], evidence)
     assert found.verdict == "not reproduced"
 
 
@@ -346,19 +346,23 @@ def test_divergence_at_the_lowest_order_is_no_fall(name):
 def test_the_order_is_judged_under_both_rules(name):
     good, bad = (case.order_sweep for case in CASES[name])
     good = tuple(replace(point, rule="constant") for point in good)
-    found = judge(BY_ID[name], ClaimEvidence(order_sweep=good, order_sweep_other=bad))
+    found = judge_claim(
+        BY_ID[name], ClaimEvidence(order_sweep=good, order_sweep_other=bad)
+    )
     assert found.verdict == "not reproduced"
     assert "mu constant: " in found.evidence
     both = ClaimEvidence(order_sweep=good, order_sweep_other=good)
-    assert judge(BY_ID[name], both).verdict == "reproduced"
+    assert judge_claim(BY_ID[name], both).verdict == "reproduced"
 
 
 def test_an_edge_inside_the_bound_is_named_with_its_numbers():
-    found = judge(BY_ID["eq19-convergence"], edges(edge=0.25))
+    found = judge_claim(BY_ID["eq19-convergence"], edges(edge=0.25))
     assert f"{len(SINES) * 4} of {len(SINES) * 4} edges lie inside" in found.evidence
     assert f"gpo on {SINES[0]} at 0.25 of 1" in found.evidence
     # A sweep that found no edge does not show that there is one.
-    assert judge(BY_ID["mu-governs"], edges(edge=None)).verdict == "not reproduced"
+    assert (
+        judge_claim(BY_ID["mu-governs"], edges(edge=None)).verdict == "not reproduced"
+    )
 
 
 def test_every_result_says_what_the_twin_knew_of_it():
@@ -395,7 +399,7 @@ def test_the_errors_of_a_drawn_signal_are_its_medians():
         for metric in ("mse", "re")
     }
     drawn = replace(runs(), drawn={random: Drawn(errors, (4.0, 4.1, 4.2))})
-    found = judge(BY_ID["sums-gpo-best"], drawn)
+    found = judge_claim(BY_ID["sums-gpo-best"], drawn)
     assert found.verdict == "not reproduced"
     assert "backlash 1 against gpo 5 on multisine-random-0-100hz" in found.evidence
 
@@ -404,7 +408,7 @@ def test_two_diverged_filters_say_nothing_of_the_envelopes():
     signals = ("sine-010hz", "sine-020hz")
     errors = {(s, e): math.inf for s in signals for e in ("identified", "published")}
     evidence = ClaimEvidence(envelope_errors=errors)
-    found = judge(BY_ID["envelopes-serve-every-rate"], evidence)
+    found = judge_claim(BY_ID["envelopes-serve-every-rate"], evidence)
     assert found.verdict == "not reproduced"
 
 
@@ -424,7 +428,7 @@ def test_what_they_bear_out_follows_from_the_numbers():
         else p
         for p in PAIRS
     )
-    judgement = judge(BY_ID["sines-gpo-best"], ClaimEvidence(published=changed))
+    judgement = judge_claim(BY_ID["sines-gpo-best"], ClaimEvidence(published=changed))
     assert judgement.published_bears_out == "yes"
 
 
@@ -462,7 +466,7 @@ def test_an_asymmetric_operator_is_seen():
 
 @pytest.mark.parametrize("name", sorted(ON_THE_PLAY))
 def test_claims_on_the_play_hold(name):
-    assert judge(BY_ID[name], ClaimEvidence()).verdict == "reproduced"
+    assert judge_claim(BY_ID[name], ClaimEvidence()).verdict == "reproduced"
 
 
 def test_ledger_as_csv(tmp_path):
@@ -492,7 +496,7 @@ ROW = {
 
 
 def test_a_new_claim_is_a_row():
-    found = judge(read_claim(ROW), edges())
+    found = judge_claim(read_claim(ROW), edges())
     assert (found.verdict, found.evidence) == ("not reproduced", "36 edges")
     with pytest.raises(KeyError, match="no_such"):
         read_claim(ROW | {"measure": "filters.no_such"})

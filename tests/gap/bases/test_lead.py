@@ -14,7 +14,7 @@ from hystbench.gap.naming.ladder import FitResult
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.scored_samples import ScoredSamples
-from hystbench.gap.run import as_found
+from hystbench.gap.run import hold_out_begun_like_fit
 from hystbench.model import Model
 from hystbench.quantities import NONE_KNOWN, Quantities
 from hystbench.record import Channel, Record
@@ -176,7 +176,9 @@ def test_forces_in_a_free_mass_leave_leads_of_both_uses_out_alike():
         None,
         (),
     )
-    evidence = as_found(Evidence("device", (fit,), (held,)), linear(), found)
+    evidence = hold_out_begun_like_fit(
+        Evidence("device", (fit,), (held,)), linear(), found
+    )
     assert evidence.hold_out[0].lead == 200
 
 
@@ -224,4 +226,4 @@ def test_a_lone_hold_out_record_is_asked_by_how_the_fit_records_begin():
     state = ModelState((store,), fit, ScoredSamples.of(fit))
     found = FitResult(base, state, Floor(0.001, "declared"), None, ())
     evidence = Evidence("tank", fit, (held,), "zero-order", quantities=STORE)
-    assert as_found(evidence, base, found).hold_out[0].lead > 0
+    assert hold_out_begun_like_fit(evidence, base, found).hold_out[0].lead > 0

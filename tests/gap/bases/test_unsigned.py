@@ -61,7 +61,7 @@ def test_the_sign_is_that_of_the_speed():
 def test_nothing_is_put_back_where_nothing_is_hidden(shown, levels):
     found, _ = evidence(shown, levels)
     assert with_signs(found) is None
-    assert identified_linear(found).model.beside == ""
+    assert identified_linear(found).model.found_with == ""
 
 
 def test_the_sensor_is_named_and_the_rest_is_noise():
@@ -108,4 +108,4 @@ def test_a_level_is_no_speed_without_a_sign():
         y = level + NOISE * random.standard_normal(len(u))
         records.append(Record(f"r{k}", DT, u, y, VOLTAGE, SPEED, "measured", "fit"))
     found = Evidence("tank", tuple(records), (), "zero-order")
-    assert identified_linear(found).model.beside == ""
+    assert identified_linear(found).model.found_with == ""

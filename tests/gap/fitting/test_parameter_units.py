@@ -11,7 +11,7 @@ from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.parameter_units import unit_at, unit_behind
 from hystbench.gap.judging.effect_rows import effect_mapping
-from hystbench.gap.judging.left import Left
+from hystbench.gap.judging.leftover import Leftover
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.thresholds import PAYS
 from tests.gap.small import ENVELOPE, GPI, block, hysteresis, measured, state_of
@@ -122,7 +122,9 @@ def test_a_number_has_the_unit_of_the_signal_at_its_place(chain, place, unit):
     )
     state = with_effect(start, variant, {"coefficient": 0.1})
     (item,) = state.added
-    told = effect_mapping(item, state, np.zeros(1), (), (), Left(1.0, 0.0, 1.0, 0.0))
+    told = effect_mapping(
+        item, state, np.zeros(1), (), (), Leftover(1.0, 0.0, 1.0, 0.0)
+    )
     assert told["parameters"]["coefficient"]["unit"] == unit
 
 

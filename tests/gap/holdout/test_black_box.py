@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hystbench.gap.holdout.show import black_box_mapping
+from hystbench.gap.holdout.scored import black_box_mapping
 from hystbench.gap.holdout.shrink import shrink
 from hystbench.gap.records.black_box import BlackBox
 from hystbench.gap.records.floor import Floor

@@ -14,7 +14,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.on_records import compared_records, start_state
-from hystbench.gap.holdout.show import RUNS_AWAY_RATIO, bounded, reach, score_hold_out
+from hystbench.gap.holdout.scored import RUNS_AWAY_RATIO, bounded, reach, score_hold_out
 from hystbench.gap.naming.ladder import FitResult, Rung
 from hystbench.gap.records.black_box import black_box
 from hystbench.gap.records.evidence import Evidence

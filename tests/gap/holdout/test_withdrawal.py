@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hystbench.gap.asked import Asked
-from hystbench.gap.holdout.outcome import (
+from hystbench.gap.holdout.withdraw import (
     first_figure,
     withdrawal,
     without_names,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.store import Store
-from hystbench.gap.bases.known_about import known_about
+from hystbench.gap.bases.roughly_known import roughly_known
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.insert_law import laws_for
@@ -25,7 +25,7 @@ def test_stores_hold_laws_also_where_their_numbers_and_timing_are_known_about(ab
     record = Record("run", DT, u, TANK.simulate(u, u, DT), PUMP, LEVEL, "measured")
     base = Model("tank", PUMP, LEVEL, (TANK,))
     if about:
-        base = known_about(base, (record,))
+        base = roughly_known(base, (record,))
         assert base.chain[0].name == "input-delay"
     start, floor = start_state((record,), base, "zero-order", 0.02)
     score = Score.plain(start.sample, floor.rms**2)

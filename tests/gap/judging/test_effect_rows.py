@@ -17,7 +17,7 @@ from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.parameters import at_ends, base_parameters
 from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.judging.effect_rows import effect_mapping, ranking_rows
-from hystbench.gap.judging.left import Left
+from hystbench.gap.judging.leftover import Leftover
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook, in_order
 from hystbench.gap.schema import RANK
@@ -30,7 +30,7 @@ from tests.gap.small import MODE, block, hysteresis, measured, state_of
 
 NOISE = 0.02
 MODE_BLOCK = block("resonance", **MODE)
-LEFT = Left(100.0, 1.0, 100.0, 1.0)
+LEFT = Leftover(100.0, 1.0, 100.0, 1.0)
 
 
 def started(chain, *free):
@@ -185,7 +185,7 @@ def histories(draw):
 @given(histories(), st.floats(0, 1))
 def test_how_sure_a_name_is_follows_from_the_rows_of_the_ranking(history, loose):
     named, taken = history
-    left = Left(100.0, 100.0 * loose, 100.0, 100.0)
+    left = Leftover(100.0, 100.0 * loose, 100.0, 100.0)
     fit = {"left": left.share}
     content = through_a_file({"ranking": ranking_rows(named), "fit": fit})
     for effect in taken:

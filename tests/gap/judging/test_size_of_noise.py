@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.judging.left import size_follows
+from hystbench.gap.judging.leftover import size_follows
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.record import Channel, Record
 from tests.gap.small import block

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.gap.judging.left import Left, what_is_left
+from hystbench.gap.judging.leftover import Leftover, what_is_left
 from hystbench.gap.judging.unnamed import Unnamed
 from hystbench.gap.judging.verdict import (
     GIVE,
@@ -35,12 +35,12 @@ SHARES = st.floats(0.0, 1.0)
 
 
 def left(after, before=100.0):
-    return Left(before, after, before, after)
+    return Leftover(before, after, before, after)
 
 
 @given(SIZES, SIZES, SIZES, SIZES, st.booleans(), st.none() | SHARES)
 def test_every_finding_has_a_word_and_a_reason(before, after, one, other, named, box):
-    found = Left(before, after, one, other)
+    found = Leftover(before, after, one, other)
     word, reason = judge(found, named, box)
     assert word in ("named", "no-gap", "unnamed")
     assert (word == "no-gap") <= (not named)
@@ -56,7 +56,7 @@ def test_noise_is_no_gap_whatever_the_black_box_says(after, box):
 
 @given(st.floats(-1, ABOVE_NOISE), SHARES)
 def test_noise_that_stands_in_lone_samples_is_none(after, lone):
-    found = Left(after, after, after, after, lone=lone)
+    found = Leftover(after, after, after, after, lone=lone)
     word, reason = judge(found, False, 0.0)
     told = lone * (1 + after) > FOREIGN
     assert word == ("unnamed" if told else "no-gap")
@@ -66,7 +66,7 @@ def test_noise_that_stands_in_lone_samples_is_none(after, lone):
 @given(st.floats(0, 40), st.floats(-1, 10))
 def test_what_differs_between_periods_is_no_wrong_shape(after, differs):
     # As slight as only a wrong shape of the hysteresis leaves it.
-    found = Left(0.0, 0.0, 100.0, after, 1e6, unrepeated=differs)
+    found = Leftover(0.0, 0.0, 100.0, after, 1e6, unrepeated=differs)
     word, reason = judge(found, False, 0.0)
     repeats = after - differs > max(ABOVE_NOISE, 0.25 * differs)
     told = differs > (max(ABOVE_NOISE, FOREIGN * after) if repeats else ABOVE_NOISE)
@@ -77,16 +77,16 @@ def test_what_differs_between_periods_is_no_wrong_shape(after, differs):
 @given(st.floats(0, 0.49), st.floats(0.51, 1e5))
 def test_a_wide_gap_is_one_though_reshaping_could_do_all_of_it(beyond, whole):
     output = 1e5
-    found = Left(beyond, beyond, whole, whole, output)
+    found = Leftover(beyond, beyond, whole, whole, output)
     word, reason = judge(found, False, 0.0)
     assert word == ("no-gap" if whole < (WIDE * SLIGHT) ** 2 * output else "unnamed")
     assert (word == "no-gap") == ("% of the output" in reason)
 
 
 def test_names_that_leave_most_of_a_slightly_wrong_shape_are_to_be_taken_back():
-    assert Left(2.0, 2.0, 100.0, 60.0, 1e6).little_named
+    assert Leftover(2.0, 2.0, 100.0, 60.0, 1e6).little_named
     # What they leave is 40 % of the gap, nearly all of it what reshaping could do.
-    assert not Left(20.0, 2.0, 100.0, 40.0, 1e6).little_named
+    assert not Leftover(20.0, 2.0, 100.0, 40.0, 1e6).little_named
 
 
 @given(SIZES, SIZES, SIZES, SIZES, st.floats(0, 1e6), st.booleans())
@@ -94,7 +94,7 @@ def test_beside_an_upper_bound_of_the_noise_what_follows_signals_may_be_a_gap(
     before, after, one, other, output, retuned
 ):
     """A floor that may hold the whole gap: all else is judged as with a known one."""
-    found = Left(before, after, one, other, output)
+    found = Leftover(before, after, one, other, output)
     some = Unnamed(1.1 * UNNAMED_SHARE)
     known = judge(found, False, 0.0, retuned, unnamed=some)
     bound = judge(found, False, 0.0, retuned, unnamed=some, floor_is_upper_bound=True)
@@ -115,7 +115,7 @@ def test_noise_whose_size_nobody_told_is_no_gap_if_it_is_little_and_follows_noth
     share, structured, word
 ):
     """Else white noise would be a gap, and noise of another colour none."""
-    found = Left(0.0, 0.0, 0.0, 0.0, 1.0 / share**2)
+    found = Leftover(0.0, 0.0, 0.0, 0.0, 1.0 / share**2)
     given = {"unnamed": Unnamed(structured), "floor_is_upper_bound": True}
     assert judge(found, False, **given)[0] == word
     # Noise of a sensor has one size.
@@ -126,10 +126,10 @@ def test_noise_whose_size_nobody_told_is_no_gap_if_it_is_little_and_follows_noth
 def test_a_name_that_leaves_more_than_a_quarter_does_not_stand(share, word):
     """Windows of a free mass own paths: nearly all of it counted as owned."""
     some = Unnamed(0.001, unrelated=0.001)
-    found = Left(1000.0, 1000.0 * share, 1000.0, 1000.0 * share, 1e4)
+    found = Leftover(1000.0, 1000.0 * share, 1000.0, 1000.0 * share, 1e4)
     assert judge(found, True, unnamed=some)[0] == word
     # A wrong base leaves much of the whole; of the part beyond it little stays.
-    beyond = Left(1000.0, 100.0, 5000.0, 5000.0 * share, 1e4)
+    beyond = Leftover(1000.0, 100.0, 5000.0, 5000.0 * share, 1e4)
     assert judge(beyond, True, unnamed=some)[0] == "named"
 
 
@@ -149,11 +149,11 @@ def test_a_gap_that_nothing_takes_away_is_unnamed(after, box):
 def test_a_percent_of_the_output_that_reshaping_explains_is_no_gap():
     """A gap of 3 floors beyond a wrong shape, of 30 in all, at 1 % of the output."""
     output = 3.0 / (0.9 * SLIGHT) ** 2
-    slight = Left(3.0, 3.0, 30.0, 30.0, output)
+    slight = Leftover(3.0, 3.0, 30.0, 30.0, output)
     assert judge(slight, False, 0.9)[0] == "no-gap"
     # more of the output, or a gap that no reshaping explains, is one to be named
-    large = Left(3.0, 3.0, 30.0, 30.0, 0.5 * output)
-    alien = Left(3.0, 3.0, 4.0, 4.0, output)
+    large = Leftover(3.0, 3.0, 30.0, 30.0, 0.5 * output)
+    alien = Leftover(3.0, 3.0, 4.0, 4.0, output)
     for other in (large, alien):
         assert judge(other, False, 0.9)[0] == "unnamed"
 
@@ -170,7 +170,7 @@ def test_what_stays_unnamed_decides_whether_a_name_holds(follows, changes, rest,
 
 @pytest.mark.parametrize(("stays", "less"), [(0.05, False), (0.3, True)])
 def test_a_withdrawal_is_less_sure_beside_a_base_that_may_be_wrong(stays, less):
-    found = Left(100.0, 2.0, 100.0, 100.0 * stays, 1e3)
+    found = Leftover(100.0, 2.0, 100.0, 100.0 * stays, 1e3)
     word, reason = judge(found, True, unnamed=Unnamed(0.02))
     assert word == "unnamed"
     assert ("less sure" in reason) == less
@@ -181,7 +181,7 @@ def test_a_withdrawal_is_less_sure_beside_a_base_that_may_be_wrong(stays, less):
 def test_what_would_be_no_gap_does_not_speak_against_a_name():
     """Of a gap of 100 floors 15 stay, most of it what reshaping the base could do."""
     output = 8.0 / (0.9 * SLIGHT) ** 2
-    found = Left(100.0, 8.0, 100.0, 15.0, output)
+    found = Leftover(100.0, 8.0, 100.0, 15.0, output)
     assert judge(replace(found, before=8.0, all_before=15.0), False)[0] == "no-gap"
     structure = Unnamed(0.03)
     word, reason = judge(found, True, unnamed=structure)
@@ -329,13 +329,13 @@ def test_periods_that_are_found_are_what_mends_an_upper_bound():
     assert "record n" not in told
     assert what_mends([noise]) == GIVE
     _, reason = judge(
-        Left(0, 0, 0, 0, 1), False, 0.0, floor_is_upper_bound=True, mends=told
+        Leftover(0, 0, 0, 0, 1), False, 0.0, floor_is_upper_bound=True, mends=told
     )
     assert reason.endswith(told)
 
 
 def test_what_is_new_in_each_period_is_told_as_that():
-    found = Left(30.0, 30.0, 30.0, 30.0, 1e3, unrepeated=28.0)
+    found = Leftover(30.0, 30.0, 30.0, 30.0, 1e3, unrepeated=28.0)
     word, reason = judge(found, False, 0.0)
     assert word == "unnamed"
     assert "differs from one period of the same input to the next" in reason

@@ -5,7 +5,7 @@ from itertools import pairwise
 import pytest
 
 from hystbench.gap.fitting.state import Added, Free
-from hystbench.gap.holdout.show import score_hold_out
+from hystbench.gap.holdout.scored import score_hold_out
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.ladder import BASE, RETUNED, rungs
 from hystbench.gap.naming.rounds import Round

@@ -6,8 +6,8 @@ import csv
 from pathlib import Path
 
 from hystbench.compare.comparison import Comparison, held_out_signals
-from hystbench.compare.evidence import read_evidence
 from hystbench.compare.measured import compare_measured
+from hystbench.compare.runs import read_evidence
 from hystbench.figures import drawer, style
 from hystbench.published.split import CALIBRATION_SIGNALS
 from hystbench.report.reproduction.page import page

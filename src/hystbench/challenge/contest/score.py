@@ -117,7 +117,7 @@ class Row:
 COLUMNS = tuple(item.name for item in fields(Row))
 
 
-def judge(
+def judge_answer(
     solver: str,
     case: str,
     truth: Mapping[str, Any],

@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from hystbench.challenge.contest.score import Row, judge
+from hystbench.challenge.contest.score import Row, judge_answer
 from hystbench.challenge.contest.summary import figures
 from hystbench.challenge.contest.tables import frame, read_rows, sure
 from hystbench.files import atomic_path, read_json
@@ -83,7 +83,7 @@ def told(case: Path) -> Row:
         "cpu_seconds": None,
     }
     place = f"{case.parent.name}/{case.name}"
-    return judge("gap", place, ours, answer, SCHEMA, lambda members: members)
+    return judge_answer("gap", place, ours, answer, SCHEMA, lambda members: members)
 
 
 def beside(own: pd.DataFrame, elsewhere: pd.DataFrame) -> pd.DataFrame:

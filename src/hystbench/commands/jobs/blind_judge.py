@@ -10,7 +10,7 @@ from typing import Any
 
 from hystbench.challenge.case import Case
 from hystbench.challenge.contest.plan import Entry, chunks, plan
-from hystbench.challenge.contest.score import Row, judge, write_rows
+from hystbench.challenge.contest.score import Row, judge_answer, write_rows
 from hystbench.challenge.make import make, write_folder
 from hystbench.challenge.plant.effects import MACHINES
 from hystbench.errors import InputError
@@ -53,7 +53,7 @@ def _judged(
                 )
             confirm = partial(_confirmed, case)
             name = about["solver"]
-            yield judge(name, entry.name, case.truth, answer, SCHEMA, confirm)
+            yield judge_answer(name, entry.name, case.truth, answer, SCHEMA, confirm)
 
 
 def _confirmed(case: Case, names: tuple[str, ...]) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from functools import partial
 
 from hystbench.compare import comparison
-from hystbench.compare.evidence import FILES, read_evidence
+from hystbench.compare.runs import FILES, read_evidence
 from hystbench.files import whole_folder
 from hystbench.options import In, OutFolder, Settings, command
 

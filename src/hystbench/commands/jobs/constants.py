@@ -12,8 +12,8 @@ from statistics import geometric_mean
 from typing import Any
 
 from hystbench.compare.beside import Ranking
-from hystbench.compare.evidence import Cell
 from hystbench.compare.rows import four_digits, names_of, write_fields
+from hystbench.compare.runs import Cell
 from hystbench.compare.summary import pairs_in_order
 from hystbench.options import In, Json, Out, Settings, command
 from hystbench.published import FILTERS, load_errors

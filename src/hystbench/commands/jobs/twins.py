@@ -6,8 +6,8 @@ from pathlib import Path
 from hystbench.compare.beside import TwinClaim, TwinError
 from hystbench.compare.claims import CLAIMS
 from hystbench.compare.claims.claim import Claim
-from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import names_of, or_empty, write_fields
+from hystbench.compare.runs import ClaimEvidence
 from hystbench.options import In, Json, Out, Settings, command
 from hystbench.twins.parts import CONFIGURED, TwinOutcome, join
 from hystbench.twins.runs import read_twins

@@ -12,8 +12,14 @@ from importlib.resources import files
 from typing import Any
 
 from hystbench.compare.claims import errors, filters, operators, response
-from hystbench.compare.claims.claim import Claim, Judgement, Test, condition, judge
-from hystbench.compare.evidence import ClaimEvidence
+from hystbench.compare.claims.claim import (
+    Claim,
+    Judgement,
+    Test,
+    condition,
+    judge_claim,
+)
+from hystbench.compare.runs import ClaimEvidence
 from hystbench.yaml_files import parse_yaml
 
 MEASURES = {
@@ -77,12 +83,12 @@ def judge_all(
     elsewhere = replace(alone, runs={}, records={}, envelope_errors={}, drawn={})
 
     def judged(claim: Claim) -> Judgement:
-        found = judge(claim, evidence)
+        found = judge_claim(claim, evidence)
         if claim.basis != "fitted":
             return found
         if claim.holds(elsewhere) is not None or claim.holds(alone) is None:
             return found  # it is not about these signals
-        verdict = judge(claim, alone).verdict
+        verdict = judge_claim(claim, alone).verdict
         if verdict == "refuted by the paper" != found.verdict:
             return found  # not even the paper's own errors show it on so few signals
         return replace(found, held_out_verdict=verdict)

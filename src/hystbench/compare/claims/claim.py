@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from hystbench.compare.beside import Holding
-from hystbench.compare.evidence import ClaimEvidence
+from hystbench.compare.runs import ClaimEvidence
 
 Verdict = Literal[
     "reproduced", "not reproduced", "not testable", "refuted by the paper"
@@ -189,7 +189,7 @@ VERDICTS: dict[bool | None, Verdict] = {
 """Verdict where the paper's own numbers do not refute a claim."""
 
 
-def judge(claim: Claim, evidence: ClaimEvidence) -> Judgement:
+def judge_claim(claim: Claim, evidence: ClaimEvidence) -> Judgement:
     """Judge one claim by our evidence and by the paper's own numbers."""
     holds, sentence = claim.ours(evidence)
     verdict, holdings = VERDICTS[holds], evidence.holdings.get(claim.id, ())

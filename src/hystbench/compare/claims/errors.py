@@ -10,7 +10,7 @@ import pandas as pd
 
 from hystbench.compare.claims.claim import NotTestable, Numbers, number
 from hystbench.compare.claims.statistics import rank_correlation
-from hystbench.compare.evidence import Cell, ClaimEvidence
+from hystbench.compare.runs import Cell, ClaimEvidence
 from hystbench.published import FILTERS, MODELS, Metric, sine_frequency
 from hystbench.published import signals as signals_of
 

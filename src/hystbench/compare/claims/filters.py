@@ -6,7 +6,7 @@ from statistics import median
 from typing import Any
 
 from hystbench.compare.claims.claim import NotTestable, Numbers
-from hystbench.compare.evidence import ClaimEvidence, Run
+from hystbench.compare.runs import ClaimEvidence, Run
 from hystbench.order_errors import OrderError
 from hystbench.published import FILTERS
 

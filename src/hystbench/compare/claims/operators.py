@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.compare.claims.claim import NotTestable, Numbers
-from hystbench.compare.evidence import ClaimEvidence
+from hystbench.compare.runs import ClaimEvidence
 from hystbench.published.discrepancies import crossings
 from hystbench.published.equations import (
     Envelope,

@@ -11,7 +11,7 @@ from hystbench.compare.claims.statistics import (
     rank_correlation,
     turning_points,
 )
-from hystbench.compare.evidence import ClaimEvidence
+from hystbench.compare.runs import ClaimEvidence
 from hystbench.published import signals, sine_frequency
 from hystbench.record import FloatArray, Record
 

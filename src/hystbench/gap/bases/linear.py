@@ -38,15 +38,15 @@ from hystbench.record import FloatArray, Mask
 LINEAR = "linear"
 """Name of the base that is identified as a linear model."""
 NO_SIGN, SLOW = "sensor-nonlinearity", "slew-limit"
-"""Names of effects that a linear model is found beside."""
+"""Names of effects that a linear model is found together with."""
 
 
 @dataclass(frozen=True)
 class IdentifiedModel(Model):
     """A linear model that was identified from the fit records, with the gap in them."""
 
-    beside: str = ""
-    """Name of an effect that it was found beside; the effect is no part of it."""
+    found_with: str = ""
+    """Name of the effect that it was found together with, which is no part of it."""
 
 
 def is_identified(base: Model) -> bool:
@@ -54,9 +54,9 @@ def is_identified(base: Model) -> bool:
     return isinstance(base, IdentifiedModel) and bool(base.free)
 
 
-def beside_of(base: Model) -> str:
-    """Name the effect that a base was identified beside; nothing for most."""
-    return base.beside if isinstance(base, IdentifiedModel) else ""
+def effect_found_with(base: Model) -> str:
+    """Name the effect that a base was found together with; nothing for most."""
+    return base.found_with if isinstance(base, IdentifiedModel) else ""
 
 
 def with_its_numbers_free(base: Model) -> Model:
@@ -112,14 +112,17 @@ def identified_linear(evidence: Evidence) -> Linear:
     """
     plain, unit = linear_of(evidence), evidence.output.unit
     best = plain
-    for effect, words, without, other in _beside_an_effect(evidence):
+    for effect, words, without, other in _with_an_effect(evidence):
         found = linear_of(other)
         if found.fold_rms**2 < LOOSE * best.fold_rms**2:
             note = (
                 f"{found.note}, {words} ({without} {plain.fold_rms:.4g} {unit} on "
                 "folds)"
             )
-            model, constant = replace(found.model, beside=effect), plain.constant_rms
+            model, constant = (
+                replace(found.model, found_with=effect),
+                plain.constant_rms,
+            )
             best = found._replace(model=model, note=note, constant_rms=constant)
     fold, still = best.fold_rms, best.constant_rms
     if fold > (1 - NUMBER_PAYS) * still:
@@ -131,7 +134,7 @@ def identified_linear(evidence: Evidence) -> Linear:
     return best
 
 
-def _beside_an_effect(
+def _with_an_effect(
     evidence: Evidence,
 ) -> Iterator[tuple[str, str, str, Evidence]]:
     """Give effects that no linear model shows, with records that are freed of each.

@@ -26,7 +26,7 @@ from hystbench.gap.bases.kinds import COMMAND, IDENTIFIED, kind_of_base
 from hystbench.gap.bases.linear import (
     NO_SIGN,
     IdentifiedModel,
-    beside_of,
+    effect_found_with,
     identified_linear,
     with_its_numbers_free,
 )
@@ -95,16 +95,16 @@ def _kept(
             evidence.identification,
         ],
         compute,
-        lambda found: [found[0].to_mapping(), found[1], beside_of(found[0])],
+        lambda found: [found[0].to_mapping(), found[1], effect_found_with(found[0])],
         lambda kept: (_given_back(of, kept[0], kept[2]), kept[1]),
     )
 
 
-def _given_back(of: type[Model], content: Any, beside: str) -> Model:
-    """Give a base that was kept, and what it was found beside."""
+def _given_back(of: type[Model], content: Any, found_with: str) -> Model:
+    """Give a base that was kept, and what it was found together with."""
     model = of.from_mapping(content, "a base that was kept")
     if isinstance(model, IdentifiedModel):
-        return replace(model, beside=beside)
+        return replace(model, found_with=found_with)
     return model
 
 
@@ -114,7 +114,7 @@ def _identified(word: str, evidence: Evidence) -> tuple[Model, str]:
         return identified_gpi(evidence)
     found = identified_linear(evidence)
     # Re-tuned without a sign it would be another model.
-    if found.model.beside == NO_SIGN:
+    if found.model.found_with == NO_SIGN:
         return found.model, found.note
     return with_its_numbers_free(found.model), found.note
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from hystbench.blocks import block_class
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import SETTINGS
-from hystbench.gap.bases.known_about import as_it_was, defaults
+from hystbench.gap.bases.roughly_known import as_it_was, defaults
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.model import Model

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.blocks.parameter import HUGE, SETTINGS, TINY
-from hystbench.gap.bases.known_about import defaults
+from hystbench.gap.bases.roughly_known import defaults
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import beside_blocks, places_of_base
 from hystbench.gap.fitting.parameter_units import unit_at, unit_behind, written

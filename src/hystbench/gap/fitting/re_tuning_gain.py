@@ -13,7 +13,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.relaxation_force import RelaxationForce
 from hystbench.blocks.resonance import Resonance
 from hystbench.blocks.structure import Structure
-from hystbench.gap.bases.known_about import LATE, in_time, stated
+from hystbench.gap.bases.roughly_known import LATE, in_time, stated
 from hystbench.gap.fitting.model_score import beside_of
 from hystbench.gap.fitting.on_records import free_within
 from hystbench.gap.fitting.refit import finished

@@ -9,7 +9,7 @@ import numpy as np
 from hystbench.blocks.calls import CallsUsedUp
 from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError
-from hystbench.gap.fitting.beside import beside_slope
+from hystbench.gap.fitting.added_signals import beside_slope
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import beside_of, make_score, score_of

@@ -11,7 +11,7 @@ from scipy.special import ndtri, stdtrit
 
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.variant import Beside, Values
-from hystbench.gap.fitting.beside import SMALL, beside_slope
+from hystbench.gap.fitting.added_signals import SMALL, beside_slope
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState

@@ -16,7 +16,7 @@ from hystbench.blocks.parameter import HUGE
 from hystbench.errors import InputError
 from hystbench.gap.effects.effect import Declined
 from hystbench.gap.effects.variant import Values, Variant
-from hystbench.gap.fitting.beside import beside_columns
+from hystbench.gap.fitting.added_signals import beside_columns
 from hystbench.gap.fitting.score import Amplitudes, Held, Score, Shared
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState

@@ -25,8 +25,8 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.store import Store
 from hystbench.blocks.structure import Structure
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.bases.known_about import stated
 from hystbench.gap.bases.orders import HIGHEST
+from hystbench.gap.bases.roughly_known import stated
 from hystbench.gap.fitting.least_squares import Fitted, fitted
 from hystbench.gap.fitting.on_records import free_within
 from hystbench.gap.fitting.score import Score

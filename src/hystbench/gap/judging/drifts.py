@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from hystbench.gap.fitting.beside import beside_columns
+from hystbench.gap.fitting.added_signals import beside_columns
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.judging.grouped_evidence import ColumnProducts, Groups
 from hystbench.gap.judging.known_signals import PATH, random_walks

@@ -13,7 +13,7 @@ from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.fitting.parameters import parameters_of
 from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.fitting.uncertainty import Errors
-from hystbench.gap.judging.left import Left
+from hystbench.gap.judging.leftover import Leftover
 from hystbench.gap.judging.verdict import confidence, error_of
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, near
@@ -27,7 +27,7 @@ def effect_mapping(
     errors: FloatArray,
     of_beside: Sequence[Errors],
     ranking: Sequence[Candidate],
-    left: Left,
+    left: Leftover,
     size_error: float = np.nan,
     trust: float = 1.0,
 ) -> dict[str, Any]:
@@ -39,7 +39,7 @@ def effect_mapping(
         As for :func:`hystbench.gap.fitting.parameters.parameters_of`.
     ranking : sequence of Candidate
         The last by which it was taken.
-    left : Left
+    left : Leftover
     size_error : float
         Standard error of what it adds to the output, in times of it; not finite where
         it cannot be told.

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from hystbench.gap.judging.left import Left
+from hystbench.gap.judging.leftover import Leftover
 from hystbench.gap.judging.unnamed import Unnamed
 from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.thresholds import (
@@ -52,7 +52,7 @@ def what_mends(records: Sequence[Record]) -> str:
 
 
 def judge(
-    left: Left,
+    left: Leftover,
     named: bool,
     explained_by_box: float | None = None,
     retuned: bool = False,
@@ -65,7 +65,7 @@ def judge(
 
     Parameters
     ----------
-    left : Left
+    left : Leftover
     named : bool
         Whether an effect was added.
     explained_by_box : float or None
@@ -154,7 +154,7 @@ def judge(
     return "named", left.sentence
 
 
-def _why_new(left: Left, unrelated: Unnamed | None, explained: float | None) -> str:
+def _why_new(left: Leftover, unrelated: Unnamed | None, explained: float | None) -> str:
     """Say why what is left follows nothing that is recorded; or nothing."""
     if left.is_new:
         return (
@@ -173,7 +173,7 @@ def _why_new(left: Left, unrelated: Unnamed | None, explained: float | None) -> 
 
 
 def confidence(
-    first: Candidate, ranking: Sequence[Candidate], left: Left, errors: float = 0.0
+    first: Candidate, ranking: Sequence[Candidate], left: Leftover, errors: float = 0.0
 ) -> float:
     """Give the probability that an effect is the one, among those that were tried.
 
@@ -186,7 +186,7 @@ def confidence(
     ----------
     first : Candidate
     ranking : sequence of Candidate
-    left : Left
+    left : Leftover
     errors : float
         Standard error of the effect, in times of it: :func:`error_of`.
     """

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hystbench.gap.holdout.outcome import more_than_on_fit_records
+from hystbench.gap.holdout.withdraw import more_than_on_fit_records
 
 
 @pytest.mark.parametrize(

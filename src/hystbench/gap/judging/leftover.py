@@ -25,7 +25,7 @@ from hystbench.sentences import finely
 
 
 @dataclass(frozen=True)
-class Left:
+class Leftover:
     """What a model leaves, in mean squares over the records."""
 
     before: float
@@ -154,11 +154,11 @@ class Left:
         )
 
 
-def what_is_left(base: ModelState, state: ModelState, floor_rms: float) -> Left:
+def what_is_left(base: ModelState, state: ModelState, floor_rms: float) -> Leftover:
     """Measure what the base and what a model leaves, each beside its directions."""
     floor = floor_rms**2
     before, after = (_beyond(x, make_score(x, floor_rms)) for x in (base, state))
-    return Left(
+    return Leftover(
         before,
         after,
         base.power(floor) / floor,

@@ -23,7 +23,7 @@ LATE = 2
 read within one."""
 
 
-def known_about(base: Model, records: Sequence[Record]) -> Model | None:
+def roughly_known(base: Model, records: Sequence[Record]) -> Model | None:
     """Free what a given base states, each number by what it may be off.
 
     A number may be off by a share of itself, and the recorded input by two sampling
@@ -66,7 +66,7 @@ def in_time(chain: tuple[Block, ...], most: float) -> tuple[Block, ...]:
 
 
 def as_it_was(model: Model) -> Model:
-    """Give back the base that :func:`known_about` was given; any other as it is."""
+    """Give back the base that :func:`roughly_known` was given; any other as it is."""
     first, *rest = model.chain
     timing = isinstance(first, InputDelay) and first.delay_s == first.lead_s > 0.0
     if not (timing and model.tolerances):

@@ -6,12 +6,12 @@ import math
 import pytest
 
 from hystbench.compare.comparison import WRITTEN, Comparison
-from hystbench.compare.evidence import (
+from hystbench.compare.rows import read_items
+from hystbench.compare.runs import (
     read_envelope_errors,
     read_evidence,
     read_run,
 )
-from hystbench.compare.rows import read_items
 from hystbench.errors import InputError
 from hystbench.order_errors import OrderError
 from hystbench.written import ENTRIES

@@ -14,8 +14,8 @@ from hystbench.blocks.sensor_lag import SensorLag
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.asked import Asked
-from hystbench.gap.bases.known_about import as_it_was, known_about
 from hystbench.gap.bases.linear import IdentifiedModel
+from hystbench.gap.bases.roughly_known import as_it_was, roughly_known
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.re_tuning_gain import re_tuned_words
 from hystbench.gap.records.evidence import Evidence
@@ -106,7 +106,7 @@ def test_beside_an_exact_base_nothing_is_re_tuned():
 def test_it_simulates_the_same_until_it_is_re_tuned():
     u = np.random.default_rng(0).normal(size=500)
     given = base()
-    about = known_about(given, [record(u)])
+    about = roughly_known(given, [record(u)])
     assert isinstance(about.chain[0], InputDelay)
     np.testing.assert_allclose(about.simulate(u, DT), given.simulate(u, DT), atol=1e-12)
     assert about.tolerances["gain.value"] == pytest.approx(0.1)
@@ -115,7 +115,7 @@ def test_it_simulates_the_same_until_it_is_re_tuned():
 
 def test_the_numbers_of_a_hysteresis_are_free_as_well():
     loop = PrandtlIshlinskii(thresholds=(0.1, 0.2), weights=(1.0, 0.5))
-    about = known_about(base(loop, SensorLag(time_constant_s=0.01)), [record([0, 1])])
+    about = roughly_known(base(loop, SensorLag(time_constant_s=0.01)), [record([0, 1])])
     assert about.free == (
         "prandtl-ishlinskii.thresholds",
         "prandtl-ishlinskii.weights",
@@ -136,7 +136,7 @@ def test_a_count_is_no_number_that_may_be_off():
         cells=32,
         **density,
     )
-    about = known_about(base(relays), [record([0.0, 1.0])])
+    about = roughly_known(base(relays), [record([0.0, 1.0])])
     assert "preisach.limit" in about.free
     assert "preisach.cells" not in about.free
 
@@ -210,7 +210,7 @@ def of_a_column():
     ids=["exact", "says what is free", "identified", "a column"],
 )
 def test_others_are_taken_as_they_say(given):
-    assert known_about(given, [record([0.0, 1.0])]) is None
+    assert roughly_known(given, [record([0.0, 1.0])]) is None
 
 
 def test_an_empty_list_of_free_numbers_calls_a_model_exact():
@@ -224,7 +224,7 @@ def test_an_empty_list_of_free_numbers_calls_a_model_exact():
 def test_what_moved_most_is_told_with_the_timing():
     u = np.random.default_rng(1).normal(size=200)
     records = (record(u, dt=DT),)
-    start, _ = start_state(records, known_about(base(), records), "linear")
+    start, _ = start_state(records, roughly_known(base(), records), "linear")
     chain = list(start.chain)
     chain[0] = replace(chain[0], delay_s=chain[0].delay_s - 0.5 * DT)
     chain[1] = replace(chain[1], value=2.88)
@@ -237,7 +237,7 @@ def test_what_stands_still_is_not_told_and_a_zero_stays_zero():
     integrator = TransferFunction(numerator=(1.0,), denominator=(1.0, 30.0, 0.0))
     u = np.random.default_rng(1).normal(size=200)
     records = (record(u, dt=DT),)
-    start, _ = start_state(records, known_about(base(integrator), records), "linear")
+    start, _ = start_state(records, roughly_known(base(integrator), records), "linear")
     assert [free.element for free in start.free[:3]] == [0, 0, 1]
     assert all(np.isfinite([free.low, free.high]).all() for free in start.free)
     assert re_tuned_words(start, start) == "nothing moved far"

@@ -14,11 +14,16 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.gap.bases.known_about import as_it_was
 from hystbench.gap.bases.lead import lead_warnings
+from hystbench.gap.bases.roughly_known import as_it_was
 from hystbench.gap.fitting.on_records import run_base
+from hystbench.gap.holdout.scored import (
+    Outcome,
+    as_recorded,
+    nuisance_of,
+    score_hold_out,
+)
 from hystbench.gap.holdout.shortfall import no_surer_than_even, shortfall
-from hystbench.gap.holdout.show import Outcome, as_recorded, nuisance_of, score_hold_out
 from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.naming.ladder import FitResult
 from hystbench.gap.records.evidence import Evidence
