@@ -16,7 +16,7 @@ from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import WIDER, Candidate, Round
 from hystbench.gap.naming.second_looks import reconsidered
 from hystbench.gap.progress import silent
-from hystbench.gap.thresholds import PAYS
+from hystbench.gap.thresholds import PAYS, SCALE
 from tests.gap.small import block, measured, state_of
 
 NOISE = 0.02
@@ -127,6 +127,28 @@ def test_a_rival_that_takes_a_place_is_seen_with_what_it_scored(two, monkeypatch
         (1, "drive-lag", ["asymmetry"], "drive-lag", False),
     ]
     assert [row["score"] for row in rows] == [-100.0, -1e6, 50.0]
+
+
+@pytest.mark.parametrize(("numbers", "taken"), [(0.0, True), (1.0, False)])
+def test_of_a_tie_a_rival_of_fewer_numbers_takes_the_place(
+    numbers, taken, two, monkeypatch
+):
+    state, rounds = two
+    lag = state.added[0]._replace(effect="sensor-lag", charge=numbers)
+    other = replace(state, added=(state.added[1], lag))
+
+    def looked(short, score, known, folds):
+        if [item.effect for item in short.added] != ["asymmetry"]:
+            return (Candidate("asymmetry", "material", score=0.0, state=state),)
+        _, now = finished(state, score)
+        best = Candidate("sensor-lag", "sensor", score=now - SCALE / 2, state=other)
+        return best, Candidate("drive-lag", "drive", score=now, state=state)
+
+    monkeypatch.setattr(reconsider, "rank", looked)
+    monkeypatch.setattr(reconsider, "gain_held_back", lambda *_: PAYS + 50.0)
+    after, _ = reconsidered(state, rounds, NOISE, silent, {"sensor-lag"})
+    assert state.added[0].charge == 1.0
+    assert ("sensor-lag" in {item.effect for item in after.added}) == taken
 
 
 def test_a_rival_that_does_not_pay_on_records_held_back_takes_no_place(

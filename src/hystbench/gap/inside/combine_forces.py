@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -80,6 +80,7 @@ def together(
         The host alone first; of each set of effects the best laws.
     """
     every, alone, carried = list(found), found[0].score, list(found[1:])
+    gone_on: set[frozenset[str]] = set()
     for count, keep in ((2, PAIRS), (3, 1)):
         if (
             count > most
@@ -89,6 +90,7 @@ def together(
             break
         if not of_stores(found[0]):
             carried = [item for item in carried if item.score < alone]
+        gone_on |= {frozenset(item.effects) for item in carried}
         carried = _one_more(carried, offer, score, keep, alone, say)
         every += carried
     best = least(every)
@@ -96,7 +98,7 @@ def together(
         every += with_one_fewer(best, every, score)
         paying = best_that_pays(every)
         every += with_one_fewer(paying, every, score)
-        every += _with_another(paying, offer, score, alone, say)
+        every += _with_another(paying, gone_on, offer, score, alone, say)
     return with_a_way(best_of_each(every))
 
 
@@ -143,15 +145,25 @@ def with_one_fewer(best: Fitted, found: Sequence[Fitted], score: Score) -> list[
 
 
 def _with_another(
-    best: Fitted, offer: Offer, score: Score, alone: float, say: Say
+    best: Fitted,
+    gone_on: Collection[frozenset[str]],
+    offer: Offer,
+    score: Score,
+    alone: float,
+    say: Say,
 ) -> list[Fitted]:
     """Put another effect in the place of each of several.
 
-    One that came early may stand for another that is only seen beside the rest.
+    One that came early may stand for another that is only seen beside the rest. Effects
+    that it was gone on from have met all others.
     """
     if len(best.effects) < 2:
         return []
-    fewer = [without_effect(best.state, k) for k in range(len(best.effects))]
+    fewer = [
+        without_effect(best.state, k)
+        for k in range(len(best.effects))
+        if frozenset(x for j, x in enumerate(best.effects) if j != k) not in gone_on
+    ]
     carried = [fitted(state, score) for state in fewer]
     return _one_more(carried, offer, score, SINGLES, alone, say)
 

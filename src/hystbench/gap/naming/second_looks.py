@@ -72,7 +72,10 @@ def reconsidered(
         own = next((x for x in ranking if x.effect == item.effect and x.state), None)
         least = now if own is None else min(now, own.score)
         least = least if is_itself else np.inf  # anything but that
-        if best.state and best.effect != item.effect and best.score < least - SCALE:
+        # Of what cannot be told apart the one of the fewest numbers stands.
+        fewer = best.state is not None and best.state.freedom < state.freedom
+        enough = least if fewer else least - SCALE
+        if best.state and best.effect != item.effect and best.score < enough:
             held_back = gain_held_back(short, best.state, score)
             ranking = (replace(best, held_back=held_back), *ranking[1:])
             if held_back > PAYS:
