@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -34,6 +35,26 @@ WEAKEST = 1000.0
 """Largest signals that the level may be of the softest law, whose curve is nearest."""
 
 
+def soft_limits(effect: Effect, passed: Passed, words: str = "") -> Iterator[Law]:
+    """Offer soft limits of what comes out of a host, met hard and hardly.
+
+    Parameters
+    ----------
+    effect : Effect
+        Whose they are.
+    passed : Passed
+    words : str
+        Begins the name of each form.
+    """
+    of = partial(effect.curve, "behind", law="saturation")
+    for share in (1.1, 2.0):
+        level = share * passed.shown
+        yield of(words, level=level)
+        form = f"{words} algebraic".strip()
+        soft = {"sharpness": (SOFTEST, SHARPEST)}
+        yield of(form, ranges=soft, level=level, sharpness=3.0)
+
+
 class Saturation(Effect):
     """An odd, soft limit behind the hysteresis or of the field, of any sharpness."""
 
@@ -59,14 +80,8 @@ class Saturation(Effect):
             yield from self._at(simulation, simulation.hysteresis, "field")
 
     def around(self, passed: Passed) -> Iterator[Law]:
-        """Offer it behind the host, by each law, met hard and hardly."""
-        for share in (1.1, 2.0):
-            level = share * passed.shown
-            yield self.curve("behind", level=level)
-            soft = {"sharpness": (SOFTEST, SHARPEST)}
-            yield self.curve(
-                "behind", "algebraic", ranges=soft, level=level, sharpness=3.0
-            )
+        """Offer it behind the host, by each law."""
+        yield from soft_limits(self, passed)
 
     def _at(
         self, simulation: Simulation, place: int, of: str = ""

@@ -10,6 +10,7 @@ import numpy as np
 from hystbench.blocks.calibration_error import CalibrationError as Sensor
 from hystbench.gap.effects.effect import Declined, Effect
 from hystbench.gap.effects.law import Law, Passed
+from hystbench.gap.effects.material import soft_limits
 from hystbench.gap.effects.places import places_in_sensor
 from hystbench.gap.effects.variant import EVERY, Beside, SomeSamples, Values, Variant
 from hystbench.gap.records.nuisance import periods_of_input, shows_a_path
@@ -70,12 +71,16 @@ UNSIGNED = "unsigned-sensor"
 
 
 class SensorNonlinearity(Effect):
-    """A square and a cube behind the last block, or a sensor that shows no sign."""
+    """A square and a cube behind the last block, or a sensor that shows no sign.
+
+    Behind what has effects inside it may also near a limit. A material that saturates
+    there looks the same, so that the two cannot be told apart.
+    """
 
     name = "sensor-nonlinearity"
     shows = "amplitude"
     place = "sensor"
-    laws = (UNSIGNED,)
+    laws = (UNSIGNED, "saturation")
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the square, the cube and both, before the sensor's lag as well.
@@ -108,10 +113,12 @@ class SensorNonlinearity(Effect):
             )
 
     def around(self, passed: Passed) -> Iterator[Law]:
-        """Offer it behind the host with both terms, the cube of either sign."""
+        """Offer it behind the host: both terms, and soft limits."""
         for sign in (1.0, -1.0):
             quadratic, cubic = 0.03 / passed.shown, sign * 0.03 / passed.shown**2
             yield self.curve("behind", "both", quadratic=quadratic, cubic=cubic)
+        if passed.both_ways:  # the limit is as far on both sides
+            yield from soft_limits(self, passed, "soft")
 
 
 BELOW = 0.05

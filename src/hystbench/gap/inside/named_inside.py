@@ -35,6 +35,7 @@ from hystbench.gap.inside.host_places import host_places
 from hystbench.gap.inside.insert_law import Times, laws_for
 from hystbench.gap.inside.lags_of_base import LAGS, with_lags_of_base
 from hystbench.gap.inside.one_coordinate import Host, Kind
+from hystbench.gap.inside.other_names import with_other_names
 from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.inside.try_hosts import (
     HostTrial,
@@ -130,6 +131,7 @@ def named_inside(
     host, found, best, alone = tried.host, tried.found, tried.best, tried.host.alone
     found = with_others_as_late(best, found, offer, score)
     best = chosen(found, score.floor, share)
+    found = with_other_names(best, found, offer)
     words = host.words
     if identified and not LAGS.isdisjoint(best.effects):
         found = with_lags_of_base(best, found, score)
