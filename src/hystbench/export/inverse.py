@@ -160,9 +160,10 @@ def _undone(step: Simulated, ends: Ends) -> Iterator[Making]:
             undone.left, f"is left: what follows the reference is {late} late"
         )
     elif isinstance(step, SlewLimit):
-        slow = f"is left: it holds nothing back up to {step.rate:.6g} a second"
+        slow = f"is left: it does nothing up to {step.rate:.6g} a second"
         if step.time_constant_s:
-            slow += f", and lags by {step.time_constant_s:.6g} s"
+            late = f"{step.time_constant_s:.6g} s or more late"
+            slow = f"is left: what follows the reference is {late}"
         yield partial(undone.left, slow)
     elif isinstance(step, Drift | MainsPickup):
         yield partial(undone.left, "is left, as its start in time is not known")

@@ -90,9 +90,9 @@ frequent as one chooses to make them.
 UNNAMED_SHARE = 0.01
 """Largest share of the gap's power that may stay unexplained: a tenth of the rms.
 
-A user may set it. An effect that takes less does not matter, and the search ends where
-no more is left. 20 dB below is what is commonly neglected; how much matters is the
-user's to say.
+A user may set it, for the verdict. For the search it is at most this: an effect that
+takes less does not matter, and the search ends where no more is left. 20 dB below is
+what is commonly neglected; how much matters is the user's to say.
 """
 AS_GOOD = UNNAMED_SHARE
 """Two models that differ by no more than this are equally good.

@@ -9,12 +9,15 @@ import pytest
 from hystbench.gap import search as search_module
 from hystbench.gap.bases.linear import IdentifiedModel
 from hystbench.gap.bases.load import load_base
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.law import Passed
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added
 from hystbench.gap.inside import combine_forces
 from hystbench.gap.inside.choose import as_rounds, chosen
 from hystbench.gap.inside.named_inside import Inside
 from hystbench.gap.naming.add_effects import Named, add_effects
+from hystbench.gap.progress import silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.free_mass import windows
 from hystbench.model import Model
@@ -305,3 +308,27 @@ def test_what_drives_a_free_mass_may_be_bent(linear, monkeypatch):
     assert ("asymmetry" in seen) == linear
     assert "dead-zone" in seen
     assert "sensor-nonlinearity" not in seen
+
+
+def test_nothing_is_put_into_a_model_that_runs_away():
+    """It tells no sizes that a law could start from."""
+    away = Fitted(SimpleNamespace(added=(), freedom=0.0), np.inf)
+
+    def offer(before):
+        raise AssertionError("asked what may be put in")
+
+    assert combine_forces._one_more([away], offer, None, 1, 0.0, silent) == []
+
+
+def test_of_two_names_for_a_curve_behind_a_mass_the_sensor_is_tried():
+    passed = Passed(1.0, 3.0, 0.01, 0.0)
+    laws = {
+        name: tuple(effects()[name].around(passed))
+        for name in ("drive-saturation", "saturation", "sensor-nonlinearity")
+    }
+    assert {law.form for law in laws["saturation"]} == {"", "algebraic"}
+    kept = combine_forces.of_one_name(laws)
+    assert set(kept) == {"drive-saturation", "sensor-nonlinearity"}
+    assert kept["drive-saturation"] == laws["drive-saturation"]
+    alone = {"saturation": laws["saturation"]}
+    assert combine_forces.of_one_name(alone) == alone

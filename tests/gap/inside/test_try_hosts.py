@@ -38,7 +38,6 @@ def trial():
         (-500.0, 0.005, True, False),  # it may stay unnamed
         (-500.0, 0.005, False, True),  # beside known numbers it may stand for others
         (LEAST + 50.0, 0.2, True, False),  # no further effect could gain enough
-        (float("inf"), 0.2, True, False),  # it diverges, and tells no sizes
     ],
 )
 def test_several_are_tried_where_they_could_matter(

@@ -89,7 +89,7 @@ HARD = 100.0
 
 
 class SlewLimit(Effect):
-    """A rate below the fastest of the records' inputs, or of a servo inside.
+    """A rate below the fastest of the records' inputs, hard or soft, or of a servo.
 
     Where the input steps within a sample interval and rests on both sides, the fastest
     is a third of that: a limit that makes three intervals of the step moves its middle
@@ -107,7 +107,8 @@ class SlewLimit(Effect):
         They are close together at both ends: just below the fastest rate the effect
         sets in, and far below it the output grows with the limit. A refit may go down
         to the rate at which the input's range takes a whole record: the fastest of a
-        record of steps says little about the drive.
+        record of steps says little about the drive. The soft limit is of an amplifier
+        that lags below it as well, by up to a twentieth of the longest record.
         """
         share = expit(np.linspace(logit(0.02), logit(0.98), 16))
         for place in places_in_drive(simulation):
@@ -121,7 +122,11 @@ class SlewLimit(Effect):
                 limits={"rate": (slowest, float(rates[-1]))},
             )
             # An amplifier lags below its limit as well, and nears it smoothly.
-            lags = logarithmic(simulation.step, simulation.span / 100, 1.5)
+            # Of a lag of less than a sample, or as long as a record, nothing is seen.
+            longest = simulation.span / 20
+            if longest <= simulation.step:
+                continue
+            lags = logarithmic(simulation.step, longest, 1.5)
             yield self.inserted(
                 simulation,
                 place,

@@ -198,10 +198,6 @@ def best_of_each(found: Sequence[Fitted]) -> list[Fitted]:
 
 
 def may_gain(item: Fitted, score: Score) -> bool:
-    """Tell whether a further force could gain what it has to pay.
-
-    Of a model that diverges nothing can be told.
-    """
+    """Tell whether a further force could gain what it has to pay."""
     pays = FURTHER if item.effects else PAYS
-    left = item.score - score.least(item.state.freedom)
-    return np.isfinite(left) and left > pays
+    return item.score - score.least(item.state.freedom) > pays

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Changed, Law
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import (
@@ -20,6 +21,7 @@ from hystbench.gap.inside.average_force import evened
 from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.choose import best_of_each, least, may_gain, with_a_way
 from hystbench.gap.inside.insert_law import (
+    Laws,
     Offer,
     of_stores,
     with_changed,
@@ -80,7 +82,6 @@ def together(
         The host alone first; of each set of effects the best laws.
     """
     every, alone, carried = list(found), found[0].score, list(found[1:])
-    gone_on: set[frozenset[str]] = set()
     for count, keep in ((2, PAIRS), (3, 1)):
         if (
             count > most
@@ -90,7 +91,6 @@ def together(
             break
         if not of_stores(found[0]):
             carried = [item for item in carried if item.score < alone]
-        gone_on |= {frozenset(item.effects) for item in carried}
         carried = _one_more(carried, offer, score, keep, alone, say)
         every += carried
     best = least(every)
@@ -98,7 +98,7 @@ def together(
         every += with_one_fewer(best, every, score)
         paying = best_that_pays(every)
         every += with_one_fewer(paying, every, score)
-        every += _with_another(paying, gone_on, offer, score, alone, say)
+        every += _with_another(paying, offer, score, alone, say)
     return with_a_way(best_of_each(every))
 
 
@@ -145,25 +145,15 @@ def with_one_fewer(best: Fitted, found: Sequence[Fitted], score: Score) -> list[
 
 
 def _with_another(
-    best: Fitted,
-    gone_on: Collection[frozenset[str]],
-    offer: Offer,
-    score: Score,
-    alone: float,
-    say: Say,
+    best: Fitted, offer: Offer, score: Score, alone: float, say: Say
 ) -> list[Fitted]:
     """Put another effect in the place of each of several.
 
-    One that came early may stand for another that is only seen beside the rest. Effects
-    that it was gone on from have met all others.
+    One that came early may stand for another that is only seen beside the rest.
     """
     if len(best.effects) < 2:
         return []
-    fewer = [
-        without_effect(best.state, k)
-        for k in range(len(best.effects))
-        if frozenset(x for j, x in enumerate(best.effects) if j != k) not in gone_on
-    ]
+    fewer = [without_effect(best.state, k) for k in range(len(best.effects))]
     carried = [fitted(state, score) for state in fewer]
     return _one_more(carried, offer, score, SINGLES, alone, say)
 
@@ -176,8 +166,15 @@ def _one_more(
     alone: float,
     say: Say,
 ) -> list[Fitted]:
-    """Put one more force into each hypothesis; give the best, the least score first."""
-    carried = [before for before in carried if may_gain(before, score)]
+    """Put one more force into each hypothesis; give the best, the least score first.
+
+    Nothing is put into one that diverges: it tells no sizes.
+    """
+    carried = [
+        before
+        for before in carried
+        if np.isfinite(before.score) and may_gain(before, score)
+    ]
     if not carried:
         return []
     stores = any(of_stores(item) for item in carried)
@@ -208,7 +205,7 @@ def _offered(
     before: Fitted, offer: Offer
 ) -> Iterator[tuple[Fitted, str, Sequence[Law | Changed]]]:
     """Give what may be put into a hypothesis, a force wherever the joint may be."""
-    for name, laws in offer(before).items():
+    for name, laws in of_one_name(offer(before)).items():
         yield before, name, laws
     for state in joints(before.state):
         at = replace(before, state=state)
@@ -216,6 +213,31 @@ def _offered(
             inside = [law for law in laws if getattr(law, "place", "") == "inside"]
             if inside:
                 yield at, name, inside
+
+
+def of_one_name(laws: Laws) -> Laws:
+    """Leave out curves behind the host that a sensor's effect offers as well.
+
+    Two names for one curve would take two places of the few that go on. Behind a mass
+    stands a sensor rather than a material. What was found gets its other names back
+    (:func:`~hystbench.gap.inside.other_names.with_other_names`).
+    """
+
+    def curve(law: Law | Changed) -> tuple[object, ...]:
+        if not isinstance(law, Law) or law.place != "behind":
+            return ()
+        return type(law.block), frozenset(law.free)
+
+    known = effects()
+    sensors = {name for name in laws if known[name].place == "sensor"}
+    read = {curve(law) for name in sensors for law in laws[name]} - {()}
+    kept = {
+        name: own
+        if name in sensors
+        else tuple(law for law in own if curve(law) not in read)
+        for name, own in laws.items()
+    }
+    return {name: own for name, own in kept.items() if own}
 
 
 def starts(

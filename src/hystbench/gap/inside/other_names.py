@@ -1,7 +1,7 @@
 """The same curve before or behind what has effects inside, under another name.
 
-A material that nears a limit and a sensor that does are one curve behind a mass. Which
-of the two names was fitted to the end is chance, so that both stand beside each other.
+A material that nears a limit and a sensor that does are one curve behind a mass. It is
+fitted by one of the two names, so that the other is put beside it.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ def with_other_names(
     list of Fitted
         Of each set of effects the best.
     """
-    every, state = list(found), best.state
+    every, state, offered = list(found), best.state, offer(found[0])
     for number, added in enumerate(state.added):
         if added.place == "inside" or len(added.blocks) != 1:
             continue
         (place,) = added.blocks
         free = {x.parameter for x in state.free if x.block == place}
-        for name, laws in offer(found[0]).items():
+        for name, laws in offered.items():
             forms = [
                 law.form
                 for law in laws

@@ -226,7 +226,8 @@ def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
         return ""
     told = " and ".join(f"{x['name']} {x['confidence']:.2f}" for x in effects)
     if max(missing) < MOST:
-        return f"no name is likelier right than wrong: {told}"
+        of_base = "" if len(missing) == len(sure) else "but for the base's own shape "
+        return f"{of_base}no name is likelier right than wrong: {told}"
     least = effects[int(np.argmin(sure))]["name"]
     return f"the names stand together, and {least} is next to excluded: {told}"
 

@@ -140,8 +140,8 @@ def _with(state: ModelState, score: Score, name: str) -> ModelState:
 
 def _added(state: ModelState, trial: Trial, score: Score) -> ModelState:
     """Add an effect as a trial found it, refitted where the block accepts that."""
-    hold_out_begun_like_fit = with_effect(state, trial.variant, trial.values)
+    as_tried = with_effect(state, trial.variant, trial.values)
     try:
         return added(state, trial, score)[0]
     except InputError:
-        return hold_out_begun_like_fit
+        return as_tried

@@ -72,8 +72,9 @@ def reconsidered(
         own = next((x for x in ranking if x.effect == item.effect and x.state), None)
         least = now if own is None else min(now, own.score)
         least = least if is_itself else np.inf  # anything but that
-        # Of what cannot be told apart the one of the fewest numbers stands.
-        fewer = best.state is not None and best.state.freedom < state.freedom
+        # A rival of fewer numbers need only score better.
+        numbers = min(x.freedom for x in (state, own and own.state) if x)
+        fewer = best.state is not None and best.state.freedom < numbers
         enough = least if fewer else least - SCALE
         if best.state and best.effect != item.effect and best.score < enough:
             held_back = gain_held_back(short, best.state, score)
