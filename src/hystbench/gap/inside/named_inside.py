@@ -16,7 +16,7 @@ from hystbench.blocks.attached import AttachedBlock
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.cross_validation import gain_held_back
-from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
+from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
 from hystbench.gap.fitting.score import Score
@@ -37,6 +37,7 @@ from hystbench.gap.inside.lags_of_base import LAGS, with_lags_of_base
 from hystbench.gap.inside.one_coordinate import Host, Kind
 from hystbench.gap.inside.other_names import with_other_names
 from hystbench.gap.inside.possible_hosts import hosts
+from hystbench.gap.inside.short_steps import in_short_steps
 from hystbench.gap.inside.try_hosts import (
     HostTrial,
     Tried,
@@ -48,7 +49,7 @@ from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.memory import may_have_hysteresis
-from hystbench.gap.thresholds import FURTHER, PARAMETER, PAYS
+from hystbench.gap.thresholds import FURTHER, PAYS
 from hystbench.model import Model
 from hystbench.quantities import Quantities, angle_in
 from hystbench.sentences import finely
@@ -207,21 +208,6 @@ def of_free_numbers(base: Model, alone: ModelState) -> Model:
     labels = [label for label, _ in model.labelled()]
     free = [f"{labels[item.block]}.{item.parameter}" for item in alone.free]
     return replace(model, free=tuple(dict.fromkeys(free)))
-
-
-def in_short_steps(state: ModelState, score: Score) -> ModelState:
-    """Fit the numbers of forces anew by short steps; long ones make up for themselves.
-
-    What the long steps miss is taken from where the numbers are, so twice is enough.
-    Numbers stay where they are if another place gains less than a number costs.
-    """
-    state = state.settled()
-    for _ in range(2):
-        again = fitted(state, score, QUICK).state.settled()
-        if score_of(again, score) > score_of(state, score) - PARAMETER:
-            break
-        state = again
-    return state
 
 
 def apart_inside(
