@@ -353,7 +353,7 @@ def test_gains_are_what_the_score_falls_by():
     state = state_of((hysteresis(),), measured(lagged(4e-3), NOISE))
     score = make_score(state, NOISE)
     now = score_of(state, score)
-    names = ("slew-limit", "input-delay", "asymmetry")
+    names = ("resonance", "input-delay", "asymmetry")
     ranking = rank(state, score, [effects()[x] for x in names])
     judged = [item for item in ranking if not item.declined]
     for item in judged:
