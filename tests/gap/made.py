@@ -116,6 +116,13 @@ def play(u, half_width):
     return out
 
 
+def shaken(random, t, low_hz, high_hz, lines=12):
+    """Sines of drawn frequencies and phases, which come up in a tenth of a second."""
+    drawn = (random.uniform(low_hz, high_hz, lines), random.uniform(0, 6, lines))
+    waves = (np.sin(2 * np.pi * f * t + p) for f, p in zip(*drawn, strict=True))
+    return sum(waves) * np.clip(t / 0.1, 0, 1)
+
+
 def bent_first(block, bend, sizes, width, noise, channels, dt=1e-3, count=1500):
     """Noise slowed by a window of some samples, bent and sent through a block."""
     random = np.random.default_rng(3)

@@ -8,6 +8,7 @@ from hystbench.blocks.stiffness import Stiffness
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
+from tests.gap.made import shaken
 from tests.gap.searched import among, search
 
 CHANNELS = Channel("force", "N"), Channel("way", "mm")
@@ -20,10 +21,7 @@ def test_a_sensor_and_a_material_that_near_a_limit_are_told_as_a_set():
     random, records = np.random.default_rng(1), []
     t = 1e-3 * np.arange(2500)
     for k in range(3):
-        lines = zip(random.uniform(0.5, 9, 12), random.uniform(0, 6, 12), strict=True)
-        u = sum(np.sin(2 * np.pi * f * t + p) for f, p in lines) * np.clip(
-            t / 0.1, 0, 1
-        )
+        u = shaken(random, t, 0.5, 9)
         x = PLANT.simulate(u, 1e-3)
         y = LIMIT * np.tanh(x / LIMIT)
         y = y + 0.003 * y.std() * random.standard_normal(len(y))

@@ -16,6 +16,7 @@ from hystbench.gap.fitting.state import Added
 from hystbench.gap.inside import combine_forces
 from hystbench.gap.inside.choose import as_rounds, chosen
 from hystbench.gap.inside.named_inside import Inside
+from hystbench.gap.inside.other_names import of_one_name
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.progress import silent
 from hystbench.gap.records.evidence import Evidence
@@ -327,8 +328,8 @@ def test_of_two_names_for_a_curve_behind_a_mass_the_sensor_is_tried():
         for name in ("drive-saturation", "saturation", "sensor-nonlinearity")
     }
     assert {law.form for law in laws["saturation"]} == {"", "algebraic"}
-    kept = combine_forces.of_one_name(laws)
+    kept = of_one_name(laws)
     assert set(kept) == {"drive-saturation", "sensor-nonlinearity"}
     assert kept["drive-saturation"] == laws["drive-saturation"]
     alone = {"saturation": laws["saturation"]}
-    assert combine_forces.of_one_name(alone) == alone
+    assert of_one_name(alone) == alone

@@ -18,6 +18,7 @@ from hystbench.gap.thresholds import CERTAIN
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
+from tests.gap.made import shaken
 from tests.gap.searched import among
 from tests.gap.searched import search as decided
 
@@ -81,10 +82,7 @@ def test_a_soft_limit_before_a_mass_is_the_drives():
     random, records = np.random.default_rng(1), []
     t = 1e-3 * np.arange(2500)
     for k in range(3):
-        lines = zip(random.uniform(1, 25, 12), random.uniform(0, 6, 12), strict=True)
-        u = sum(np.sin(2 * np.pi * f * t + p) for f, p in lines) * np.clip(
-            t / 0.1, 0, 1
-        )
+        u = shaken(random, t, 1, 25)
         limited = 4.0 * np.tanh(u / 4.0)
         y = mass.simulate(limited, limited, 1e-3)
         y = y + 0.01 * y.std() * random.standard_normal(len(y))

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Changed, Law
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import (
@@ -21,7 +20,6 @@ from hystbench.gap.inside.average_force import evened
 from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.choose import best_of_each, least, may_gain, with_a_way
 from hystbench.gap.inside.insert_law import (
-    Laws,
     Offer,
     of_stores,
     with_changed,
@@ -29,6 +27,7 @@ from hystbench.gap.inside.insert_law import (
 )
 from hystbench.gap.inside.joint import joints
 from hystbench.gap.inside.likeliest import fitted_each, fitted_likely, to_the_end
+from hystbench.gap.inside.other_names import of_one_name
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import FURTHER, PAYS
 from hystbench.record import FloatArray
@@ -213,31 +212,6 @@ def _offered(
             inside = [law for law in laws if getattr(law, "place", "") == "inside"]
             if inside:
                 yield at, name, inside
-
-
-def of_one_name(laws: Laws) -> Laws:
-    """Leave out curves behind the host that a sensor's effect offers as well.
-
-    Two names for one curve would take two places of the few that go on. Behind a mass
-    stands a sensor rather than a material. What was found gets its other names back
-    (:func:`~hystbench.gap.inside.other_names.with_other_names`).
-    """
-
-    def curve(law: Law | Changed) -> tuple[object, ...]:
-        if not isinstance(law, Law) or law.place != "behind":
-            return ()
-        return type(law.block), frozenset(law.free)
-
-    known = effects()
-    sensors = {name for name in laws if known[name].place == "sensor"}
-    read = {curve(law) for name in sensors for law in laws[name]} - {()}
-    kept = {
-        name: own
-        if name in sensors
-        else tuple(law for law in own if curve(law) not in read)
-        for name, own in laws.items()
-    }
-    return {name: own for name, own in kept.items() if own}
 
 
 def starts(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.optimize import minimize
 
 from hystbench.gap.fitting.least_squares import QUICK, fitted
 from hystbench.gap.fitting.model_score import score_of
@@ -11,7 +12,6 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.thresholds import PARAMETER, PAYS
 from hystbench.record import FloatArray
 
-ENDS = ("low", "high")
 MOVED = 1e-3
 """Share that each number is moved by at first: about what a fit leaves open."""
 MOST_TRIALS = 50
@@ -43,10 +43,8 @@ def of_the_same_motion(state: ModelState, score: Score) -> ModelState:
     hardly anything decides between them, and the length of the steps may. There are no
     slopes then: the search is Nelder and Mead's.
     """
-    from scipy.optimize import minimize  # late: scipy
-
     begun = np.array([state.value(free) for free in state.free])
-    low, high = (np.array([getattr(x, end) for x in state.free]) for end in ENDS)
+    low, high = np.array([(free.low, free.high) for free in state.free]).T
 
     def at(moved: FloatArray) -> ModelState:
         numbers = np.clip(begun * (1 + moved), low, high)
