@@ -21,11 +21,12 @@ def record(
     use="fit",
     period_samples=None,
     simulated=None,
+    **more,
 ):
     u = np.array(u, dtype=float)
     y = np.zeros_like(u) if y is None else np.array(y, dtype=float)
     about = CURRENT, DISPLACEMENT, "twin", use, period_samples, simulated
-    return Record(name, dt, u, y, *about)
+    return Record(name, dt, u, y, *about, **more)
 
 
 def evidence_of(name, records, hold, noise, takes, gives):

@@ -67,6 +67,25 @@ def test_blocks_are_whole_periods_where_there_are_as_many():
         assert np.flatnonzero(fold.validation[0])[0] % 100 == 0
 
 
+@pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parametrize("lead", [300, 500])
+def test_blocks_divide_what_is_scored(count, lead):
+    folds = make_folds([record(sine(3, count=1000), lead=lead)] * count)
+    assert len(folds) == 4
+    for fold in folds:
+        for train, validation in zip(fold.train, fold.validation, strict=True):
+            assert validation.sum() == (1000 - lead) / 4
+            assert train.any()
+
+
+def test_a_block_in_which_nothing_was_measured_is_no_fold():
+    interpolated = np.zeros(1000, dtype=bool)
+    interpolated[240:510] = True
+    folds = make_folds([record(sine(3, count=1000), interpolated=interpolated)])
+    assert len(folds) == 3
+    assert all(fold.validation[0].any() for fold in folds)
+
+
 def test_blocks_may_be_asked_for_however_many_records():
     records = [record(sine(1 + place)) for place in range(6)]
     assert all(

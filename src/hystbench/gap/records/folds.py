@@ -47,7 +47,8 @@ def make_folds(
     has as many, and a fold holds back one block of each record. A guard gap of a tenth
     of a block keeps what a block remembers of its neighbours out of the fit.
 
-    Every measured sample judges in exactly one fold.
+    Every measured sample behind a lead judges in exactly one fold. A block in which
+    nothing was measured is no fold.
 
     Parameters
     ----------
@@ -65,9 +66,12 @@ def make_folds(
     if whole is None:
         whole = len(records) >= WHOLE_RECORDS
     folds = _by_record(records) if whole else _by_block(records)
-    return tuple(
+    counted = (
         Fold(_measured(fold.train, records), _measured(fold.validation, records))
         for fold in folds
+    )
+    return tuple(
+        fold for fold in counted if any(mask.any() for mask in fold.validation)
     )
 
 
@@ -109,9 +113,9 @@ def _by_block(records: Sequence[Record]) -> tuple[Fold, ...]:
 
 
 def _edges(record: Record) -> list[int]:
-    """Where blocks begin, behind the past of a record, and the end."""
-    unit, count = record.period_samples or 1, len(record) - record.past
+    """Where blocks begin, behind the lead of a record, and the end."""
+    unit, count = record.period_samples or 1, len(record) - record.lead
     if count // unit < BLOCKS:
         unit = 1
     starts = [unit * (count // unit * block // BLOCKS) for block in range(BLOCKS)]
-    return [record.past + start for start in (*starts, count)]
+    return [record.lead + start for start in (*starts, count)]
