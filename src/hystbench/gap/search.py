@@ -37,7 +37,11 @@ from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.naming.begun_otherwise import begun_as_named
 from hystbench.gap.naming.beside_forces import beside_forces
 from hystbench.gap.naming.poles_of_base import named_beside_them, with_poles_named
-from hystbench.gap.naming.with_own_values import named_apart
+from hystbench.gap.naming.with_own_values import (
+    named_apart,
+    offsets_for_paths,
+    on_records,
+)
 from hystbench.gap.records.evidence import Evidence, own_offsets
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import LOOSE
@@ -231,6 +235,10 @@ def _beside(
     if inside is not None:
         beside = beside_forces(inside.named, inside.start, floor.rms, share, say)
         inside = replace(inside, named=beside)
+        if beside.state.paths and own_offsets(start.records, evidence.quantities):
+            start, named, own = offsets_for_paths(start, beside, floor.rms, say)
+            alone = on_records(inside.start, start.records)
+            inside = replace(inside, start=alone, named=named)
     # A base that was given is re-tuned where it is a host: that may stand for a chain.
     # So may a free form beside forces.
     if inside is not None and identified and not has_free_form(inside.named.state):

@@ -575,10 +575,16 @@ def test_friction_that_gives_way_along_a_curve_is_no_hysteretic_force():
     host, score = hosted(records, 1e-5)
     offered = ["friction", "hysteretic-force"]
     best = chosen(search(host, score, offered), score.floor)
-    assert (best.effects, best.forms) == (("friction",), ("Dahl",))
+    assert best.effects == ("friction",)
     law = best.state.chain[1]
-    assert law.largest == pytest.approx(0.8, rel=0.05)
-    assert law.yield_distance == pytest.approx(4e-4, rel=0.25)
+    if best.forms == ("LuGre",):  # without an excess at rest it is Dahl's
+        assert law.static_excess < 0.01 * law.coulomb
+        level, way = law.coulomb, law.presliding_distance
+    else:
+        assert best.forms == ("Dahl",)
+        level, way = law.largest, law.yield_distance
+    assert level == pytest.approx(0.8, rel=0.05)
+    assert way == pytest.approx(4e-4, rel=0.25)
 
 
 @pytest.mark.parametrize(
@@ -685,10 +691,9 @@ def test_a_free_mass_of_which_the_speed_is_seen_may_have_moved_before():
     y = truth.simulate(before, before, 0.01)[len(u) :]
     channels = Channel("voltage", "V"), Channel("speed", "rad/s")
     record = Record("run", 0.01, u, y, *channels, "measured", period_samples=400)
-    (state,) = free_masses((record,), "velocity", "zero-order")
-    assert state.chain[0].start == "repeating"
-    (state,) = free_masses((record,), "position", "zero-order")
-    assert state.chain[0].start == "rest"
+    for output, start in (("velocity", "repeating"), ("position", "rest")):
+        for state in free_masses((record,), output, "zero-order"):
+            assert state.chain[0].start == start
 
 
 @pytest.mark.parametrize(

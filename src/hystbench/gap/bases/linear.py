@@ -162,8 +162,9 @@ def linear_of(evidence: Evidence) -> Linear:
     record where its zero is not physical. Where order 5 or more is needed, modes are
     added one by one, up to order 12. The order is the lowest of which no other one
     lowers both errors by more than 2 %, that on folds of the fit records and that on
-    all of them; then the numerator is shortened by the same rule, and the input may
-    come up to a sample early or late. Where a motion makes a force, the impedance of a
+    all of them, of those that do better on folds than a constant. Then the numerator is
+    shortened by the same rule, and the input may come up to a sample early or late.
+    Where a motion makes a force, the impedance of a
     mass on a spring is tried as well. Deterministic.
 
     Parameters
@@ -200,8 +201,6 @@ def linear_of(evidence: Evidence) -> Linear:
         what += f", start: {ratio.start}"
     fit, fold = best.fit, best.folds
     unit = evidence.output.unit
-    ones = [np.ones((len(item), 1)) for item in orders.evidence.fit]
-    _, still, _ = summed(ones, orders)
     note = (
         f"linear base: {what}; rms error {fit:.4g} {unit} on the fit records, "
         f"{fold:.4g} {unit} on folds of them"
@@ -222,7 +221,7 @@ def linear_of(evidence: Evidence) -> Linear:
         delay = InputDelay.by(orders.late * evidence.fit[0].dt, evidence.input_hold)
         chain = (delay, *chain)
     model = IdentifiedModel(LINEAR, evidence.input, evidence.output, chain)
-    return Linear(model, note, fit, fold, still)
+    return Linear(model, note, fit, fold, best.constant)
 
 
 def _coarse(evidence: Evidence) -> Evidence:
@@ -302,7 +301,7 @@ def static(orders: Orders) -> Sum:
     signals = [np.column_stack([x.u, np.ones(len(x))]) for x in orders.evidence.fit]
     fit, folds, (value, offset) = summed(signals, orders)
     chain = (Gain(value=value, offset=offset),)
-    return Sum(fit, folds, chain, "order 0 (a gain and an offset)")
+    return Sum(fit, folds, orders.constant, chain, "order 0 (a gain and an offset)")
 
 
 def summed(
@@ -362,4 +361,6 @@ def impedance(orders: Orders) -> Sum | None:
     fit, folds, found = summed(signals, orders)
     numbers: dict[str, Any] = dict(zip(NUMBERS, found, strict=True))
     block = Impedance(**numbers, input=about.input, hold=evidence.input_hold)
-    return Sum(fit, folds, (block,), "the impedance of a mass on a spring")
+    return Sum(
+        fit, folds, orders.constant, (block,), "the impedance of a mass on a spring"
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -21,7 +21,7 @@ from hystbench.gap.bases.spectral import (
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.folds import Fold, make_folds
 from hystbench.gap.thresholds import ANOTHER_MODE, NUMBER_PAYS, TIMING_PAYS
-from hystbench.record import Mask
+from hystbench.record import FloatArray, Mask
 
 #: Highest order that is tried, of all poles at once, and with modes added one by one.
 HIGHEST = 6
@@ -48,6 +48,13 @@ class Judged:
     """Error on all records."""
     folds: float
     """Error on folds that did not fit it."""
+    constant: float
+    """Error of a constant on these folds."""
+
+    @property
+    def holds(self) -> bool:
+        """Whether it does better than a constant on folds that did not fit it."""
+        return self.folds < (1 - NUMBER_PAYS) * self.constant
 
 
 def lowers(better: Judged, item: Judged, share: float = NUMBER_PAYS) -> bool:
@@ -59,8 +66,13 @@ def lowers(better: Judged, item: Judged, share: float = NUMBER_PAYS) -> bool:
     return better.fit < most * item.fit and better.folds < most * item.folds
 
 
-def none_lowers_both(item: Judged, others: Iterable[Judged]) -> bool:
-    """Tell whether no other model lowers both errors of one by what a number pays."""
+def none_lowers_both(item: Judged, others: Sequence[Judged]) -> bool:
+    """Tell whether no other model lowers both errors of one by what a number pays.
+
+    One that does worse on folds than a constant has no place beside one that does not.
+    """
+    if not item.holds and any(other.holds for other in others):
+        return False
     return not any(lowers(other, item) for other in others)
 
 
@@ -95,6 +107,21 @@ class Orders:
             Fold(_both(fold.train, self.whole), _both(fold.validation, self.whole))
             for fold in make_folds(self.evidence.fit)
         )
+
+    @cached_property
+    def constant(self) -> float:
+        """Error of a constant on the folds, of each record's own where it has one."""
+        ys = [record.y for record in self.evidence.fit]
+        squares, count = 0.0, 0
+        for fold in self.folds:
+            fitted_to = _taken(ys, fold.train)
+            for judged in _taken(ys, fold.validation):
+                own = judged if self.evidence.own_offsets else np.concatenate(fitted_to)
+                squares += (
+                    float(np.sum((judged - np.mean(own)) ** 2)) if len(own) else 0.0
+                )
+                count += len(judged)
+        return float(np.sqrt(squares / count))
 
     @cached_property
     def spectra(self) -> Spectra:
@@ -138,7 +165,7 @@ class Orders:
             for fold in self.folds
         )
         fit, folds = (float(np.sqrt(x / count)) for x in (ratio.cost, judged))
-        return Found(fit, folds, self, task, ratio)
+        return Found(fit, folds, self.constant, self, task, ratio)
 
     def searched(self, without: Judged) -> list[Found]:
         """Fit orders from one on, while they matter beside a model without any pole.
@@ -287,6 +314,12 @@ def with_plainest_start(task: OutputError, ratio: Ratio) -> OutputError:
     tasks = [replace(task, start=start) for start in possible_starts(task.records)]
     costs = [task.squares(ratio, everything) for task in tasks]
     return tasks[plainest_start(costs)]
+
+
+def _taken(signals: Sequence[FloatArray], masks: Sequence[Mask]) -> list[FloatArray]:
+    """Give the masked samples of each signal that has any."""
+    every = (x[mask] for x, mask in zip(signals, masks, strict=True))
+    return [x for x in every if len(x)]
 
 
 def _both(masks: tuple[Mask, ...], others: tuple[Mask, ...]) -> tuple[Mask, ...]:

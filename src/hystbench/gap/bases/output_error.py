@@ -114,14 +114,16 @@ class OutputError:
         """Sum of squares of the error over the masked samples.
 
         With offsets of their own, those that fit the masked samples best. Infinite for
-        a ratio that no block takes, as where rounding makes slow poles unstable.
+        a ratio that runs away, and for one that no block takes, as where rounding makes
+        slow poles unstable.
         """
         with np.errstate(over="ignore", invalid="ignore"):  # of one that runs away
             try:
                 left = self.left(ratio)
             except InputError:
                 return np.inf
-            return float(sum(np.sum(part**2) for part in self._masked(left, masks)))
+            squares = float(sum(np.sum(part**2) for part in self._masked(left, masks)))
+            return squares if np.isfinite(squares) else np.inf
 
     def _masked(
         self, columns: Sequence[FloatArray], masks: Sequence[Mask]

@@ -207,12 +207,23 @@ class Effect(ABC):
         """
         yield from ()
 
-    def vanishing(self, form: str) -> Mapping[str, float]:
-        """Give the numbers, and their values, at which a law is another effect."""
-        return {}
+    def vanishing(self, form: str, block: Any) -> Iterator[tuple[Block, str]]:
+        """Give blocks of a law that are another effect, each without one number.
 
-    def without_itself(self, block: Block) -> Block | None:
-        """Give a block of the effect without what makes it one; none where all does."""
+        Parameters
+        ----------
+        form : str
+            The law.
+        block : Block
+            As it was fitted. One that has not the number is of another law.
+        """
+        yield from ()
+
+    def without_itself(self, blocks: Sequence[Block]) -> tuple[Block, ...] | None:
+        """Give blocks of the effect without what makes it one; none where all does.
+
+        Numbers that are zero there are no longer free.
+        """
         return None
 
     def stored(self, filled: Filled) -> Iterator[Changed]:

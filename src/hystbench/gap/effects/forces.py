@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from hystbench.blocks.base import Block
 from hystbench.blocks.bouc_wen_force import BoucWenForce
 from hystbench.blocks.drag import Drag as DragBlock
 from hystbench.blocks.friction_force import FrictionForce
@@ -34,6 +36,8 @@ SOON = 1e-3
 BENDS = 0.1
 """The same, at most, where it falls with the velocity, as no hysteretic force does:
 there is friction that slides on most of its way."""
+ENDLESS = 1e4
+"""Times its scale of velocity at which a tangent is a straight line."""
 VISCOUS = 1.0
 """Largest scale of velocity, as a share of the fastest velocity: there the tangent is a
 quarter below a straight line. What bends less is as much as viscous."""
@@ -105,6 +109,16 @@ class Friction(Effect):
                 "stribeck_velocity": fades * moved.speed,
             }
             yield Law("smooth Stribeck", SmoothFriction(**own), tuple(own))
+
+    def vanishing(self, form: str, block: Any) -> Iterator[tuple[Block, str]]:
+        """One that grows with the velocity without an end is a linear damper."""
+        if isinstance(block, SmoothFriction) and block.stribeck_velocity == 0.0:
+            line = replace(
+                block,
+                coulomb=ENDLESS * block.coulomb,
+                velocity_scale=ENDLESS * block.velocity_scale,
+            )
+            yield line, "velocity_scale"
 
 
 class Backlash(Effect):
@@ -258,9 +272,11 @@ class HystereticForce(InsideEffect):
             },
         )
 
-    def vanishing(self, form: str) -> Mapping[str, float]:
+    def vanishing(self, form: str, block: Any) -> Iterator[tuple[Block, str]]:
         """Without a loop it is a spring."""
-        return {"beta": 0.0, "sharing": 1.0}
+        for name, value in (("beta", 0.0), ("sharing", 1.0)):
+            if name in block.parameters():
+                yield replace(block, **{name: value}), name
 
 
 class SliderWithGap(InsideEffect):
@@ -280,9 +296,9 @@ class SliderWithGap(InsideEffect):
             )
             yield Law("", block, names)
 
-    def vanishing(self, form: str) -> Mapping[str, float]:
+    def vanishing(self, form: str, block: Any) -> Iterator[tuple[Block, str]]:
         """Without its clearance it is dry friction."""
-        return {"gap": 0.0}
+        yield replace(block, gap=0.0), "gap"
 
 
 SLACK = 0.9
@@ -332,9 +348,10 @@ class Stop(InsideEffect):
             form = UNEVEN if apart else _form(sides)
             yield Law(f"{form}, lossy", lossy, (*numbers, *apart, "loss"))
 
-    def vanishing(self, form: str) -> Mapping[str, float]:
+    def vanishing(self, form: str, block: Any) -> Iterator[tuple[Block, str]]:
         """Without its clearance a stop on both sides is a linear spring."""
-        return {"gap": 0.0} if form in (_form("both"), UNEVEN) else {}
+        if form in (_form("both"), UNEVEN):
+            yield replace(block, gap=0.0), "gap"
 
 
 def _form(sides: str) -> str:

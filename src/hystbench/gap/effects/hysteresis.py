@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields, replace
 from functools import partial
-from typing import Any, ClassVar, NamedTuple, cast
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -65,13 +65,15 @@ class Hysteresis(Effect):
             yield self._plays(simulation, place)
             yield self._bouc_wen(simulation, place)
 
-    def without_itself(self, block: Block) -> Block | None:
+    def without_itself(self, blocks: Sequence[Block]) -> tuple[Block, ...] | None:
         """Let all plays be that of the least threshold: a curve, without a loop."""
-        if not isinstance(block, PlayBlock):
+        if not all(isinstance(block, PlayBlock) for block in blocks):
             return None
-        plays: Any = block
-        together = (sum(plays.weights), *(0.0 for _ in plays.weights[1:]))
-        return cast(Block, replace(plays, weights=together))
+        every: Sequence[Any] = blocks
+        return tuple(
+            replace(x, weights=(sum(x.weights), *(0.0 for _ in x.weights[1:])))
+            for x in every
+        )
 
     def _plays(self, simulation: Simulation, place: int) -> Variant:
         """Plays beside a linear path.

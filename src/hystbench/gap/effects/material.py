@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -197,6 +198,14 @@ class Asymmetry(Effect):
             )
         for size in (0.1, -0.1) if passed.both_ways else ():
             yield self.curve("before", "two slopes", law=SLOPES, difference=size)
+
+    def without_itself(self, blocks: Sequence[Block]) -> tuple[Block, ...] | None:
+        """Leave a sensor's zero alone, without a bias of the field."""
+        if len(blocks) != len(self.offsets["bias"]):
+            return None
+        bias, zero = blocks
+        nothing: dict[str, Any] = {"offset": 0.0}
+        return replace(bias, **nothing), zero
 
     def _slopes(self, simulation: Simulation) -> Variant:
         """Offer two slopes, which are a gain where the input goes one way alone."""

@@ -36,7 +36,9 @@ class _Fold(NamedTuple):
     """Terms of the score there of the model without the effect, by record."""
 
 
-def gain_held_back(before: ModelState, after: ModelState, score: Score) -> float:
+def gain_held_back(
+    before: ModelState, after: ModelState, score: Score, in_blocks: bool | None = None
+) -> float:
     """Tell by how much an effect lowers the score of records that did not fit it.
 
     The fit records are dealt out in folds; where there are fewer than three, blocks of
@@ -53,6 +55,9 @@ def gain_held_back(before: ModelState, after: ModelState, score: Score) -> float
     before, after : ModelState
         Models without and with the effect, on the same records.
     score : Score
+    in_blocks : bool, optional
+        Whether folds are blocks, where that was found out: so that two models that are
+        compared are judged on the same folds.
 
     Returns
     -------
@@ -61,14 +66,17 @@ def gain_held_back(before: ModelState, after: ModelState, score: Score) -> float
     """
     return remembered_of(
         after,
-        lambda: ["held back", *state_key(before), score.digest],
-        lambda: _gain(before, after, score),
+        lambda: ["held back", *state_key(before), score.digest, in_blocks],
+        lambda: _gain(before, after, score, in_blocks),
     )
 
 
-def _gain(before: ModelState, after: ModelState, score: Score) -> float:
-    whole = False if _shows_in_one_record(before, after, score) else None
-    folds, inside = _folds(before, score, whole)
+def _gain(
+    before: ModelState, after: ModelState, score: Score, in_blocks: bool | None
+) -> float:
+    if in_blocks is None:
+        in_blocks = shows_in_one_record(before, after, score)
+    folds, inside = _folds(before, score, False if in_blocks else None)
     gain = 0.0
     for fold in folds:
         fitted, _ = refit(after, fold.train, ROUNDS)
@@ -79,7 +87,7 @@ def _gain(before: ModelState, after: ModelState, score: Score) -> float:
     return max(RUNS_AWAY, gain)
 
 
-def _shows_in_one_record(before: ModelState, after: ModelState, score: Score) -> bool:
+def shows_in_one_record(before: ModelState, after: ModelState, score: Score) -> bool:
     """Tell whether an effect gains in one record and changes no other."""
     was, now = (_terms_of_all(model, score) for model in (before, after))
     (shows,) = np.nonzero(np.abs(was - now) > SCALE)

@@ -19,6 +19,7 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.average_force import evened
 from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.choose import best_of_each, least, may_gain, with_a_way
+from hystbench.gap.inside.in_stages import gentlest
 from hystbench.gap.inside.insert_law import (
     Offer,
     of_stores,
@@ -194,7 +195,8 @@ def _one_more(
         best_first += fitted_likely(around, beginnings, score, 1)
         best_first.sort(key=lambda item: item.score)
     else:
-        best_first = fitted_likely(begun, beginnings, score, keep)
+        gentle = gentlest(first)
+        best_first = fitted_likely(begun, beginnings, score, keep, gentle)
     for item in best_first[:3]:
         say(f"inside: {' + '.join(item.effects)}: gain {alone - item.score:.1f}")
     return best_first

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 
@@ -19,12 +18,17 @@ from hystbench.gap.fitting.least_squares import (
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.choose import best_of_each, may_gain
+from hystbench.gap.inside.in_stages import in_stages
 from hystbench.gap.inside.race import FEW, a_little, further, raced
 from hystbench.gap.thresholds import CERTAIN, SCALE
 
 
 def fitted_likely(
-    begun: Iterable[Fitted], beginnings: Beginnings, score: Score, count: int
+    begun: Iterable[Fitted],
+    beginnings: Beginnings,
+    score: Score,
+    count: int,
+    gentle: Sequence[int] = (),
 ) -> list[Fitted]:
     """Fit the hypotheses that promise most: roughly first, the best of them to the end.
 
@@ -41,6 +45,8 @@ def fitted_likely(
         fitted roughly, and four times as many a little, each from twice as many starts
         and by all its laws: what a law promises where it starts says little of where it
         comes to.
+    gentle : sequence of int
+        Records that a fit which leaves much is begun with again: :func:`in_stages`.
 
     Returns
     -------
@@ -68,13 +74,13 @@ def fitted_likely(
     for item, own in rough[:count]:
         numbers = {k: own.state.value(free) for k, free in enumerate(item.state.free)}
         begun_well.append(replace(own, state=item.state.at(numbers)))
-    done = _as_far_as_they_matter(begun_well, score)
+    done = _as_far_as_they_matter(begun_well, score, gentle)
     if done and beginnings.cut_short and may_gain(done[0], score):
         of_best, *others = (some[frozenset(item.effects)] for item in done)
         rest = [one for own in others for one in _of_each_law(own, 0)]
         nearest = [_on_the_whole(of_best, score, QUICK)]
         nearest += [_on_the_whole(rest, score, FEW)] if rest else []
-        done += to_the_end(nearest, score)
+        done += to_the_end(nearest, score, gentle)
         done = sorted(best_of_each(done), key=lambda item: item.score)
     return done
 
@@ -86,19 +92,22 @@ def _on_the_whole(starts: Sequence[Fitted], score: Score, evaluations: int) -> F
     return nearest
 
 
-def _as_far_as_they_matter(begun: Sequence[Fitted], score: Score) -> list[Fitted]:
+def _as_far_as_they_matter(
+    begun: Sequence[Fitted], score: Score, gentle: Sequence[int]
+) -> list[Fitted]:
     """Fit hypotheses to the end, or till it is beyond doubt that they are worse.
 
     That is so where the first leaves nothing that another effect could gain.
     """
-    done = to_the_end(begun[:1], score)
+    done = to_the_end(begun[:1], score, gentle)
     others = list(begun[1:])
     if done and not may_gain(done[0], score):
         most = done[0].score + CERTAIN
         nearer = [fitted(item.state, score, QUICK) for item in others]
         others = [item for item in nearer if item.score < most]
         done += [item for item in nearer if most <= item.score < np.inf]
-    return sorted([*done, *to_the_end(others, score)], key=lambda item: item.score)
+    done += to_the_end(others, score, gentle)
+    return sorted(done, key=lambda item: item.score)
 
 
 def _of_each_law(starts: Sequence[Fitted], count: int) -> list[Fitted]:
@@ -117,9 +126,21 @@ def fitted_each(begun: Iterable[Fitted], score: Score) -> list[Fitted]:
     return to_the_end(likely.values(), score)
 
 
-def to_the_end(begun: Iterable[Fitted], score: Score) -> list[Fitted]:
-    """Fit hypotheses to the end; the least score first, none that runs away."""
-    done = [fitted_to_the_end(item.state, score) for item in begun]
+def to_the_end(
+    begun: Iterable[Fitted], score: Score, gentle: Sequence[int] = ()
+) -> list[Fitted]:
+    """Fit hypotheses to the end; the least score first, none that runs away.
+
+    One that leaves what another effect could gain is fitted in stages as well, to the
+    gentle records first.
+    """
+    done = []
+    for item in begun:
+        best = fitted_to_the_end(item.state, score)
+        if gentle and may_gain(best, score):
+            again = in_stages(item.state, gentle, score)
+            best = min(best, again, key=lambda item: item.score)
+        done.append(best)
     kept = (
         item for item in done if np.isfinite(item.score) and not _vanishes(item, score)
     )
@@ -134,14 +155,14 @@ def _vanishes(item: Fitted, score: Score) -> bool:
     """
     state = item.state
     for added in state.added:
-        without = effects()[added.effect].vanishing(added.form).items()
-        for place, (name, value) in product(added.blocks, without):
-            if name not in state.chain[place].parameters():
-                continue  # another law of the effect
-            chain = list(state.chain)
-            chain[place] = replace(chain[place], **{name: value})
-            others = (x for x in state.free if (x.block, x.parameter) != (place, name))
-            bare = replace(state.with_chain(tuple(chain)), free=tuple(others))
-            if fitted(bare, score, FEW).score < item.score + SCALE:
-                return True
+        effect = effects()[added.effect]
+        for place in added.blocks:
+            for block, name in effect.vanishing(added.form, state.chain[place]):
+                chain = (*state.chain[:place], block, *state.chain[place + 1 :])
+                free = (
+                    x for x in state.free if (x.block, x.parameter) != (place, name)
+                )
+                bare = replace(state.with_chain(chain), free=tuple(free))
+                if fitted(bare, score, FEW).score < item.score + SCALE:
+                    return True
     return False

@@ -15,7 +15,10 @@ import numpy as np
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.fitting.augmented_model import augmented
-from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.cross_validation import (
+    gain_held_back,
+    shows_in_one_record,
+)
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
@@ -284,7 +287,9 @@ def beats_chain(
     """
     state, chain = inside.named.state, named.state
     score = Score.plain(state.sample, floor_rms**2)
-    gain = gain_held_back(chain, state, score) - gain_held_back(chain, chain, score)
+    # What the chain changes elsewhere says nothing of where forces show.
+    about = score, shows_in_one_record(inside.start, state, score)
+    gain = gain_held_back(chain, state, *about) - gain_held_back(chain, chain, *about)
     better = "better" if gain > 0 else "worse"
     say(f"inside: on folds {abs(gain):.1f} {better} than what a chain has found")
     more = len(chain.added) - len(state.added) - inside.counts

@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from operator import itemgetter
 from typing import Any, Literal
 
 import numpy as np
@@ -17,7 +18,12 @@ from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.mechanism import Mechanism, free_starts
 from hystbench.blocks.starts import possible_starts, started
 from hystbench.gap.cache import records_digest
-from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
+from hystbench.gap.fitting.least_squares import (
+    QUICK,
+    Fitted,
+    fitted,
+    fitted_to_the_end,
+)
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.records.scored_samples import ScoredSamples
@@ -69,11 +75,15 @@ def best_host(states: Iterable[ModelState], score: Score) -> Fitted | None:
 
 
 def likeliest(states: Iterable[ModelState], score: Score) -> Fitted | None:
-    """Fit hosts a little, and the best of them to the end; None without any."""
-    quick = [fitted(state, score, QUICK) for state in states]
-    if not quick:
-        return None
-    return fitted(min(quick, key=lambda item: item.score).state, score)
+    """Fit hosts a little, and the best two of them to the end; None without any."""
+    quick = sorted(
+        (fitted(state, score, QUICK) for state in states), key=lambda item: item.score
+    )
+    return min(
+        (fitted_to_the_end(item.state, score) for item in quick[:2]),
+        key=lambda item: item.score,
+        default=None,
+    )
 
 
 def with_a_zero(best: Fitted, score: Score) -> Fitted:
@@ -91,6 +101,8 @@ RATIOS = (0.01, 0.05, 0.2, 0.7, 2.0)
 """Damping ratios of each."""
 BEGUN = 3
 """Starts that are fitted, the best ones of the grid."""
+Begun = tuple[Mechanism, float, float]
+"""A mechanism of a grid, how many times it moves, and another signal beside it."""
 MOTIONS = ("position", "velocity", "acceleration")
 
 
@@ -150,7 +162,7 @@ def masses(
     ones = np.ones(len(ScoredSamples.of(records)))
     own = {0: ("mass", "damping", "stiffness"), 1: ("offset",)}
     for best in _solved_for(units, records, outputs, hold, lambda _: ones):
-        for unit, gain, offset in best[:BEGUN]:
+        for unit, gain, offset in best:
             chain = (_times(unit, gain), Gain(value=1.0, offset=offset))
             yield _state(chain, records, hold, own)
 
@@ -179,7 +191,7 @@ def free_masses(
         return sample.take([unit.driven(np.ones(len(r)), r.dt, ()) for r in records])
 
     (best,) = _solved_for(units, records, (output,), hold, pushed)
-    for unit, gain, bias in best[:1]:
+    for unit, gain, bias in best[::BEGUN]:
         block = replace(_times(unit, gain), bias=bias / abs(gain))
         yield _state((block,), records, hold, {0: ("mass", "damping", "bias")})
 
@@ -190,17 +202,22 @@ def _solved_for(
     outputs: Sequence[str],
     hold: Hold,
     beside: Callable[[Mechanism], FloatArray],
-) -> list[list[tuple[Mechanism, float, float]]]:
+) -> list[list[Begun]]:
     """Find how many times each mechanism moves, and another signal beside it.
 
-    Of each output a list: the mechanism, its gain and that of the other signal, the
-    least mean square first. A staircase apart, the input moves in straight lines here:
-    near enough for a beginning.
+    Of each output the best ones: the mechanism, its gain and that of the other signal.
+    Each record counts alike, as in a score: where a force inside shows in loud records,
+    the linear part shows in quiet ones. The last is the best of all samples together. A
+    staircase apart, the input moves in straight lines here: near enough for a
+    beginning.
     """
     sample = ScoredSamples.of(records)
     wanted = sample.take([record.y for record in records])
+    weights = np.empty(len(wanted))
+    for part in sample.slices:
+        weights[part] = 1.0 / max(float(np.std(wanted[part])), 1e-300)
     roughly: Any = {"hold": "linear" if hold == "band-limited" else hold}
-    found: list[list[tuple[float, Mechanism, float, float]]] = [[] for _ in outputs]
+    found: list[list[tuple[float, float, Begun]]] = [[] for _ in outputs]
     for unit in units:
         rough = replace(unit, **roughly)
         moved = [started(rough, r).motion(r.u, r.dt, ()) for r in records]
@@ -209,12 +226,17 @@ def _solved_for(
             seen: Any = {"output": output, "hold": hold}
             one = replace(unit, **seen)
             columns = np.column_stack([sample.take([*map(one.given, moved)]), other])
-            gain, more = solved(columns, wanted).tolist()
-            rest = float(np.mean((wanted - columns @ [gain, more]) ** 2))
+            weighed = columns * weights[:, None]
+            gain, more = solved(weighed, wanted * weights).tolist()
+            left = (wanted - columns @ [gain, more]) * weights
+            powers = [float(np.mean(left[part] ** 2)) for part in sample.slices]
+            rest = float(np.mean((left / weights) ** 2))
+            alike = float(np.sum(np.log(np.maximum(powers, 1e-300))))
             if gain != 0.0 and np.isfinite(rest):
-                own.append((rest, one, gain, more))
+                own.append((alike, rest, (one, gain, more)))
     return [
-        [(unit, gain, more) for _, unit, gain, more in sorted(own, key=lambda x: x[0])]
+        [begun for *_, begun in sorted(own, key=itemgetter(0))[:BEGUN]]
+        + [begun for *_, begun in sorted(own, key=itemgetter(1))[:1]]
         for own in found
     ]
 

@@ -41,6 +41,7 @@ from hystbench.gap.inside.one_coordinate import (
     Kind,
     best_host,
     free_masses,
+    likeliest,
     one_coordinate,
     same_as,
 )
@@ -168,8 +169,8 @@ def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
     block = state.chain[0]
     if not (isinstance(block, Mechanism) and block.output == "acceleration"):
         return
-    for begun in free_masses(state.records, block.output, state.hold):
-        alone = fitted(begun, score)
+    alone = likeliest(free_masses(state.records, block.output, state.hold), score)
+    if alone is not None:
         yield Host(alone.state, alone, words, kind="loose mass")
 
 

@@ -317,20 +317,17 @@ def does_without_itself(
         What the model scores.
     score : Score
     """
-    for place in item.blocks:
-        block = effects()[item.effect].without_itself(state.chain[place])
-        if block is None:
-            continue
-        chain = (*state.chain[:place], block, *state.chain[place + 1 :])
-        free = tuple(
-            x
-            for x in state.free
-            if x.block != place or not x.element or x.parameter != "weights"
-        )
-        bare = replace(state.with_chain(chain), free=free)
-        if refit(bare, score)[1] < value + SCALE:
-            return True
-    return False
+    bare = effects()[item.effect].without_itself([state.chain[k] for k in item.blocks])
+    if bare is None:
+        return False
+    chain = list(state.chain)
+    for place, block in zip(item.blocks, bare, strict=True):
+        chain[place] = block
+    without = state.with_chain(tuple(chain))
+    free = tuple(
+        x for x in state.free if x.block not in item.blocks or without.value(x) != 0.0
+    )
+    return refit(replace(without, free=free), score)[1] < value + SCALE
 
 
 def _not_cut_short(item: Candidate, state: ModelState) -> Candidate:

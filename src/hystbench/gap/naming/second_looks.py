@@ -103,7 +103,7 @@ def reconsidered(
 def _is_itself(state: ModelState, item: Added, floor_rms: float) -> bool:
     """Tell whether an effect has not lost what makes it that to a later one."""
     of_effect = effects()[item.effect]
-    if not any(of_effect.without_itself(state.chain[k]) for k in item.blocks):
+    if of_effect.without_itself([state.chain[k] for k in item.blocks]) is None:
         return True  # most have nothing that they could lose, and need no score
     score = make_score(state, floor_rms)
     return not does_without_itself(state, item, score_of(state, score), score)

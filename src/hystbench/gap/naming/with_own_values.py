@@ -19,6 +19,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.add_effects import Named, add_effects
+from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import ABOVE_NOISE, PARAMETER, PAYS
 from hystbench.record import Record
 
@@ -143,6 +144,53 @@ def beside_offsets(state: ModelState, start: ModelState, score: Score) -> ModelS
     level: tuple[Beside, Values] = Drift.levels(), {}
     fitted, _ = finished(replace(laws, beside=(*laws.beside, level)).settled(), score)
     return replace(fitted, beside=fitted.beside[:-1])
+
+
+def offsets_for_paths(
+    start: ModelState, named: Named, floor_rms: float, say: Say
+) -> tuple[ModelState, Named, OwnValues]:
+    """Give records offsets of their own in place of a path named beside forces.
+
+    A path follows an offset too. Offsets stand where they score no worse, each charged
+    as a number of a path is: they say less of the device.
+
+    Parameters
+    ----------
+    start : ModelState
+        The base on the fit records.
+    named : Named
+        Forces, and what the input does not explain.
+    floor_rms : float
+    say : callable
+
+    Returns
+    -------
+    start : ModelState
+        The base on records without their offsets.
+    named : Named
+        Without the path.
+    own : OwnValues
+    """
+    state, square = named.state, floor_rms**2
+    score = make_score(state, floor_rms, forms=False)
+    laws = beside_offsets(state, start, score)
+    own = own_values(start.records, laws.exact, square, ("offset",))
+    if not own.records:
+        return start, named, NONE
+    bare = own.taken_off(start.records, start.hold)
+    found, value = finished(on_records(laws, bare), score)
+    if value + own.charge / 2 > score_of(state, score):
+        return start, named, NONE
+    say("inside: offsets of the records explain as much: no path is named")
+    apart = on_records(start, bare)
+    share = apart.share(start, square, start.power(square))
+    rounds = tuple(
+        replace(one, before=on_records(one.before, bare))
+        for one in named.rounds
+        if one.ranking[0].effect not in state.paths
+    )
+    own = replace(own, share=share)
+    return apart, replace(named, state=found, rounds=rounds), own
 
 
 ROUNDS = 3
