@@ -9,6 +9,7 @@ import numpy as np
 
 from hystbench.gap.effects.law import Changed, Law
 from hystbench.gap.fitting.edit_chain import without_effect
+from hystbench.gap.fitting.in_stages import gentlest
 from hystbench.gap.fitting.least_squares import (
     Fitted,
     fitted,
@@ -19,7 +20,6 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.average_force import evened
 from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.choose import best_of_each, least, may_gain, with_a_way
-from hystbench.gap.inside.in_stages import gentlest
 from hystbench.gap.inside.insert_law import (
     Offer,
     of_stores,

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.gap.fitting.least_squares import fitted, fitted_to_the_end
+from hystbench.gap.fitting.in_stages import fitted_in_stages
+from hystbench.gap.fitting.least_squares import fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.one_coordinate import ZEROS, Host, Kind
@@ -33,7 +34,7 @@ def as_given(
     """
     if free:
         known = all(item.given is not None for item in free)
-        own = fitted_to_the_end(about, score) if known else fitted(state, score)
+        own = fitted_in_stages(about if known else state, score)
         yield Host(state, own, words, kind=kind)
         return
     held = replace(state, free=())
@@ -41,8 +42,7 @@ def as_given(
     yield Host(held, fitted(held, score), as_they_are, kind=kind)
     if not exact:
         words = f"{words}, its numbers fitted to the records"
-        held_by = about is not state
-        own = fitted_to_the_end(about, score) if held_by else fitted(state, score)
+        own = fitted_in_stages(about, score)
         yield Host(state, own, words, charge=FURTHER, kind=kind)
 
 

@@ -8,17 +8,16 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.gap.effects import effects
+from hystbench.gap.fitting.in_stages import fitted_in_stages
 from hystbench.gap.fitting.least_squares import (
     EVALUATIONS,
     QUICK,
     Fitted,
     fitted,
-    fitted_to_the_end,
 )
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.choose import best_of_each, may_gain
-from hystbench.gap.inside.in_stages import in_stages
 from hystbench.gap.inside.race import FEW, a_little, further, raced
 from hystbench.gap.thresholds import CERTAIN, SCALE
 
@@ -46,7 +45,7 @@ def fitted_likely(
         and by all its laws: what a law promises where it starts says little of where it
         comes to.
     gentle : sequence of int
-        Records that a fit which leaves much is begun with again: :func:`in_stages`.
+        Records that lead a fit which leaves much: :func:`fitted_in_stages`.
 
     Returns
     -------
@@ -131,16 +130,9 @@ def to_the_end(
 ) -> list[Fitted]:
     """Fit hypotheses to the end; the least score first, none that runs away.
 
-    One that leaves what another effect could gain is fitted in stages as well, to the
-    gentle records first.
+    One that leaves what another effect could gain is fitted in stages as well.
     """
-    done = []
-    for item in begun:
-        best = fitted_to_the_end(item.state, score)
-        if gentle and may_gain(best, score):
-            again = in_stages(item.state, gentle, score)
-            best = min(best, again, key=lambda item: item.score)
-        done.append(best)
+    done = [fitted_in_stages(item.state, score, gentle) for item in begun]
     kept = (
         item for item in done if np.isfinite(item.score) and not _vanishes(item, score)
     )

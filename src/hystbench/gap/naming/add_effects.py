@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from operator import itemgetter
 
 from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.effects import among
 from hystbench.gap.fitting.edit_chain import at_end
+from hystbench.gap.fitting.in_stages import fitted_in_stages
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import (
     above_floor,
@@ -194,10 +196,19 @@ class SoFar:
     def begun(
         cls, state: ModelState, floor_rms: float, share: float = UNNAMED_SHARE
     ) -> SoFar:
-        """Start from the base, re-tuned where it has free numbers."""
+        """Start from the base, re-tuned where it has free numbers.
+
+        Those of a base that is known roughly may have far to go.
+        """
         floor = floor_rms**2
         if state.free:
-            state, _ = finished(state, make_score(state, floor_rms))
+            score = make_score(state, floor_rms)
+            starts = [state]
+            if any(free.tolerance is not None for free in state.free):
+                plain = Score.plain(state.sample, floor)
+                starts.append(fitted_in_stages(state, plain).state)
+            ends = (finished(each, score) for each in starts)
+            state, _ = min(ends, key=itemgetter(1))
         return cls(state, max(state.power(floor), floor * 1e-6), share)
 
     @property

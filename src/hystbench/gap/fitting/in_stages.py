@@ -1,0 +1,83 @@
+"""A fit in stages: to some of the records first, and from there to all.
+
+A mass on a hardening spring, or near a stop, may have two steady motions. A record that
+jumps from one to the other jumps elsewhere when the numbers change a little, so that a
+fit to it stops anywhere. Where the model before explains most, there is one motion.
+These gentle records lead the numbers to where the others can be followed
+(continuation [1]_). Records that are fitted already may hold the numbers in a narrow
+valley as well. Then the one of which most is left leads on alone.
+
+References
+----------
+.. [1] E. L. Allgower, K. Georg, "Introduction to Numerical Continuation Methods",
+   SIAM, 2003, doi:10.1137/1.9780898719154.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.gap.fitting.least_squares import Fitted, fitted, fitted_to_the_end
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.records.scored_samples import ScoredSamples
+from hystbench.gap.thresholds import PAYS
+
+
+def fitted_in_stages(
+    begun: ModelState, score: Score, gentle: Sequence[int] = ()
+) -> Fitted:
+    """Fit a model to all records; where it leaves much, to some of them first as well.
+
+    Parameters
+    ----------
+    begun : ModelState
+    score : Score
+        Of all records.
+    gentle : sequence of int
+        Places of records that lead from where the model begins.
+
+    Returns
+    -------
+    Fitted
+        The best of the fits.
+    """
+    best = fitted_to_the_end(begun, score)
+    if len(begun.records) < 2 or not begun.free:
+        return best
+    if gentle and _leaves_much(best, score):
+        best = min(best, _in_stages(begun, gentle, score), key=_score)
+    if _leaves_much(best, score):
+        worst = int(np.argmax(best.state.squares))
+        best = min(best, _in_stages(best.state, (worst,), score), key=_score)
+    return best
+
+
+def gentlest(state: ModelState) -> tuple[int, ...]:
+    """Give half of the records: those of whose output a model leaves the least share.
+
+    None of a single record.
+    """
+    outputs = [np.var(state.measured[part]) for part in state.sample.slices]
+    shares = state.squares / np.maximum(outputs, 1e-300)
+    order = np.argsort(shares, kind="stable").tolist()
+    return tuple(sorted(order[: len(order) // 2]))
+
+
+def _in_stages(state: ModelState, first: Sequence[int], score: Score) -> Fitted:
+    records = tuple(state.records[k] for k in first)
+    some = replace(state, records=records, sample=ScoredSamples.of(records))
+    near = fitted(some.settled(), Score.plain(some.sample, score.floor)).state
+    whole = replace(near, records=state.records, sample=state.sample)
+    return fitted_to_the_end(whole.settled(), score)
+
+
+def _leaves_much(item: Fitted, score: Score) -> bool:
+    return item.score - score.least(item.state.freedom) > PAYS
+
+
+def _score(item: Fitted) -> float:
+    return item.score
