@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.starts import STARTS
+from hystbench.gap.bases.orders import with_plainest_start
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Ratio
 from tests.gap.made import record
@@ -69,3 +70,13 @@ def test_a_ratio_that_no_block_takes_costs_without_bound():
     found = task.refined(ratio, masks, 5)
     assert (found.a == ratio.a).all()
     assert found.cost == np.inf
+
+
+def test_a_ratio_that_runs_away_costs_without_bound(monkeypatch):
+    """The difference of two numbers beyond all is none; it still is a cost."""
+    task = OutputError((record(np.sin(0.07 * np.arange(300)), dt=0.1),), "linear", 1.0)
+    left = [np.full(300, np.nan)]
+    monkeypatch.setattr(OutputError, "left", lambda *_: left)
+    masks = [np.ones(300, dtype=bool)]
+    assert task.squares(SLOW, masks) == np.inf
+    with_plainest_start(task, SLOW)

@@ -14,8 +14,9 @@ from hystbench.gap.effects.law import Passed
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added
 from hystbench.gap.inside import combine_forces
+from hystbench.gap.inside import named_inside as named_inside_module
 from hystbench.gap.inside.choose import as_rounds, chosen
-from hystbench.gap.inside.named_inside import Inside
+from hystbench.gap.inside.named_inside import Inside, beats_chain
 from hystbench.gap.inside.other_names import of_one_name
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.progress import silent
@@ -333,3 +334,32 @@ def test_of_two_names_for_a_curve_behind_a_mass_the_sensor_is_tried():
     assert kept["drive-saturation"] == laws["drive-saturation"]
     alone = {"saturation": laws["saturation"]}
     assert of_one_name(alone) == alone
+
+
+def test_where_one_record_shows_a_force_both_answers_are_judged_on_blocks(monkeypatch):
+    """A path changes all records, and says nothing of where the force shows."""
+    chain, state, start = (
+        SimpleNamespace(sample=None, added=(), moved_charge=0.0, name=name)
+        for name in ("chain", "state", "start")
+    )
+    asked = []
+
+    def shows(before, after, score):
+        asked.append((before.name, after.name))
+        return True
+
+    def gain(before, after, score, in_blocks):
+        asked.append((before.name, after.name, in_blocks))
+        return 100.0 * (after is state)
+
+    plain = SimpleNamespace(plain=lambda *_: None)
+    monkeypatch.setattr(named_inside_module, "Score", plain)
+    monkeypatch.setattr(named_inside_module, "shows_in_one_record", shows)
+    monkeypatch.setattr(named_inside_module, "gain_held_back", gain)
+    inside = Inside(None, start, Named(state), "")
+    assert beats_chain(inside, Named(chain), 1e-3)
+    assert asked == [
+        ("start", "state"),
+        ("chain", "state", True),
+        ("chain", "chain", True),
+    ]

@@ -12,7 +12,7 @@ from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.state import Free
 from hystbench.gap.naming import rank as module
 from hystbench.gap.naming import rivals
-from hystbench.gap.naming.rank import rank
+from hystbench.gap.naming.rank import does_without_itself, rank
 from hystbench.gap.naming.rivals import (
     above_noise_of_its_own,
     beside_their_own_shapes,
@@ -28,6 +28,7 @@ from tests.gap.small import (
     GPI,
     block,
     chains,
+    hysteresis,
     measured,
     plain_score,
     records,
@@ -326,3 +327,17 @@ def test_what_is_far_behind_is_refitted_to_the_end_for_folds_alone(monkeypatch, 
     else:
         assert wanted[1] < np.inf
         assert wanted[1] > min(item.score for item in found)
+
+
+@pytest.mark.parametrize(("bias", "alike"), [(0.0, True), (0.15, False)])
+def test_a_bias_of_the_field_is_more_than_the_zero_of_a_sensor(bias, alike):
+    loop = hysteresis()
+    given = (block("gain", value=1.0, offset=bias), loop)
+    plant = (*given, block("gain", value=1.0, offset=0.5))
+    state = state_of((loop,), measured(plant, NOISE))
+    offered = effects()["asymmetry"].variants(state.simulation)
+    form = next(item for item in offered if item.form == "bias")
+    state = with_effect(state, form, {"bias": 0.01, "zero": 0.5}).settled()
+    score = make_score(state, NOISE, forms=False)
+    state, value = finished(state, score)
+    assert does_without_itself(state, state.added[-1], value, score) == alike

@@ -30,7 +30,7 @@ from hystbench.gap.thresholds import PAYS
 def fitted_in_stages(
     begun: ModelState, score: Score, gentle: Sequence[int] = ()
 ) -> Fitted:
-    """Fit a model to all records; where it leaves much, to some of them first as well.
+    """Fit a model to all records; where that leaves much, to gentle ones first as well.
 
     Parameters
     ----------
@@ -43,17 +43,34 @@ def fitted_in_stages(
     Returns
     -------
     Fitted
-        The best of the fits.
+        The better of the fits.
     """
     best = fitted_to_the_end(begun, score)
-    if len(begun.records) < 2 or not begun.free:
+    if not gentle or not _leaves_much(best, score):
         return best
-    if gentle and _leaves_much(best, score):
-        best = min(best, _in_stages(begun, gentle, score), key=_score)
-    if _leaves_much(best, score):
-        worst = int(np.argmax(best.state.squares))
-        best = min(best, _in_stages(best.state, (worst,), score), key=_score)
-    return best
+    return min(best, _in_stages(begun, gentle, score), key=_score)
+
+
+def led_by_the_worst(found: Fitted, score: Score) -> Fitted:
+    """Fit a model that leaves much again, from a fit to its worst record alone.
+
+    Parameters
+    ----------
+    found : Fitted
+        A fit to all records.
+    score : Score
+        Of all records.
+
+    Returns
+    -------
+    Fitted
+        The better of the two.
+    """
+    state = found.state
+    if len(state.records) < 2 or not state.free or not _leaves_much(found, score):
+        return found
+    worst = int(np.argmax(state.squares))
+    return min(found, _in_stages(state, (worst,), score), key=_score)
 
 
 def gentlest(state: ModelState) -> tuple[int, ...]:

@@ -188,14 +188,14 @@ def _one_more(
                 begun += starts(at, short, name, own, beginnings)
     if not begun:
         return []
+    gentle = () if first.added else gentlest(first)
     if stores:
         inside = [item for item in begun if item.state.added[-1].place == "inside"]
         around = [item for item in begun if item.state.added[-1].place != "inside"]
-        best_first = fitted_each(inside, score)
-        best_first += fitted_likely(around, beginnings, score, 1)
+        best_first = fitted_each(inside, score, gentle)
+        best_first += fitted_likely(around, beginnings, score, 1, gentle)
         best_first.sort(key=lambda item: item.score)
     else:
-        gentle = gentlest(first)
         best_first = fitted_likely(begun, beginnings, score, keep, gentle)
     for item in best_first[:3]:
         say(f"inside: {' + '.join(item.effects)}: gain {alone - item.score:.1f}")

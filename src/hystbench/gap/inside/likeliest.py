@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.in_stages import fitted_in_stages
+from hystbench.gap.fitting.in_stages import fitted_in_stages, led_by_the_worst
 from hystbench.gap.fitting.least_squares import (
     EVALUATIONS,
     QUICK,
@@ -116,13 +116,15 @@ def _of_each_law(starts: Sequence[Fitted], count: int) -> list[Fitted]:
     return firsts + others[: max(count - len(firsts), 0)]
 
 
-def fitted_each(begun: Iterable[Fitted], score: Score) -> list[Fitted]:
+def fitted_each(
+    begun: Iterable[Fitted], score: Score, gentle: Sequence[int] = ()
+) -> list[Fitted]:
     """Fit all laws of all effects to the end, each from its likeliest start."""
     likely: dict[tuple[str, ...], Fitted] = {}
     for item in sorted(begun, key=lambda item: item.score):
         law = tuple(sorted(map(" ".join, zip(item.effects, item.forms, strict=True))))
         likely.setdefault(law, item)
-    return to_the_end(likely.values(), score)
+    return to_the_end(likely.values(), score, gentle)
 
 
 def to_the_end(
@@ -130,13 +132,15 @@ def to_the_end(
 ) -> list[Fitted]:
     """Fit hypotheses to the end; the least score first, none that runs away.
 
-    One that leaves what another effect could gain is fitted in stages as well.
+    Those that leave what another effect could gain are led by the gentle records as
+    well, and the best one by its worst record.
     """
     done = [fitted_in_stages(item.state, score, gentle) for item in begun]
-    kept = (
+    done.sort(key=lambda item: item.score)
+    done[:1] = [led_by_the_worst(item, score) for item in done[:1]]
+    return [
         item for item in done if np.isfinite(item.score) and not _vanishes(item, score)
-    )
-    return sorted(kept, key=lambda item: item.score)
+    ]
 
 
 def _vanishes(item: Fitted, score: Score) -> bool:
