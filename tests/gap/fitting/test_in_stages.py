@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hystbench.gap.fitting.in_stages import fitted_in_stages, gentlest, led_by_the_worst
+from hystbench.gap.fitting.in_stages import fitted_in_stages, gentlest, led_out
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
@@ -56,7 +56,7 @@ def test_gentle_records_lead_to_numbers_that_the_others_stop_short_of():
     gentle = gentlest(linear)
     assert gentle == (0, 1)
     score = Score.plain(state.sample, NOISE**2)
-    staged = led_by_the_worst(fitted_in_stages(state, score, gentle), score)
+    staged = led_out(fitted_in_stages(state, score, gentle), score)
     assert staged.state.chain[1].cubic == pytest.approx(CUBIC, rel=0.01)
     assert staged.score < fitted_to_the_end(state, score).score - 100
 
@@ -68,7 +68,7 @@ def test_what_leaves_noise_is_fitted_once():
     once = fitted_to_the_end(state, score)
     assert once.score < score.least(once.state.freedom) + PAYS
     assert fitted_in_stages(state, score, (0,)).score == once.score
-    assert led_by_the_worst(once, score) is once
+    assert led_out(once, score) is once
 
 
 def test_the_worst_record_leads_out_of_a_valley():
@@ -77,7 +77,7 @@ def test_the_worst_record_leads_out_of_a_valley():
     score = Score.plain(ScoredSamples.of(records), NOISE**2)
     stopped = fitted_to_the_end(begun(records), score)
     assert stopped.score > score.least(stopped.state.freedom) + PAYS
-    led = led_by_the_worst(stopped, score)
+    led = led_out(stopped, score)
     assert led.score < stopped.score - 100
 
 

@@ -4,8 +4,8 @@ A mass on a hardening spring, or near a stop, may have two steady motions. A rec
 jumps from one to the other jumps elsewhere when the numbers change a little, so that a
 fit to it stops anywhere. Where the model before explains most, there is one motion.
 These gentle records lead the numbers to where the others can be followed
-(continuation [1]_). Records that are fitted already may hold the numbers in a narrow
-valley as well. Then the one of which most is left leads on alone.
+(continuation [1]_). So may all but the one of which most is left. Or they hold the
+numbers in a narrow valley, and that one leads on alone.
 
 References
 ----------
@@ -24,7 +24,7 @@ from hystbench.gap.fitting.least_squares import Fitted, fitted, fitted_to_the_en
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.scored_samples import ScoredSamples
-from hystbench.gap.thresholds import PAYS
+from hystbench.gap.thresholds import PAYS, SCALE
 
 
 def fitted_in_stages(
@@ -51,8 +51,10 @@ def fitted_in_stages(
     return min(best, _in_stages(begun, gentle, score), key=_score)
 
 
-def led_by_the_worst(found: Fitted, score: Score) -> Fitted:
-    """Fit a model that leaves much again, from a fit to its worst record alone.
+def led_out(found: Fitted, score: Score) -> Fitted:
+    """Fit a model that leaves much again, from fits without its worst record and to it.
+
+    That is repeated while the score falls by what matters.
 
     Parameters
     ----------
@@ -64,13 +66,18 @@ def led_by_the_worst(found: Fitted, score: Score) -> Fitted:
     Returns
     -------
     Fitted
-        The better of the two.
+        The best of the fits.
     """
-    state = found.state
-    if len(state.records) < 2 or not state.free or not _leaves_much(found, score):
-        return found
-    worst = int(np.argmax(state.squares))
-    return min(found, _in_stages(state, (worst,), score), key=_score)
+    count = len(found.state.records)
+    while count > 1 and found.state.free and _leaves_much(found, score):
+        worst = int(np.argmax(found.state.squares))
+        others = tuple(k for k in range(count) if k != worst)
+        ways = (_in_stages(found.state, some, score) for some in (others, (worst,)))
+        best = min(ways, key=_score)
+        if best.score > found.score - SCALE:
+            break
+        found = best
+    return found
 
 
 def gentlest(state: ModelState) -> tuple[int, ...]:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.gap.fitting.in_stages import led_by_the_worst
+from hystbench.gap.fitting.in_stages import led_out
 from hystbench.gap.fitting.least_squares import Fitted, fitted, fitted_to_the_end
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
@@ -47,7 +47,7 @@ def as_given(
 
 
 def _fitted(state: ModelState, score: Score) -> Fitted:
-    return led_by_the_worst(fitted_to_the_end(state, score), score)
+    return led_out(fitted_to_the_end(state, score), score)
 
 
 def held_about(state: ModelState) -> ModelState:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.in_stages import fitted_in_stages, led_by_the_worst
+from hystbench.gap.fitting.in_stages import fitted_in_stages, led_out
 from hystbench.gap.fitting.least_squares import (
     EVALUATIONS,
     QUICK,
@@ -137,7 +137,7 @@ def to_the_end(
     """
     done = [fitted_in_stages(item.state, score, gentle) for item in begun]
     done.sort(key=lambda item: item.score)
-    done[:1] = [led_by_the_worst(item, score) for item in done[:1]]
+    done[:1] = [led_out(item, score) for item in done[:1]]
     return [
         item for item in done if np.isfinite(item.score) and not _vanishes(item, score)
     ]

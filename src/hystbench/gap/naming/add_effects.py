@@ -10,7 +10,7 @@ from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.effects import among
 from hystbench.gap.fitting.edit_chain import at_end
-from hystbench.gap.fitting.in_stages import led_by_the_worst
+from hystbench.gap.fitting.in_stages import led_out
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import (
     above_floor,
@@ -206,7 +206,7 @@ class SoFar:
             starts = [state]
             if any(free.tolerance is not None for free in state.free):
                 plain = Score.plain(state.sample, floor)
-                far = led_by_the_worst(fitted_to_the_end(state, plain), plain)
+                far = led_out(fitted_to_the_end(state, plain), plain)
                 starts.append(far.state)
             ends = (finished(each, score) for each in starts)
             state, _ = min(ends, key=itemgetter(1))
