@@ -132,12 +132,13 @@ def to_the_end(
 ) -> list[Fitted]:
     """Fit hypotheses to the end; the least score first, none that runs away.
 
-    Those that leave what another effect could gain are led by the gentle records as
-    well, and the best one by its worst record.
+    Of single effects, those that leave what another one could gain are led by the
+    gentle records as well, and the best one is led out of where it stopped.
     """
     done = [fitted_in_stages(item.state, score, gentle) for item in begun]
     done.sort(key=lambda item: item.score)
-    done[:1] = [led_out(item, score) for item in done[:1]]
+    if gentle:
+        done[:1] = [led_out(item, score) for item in done[:1]]
     return [
         item for item in done if np.isfinite(item.score) and not _vanishes(item, score)
     ]
