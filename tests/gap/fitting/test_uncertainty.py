@@ -180,8 +180,8 @@ def alike_but(told, off):
 
 def test_the_only_record_that_tells_two_effects_apart_does_not_disagree():
     pieces = alike_but(told={2}, off={})
-    assert np.sqrt(between_records(pieces)[0]) > 0.5
-    assert np.sqrt(between_records(pieces, uncounted=1)[0]) < 0.5
+    for uncounted in (0, 1):
+        assert np.sqrt(between_records(pieces, uncounted)[0]) < 0.5
     # two that disagree are one more than is forgiven
     pieces = alike_but(told=set(range(6)), off={1: 4.0, 4: -4.0})
     assert np.sqrt(between_records(pieces, uncounted=1)[0]) > 0.5
@@ -211,3 +211,16 @@ def test_too_few_records_that_count_tell_nothing_of_how_they_differ():
     few = Pieces(pieces.normals[:4], pieces.pushes[:4])
     assert between_records(few).min() > 0
     assert between_records(few, uncounted=1).tolist() == [0.0, 0.0]
+
+
+def test_a_record_that_tells_a_number_alone_is_none_that_others_disagree_with():
+    """Of five records the last one alone shows the second number."""
+    normals = [np.diag([1.0, 1e-3]) for _ in range(4)] + [np.diag([1.0, 10.0])]
+    rng = np.random.default_rng(0)
+    pushes = [1e-2 * rng.standard_normal((3, 2)) for _ in range(4)]
+    far = np.full((3, 2), 1.0)  # it pulls both far
+    first, second = np.sqrt(between_records(Pieces(normals, [*pushes, far])))
+    assert first > 0.5
+    alike = [np.diag([1.0, 1e-3])] * 4
+    assert second == pytest.approx(0.0, abs=0.1)
+    assert np.sqrt(between_records(Pieces([*alike, alike[0]], [*pushes, far]))[1]) > 100

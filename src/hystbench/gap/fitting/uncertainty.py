@@ -32,6 +32,10 @@ STRETCHES = 20
 FEW = 4
 """Records that are needed to tell how much they differ."""
 
+ALONE = 100.0
+"""Times the variance of a number that it has without a record which tells it alone: ten
+times the standard error."""
+
 Errors = dict[str, float | list[float] | None]
 """Standard errors of a signal beside the chain, by parameter of its block."""
 
@@ -195,25 +199,29 @@ def between_records(pieces: Pieces, uncounted: int = 0) -> FloatArray:
 
     What a model's form misses is alike within a record and differs between them. With
     few records the interval is as wide as Student's t distribution makes it. Of each
-    number the records that move it most are left uncounted, as many as asked.
+    number the records that move it most are left uncounted, as many as asked. So is one
+    that tells the number alone: without it the others cannot disagree.
     """
-    count = len(pieces.normals) - uncounted
-    if count < FEW:
-        return np.zeros(len(pieces.normals[0]))
     whole = sum(pieces.normals)
-    moved = np.array(
-        [
-            np.linalg.pinv(whole - normal, rcond=RANK) @ push.sum(axis=0)
-            for normal, push in zip(*pieces, strict=True)
-        ]
-    )
-    far = np.argsort(np.abs(moved - np.median(moved, axis=0)), axis=0)
-    moved = np.take_along_axis(moved, far[:count], axis=0)
-    spread: FloatArray = (count - 1) * np.var(moved, axis=0)
+    known = np.diag(np.linalg.pinv(whole, rcond=RANK))
+    moved = np.empty((len(pieces.normals), len(whole)))
+    for k, (normal, push) in enumerate(zip(*pieces, strict=True)):
+        others = np.linalg.pinv(whole - normal, rcond=RANK)
+        tells_alone = np.diag(others) > ALONE * known
+        moved[k] = np.where(tells_alone, np.nan, others @ push.sum(axis=0))
+    return np.array([_spread(own[np.isfinite(own)], uncounted) for own in moved.T])
+
+
+def _spread(moved: FloatArray, uncounted: int) -> float:
+    """Give the jackknife's variance of a number, by how far each record moves it."""
+    count = len(moved) - uncounted
+    if count < FEW:
+        return 0.0
+    near = np.argsort(np.abs(moved - np.median(moved)))[:count]
     # Quantiles of Student's t and of the normal distribution. Not by scipy.stats: to
     # load it takes each job of an effect longer than all else that it loads.
-    wider = stdtrit(count - 1, 0.975) / ndtri(0.975)
-    return spread * float(wider) ** 2
+    wider = float(stdtrit(count - 1, 0.975) / ndtri(0.975))
+    return (count - 1) * float(np.var(moved[near])) * wider**2
 
 
 def beside_errors(state: ModelState, score: Score) -> list[Errors]:
