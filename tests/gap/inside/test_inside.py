@@ -752,7 +752,7 @@ def test_what_a_chain_needs_more_counts_against_it(monkeypatch, chain, gain, bet
     named = Named(replace(state, added=(one,) * chain), ())
     monkeypatch.setattr(
         "hystbench.gap.inside.named_inside.gain_held_back",
-        lambda _, found, score: gain if found is inside.named.state else 0.0,
+        lambda _, found, *__: gain if found is inside.named.state else 0.0,
     )
     assert beats_chain(inside, named, NOISE) == better
 

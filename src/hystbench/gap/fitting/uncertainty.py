@@ -202,7 +202,7 @@ def between_records(pieces: Pieces, uncounted: int = 0) -> FloatArray:
     number the records that move it most are left uncounted, as many as asked. So is one
     that tells the number alone: without it the others cannot disagree.
     """
-    whole = sum(pieces.normals)
+    whole = np.sum(pieces.normals, axis=0)
     known = np.diag(np.linalg.pinv(whole, rcond=RANK))
     moved = np.empty((len(pieces.normals), len(whole)))
     for k, (normal, push) in enumerate(zip(*pieces, strict=True)):
