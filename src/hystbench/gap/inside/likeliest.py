@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -45,7 +45,8 @@ def fitted_likely(
         and by all its laws: what a law promises where it starts says little of where it
         comes to.
     gentle : sequence of int
-        Records that lead a fit which leaves much: :func:`fitted_in_stages`.
+        Records that lead a fit which leaves much: :func:`fitted_in_stages`. What they
+        led to is then led out of where it stopped.
 
     Returns
     -------
@@ -80,8 +81,10 @@ def fitted_likely(
         nearest = [_on_the_whole(of_best, score, QUICK)]
         nearest += [_on_the_whole(rest, score, FEW)] if rest else []
         done += to_the_end(nearest, score, gentle)
-        done = sorted(best_of_each(done), key=lambda item: item.score)
-    return done
+        done = best_of_each(done)
+    if gentle:
+        done = [_led_out(item, score) for item in done]
+    return sorted(done, key=lambda item: item.score)
 
 
 def _on_the_whole(starts: Sequence[Fitted], score: Score, evaluations: int) -> Fitted:
@@ -132,16 +135,23 @@ def to_the_end(
 ) -> list[Fitted]:
     """Fit hypotheses to the end; the least score first, none that runs away.
 
-    Of single effects, those that leave what another one could gain are led by the
-    gentle records as well, and the best one is led out of where it stopped.
+    Those that leave what another effect could gain are led by the gentle records too.
     """
     done = [fitted_in_stages(item.state, score, gentle) for item in begun]
-    done.sort(key=lambda item: item.score)
-    if gentle:
-        done[:1] = [led_out(item, score) for item in done[:1]]
-    return [
-        item for item in done if np.isfinite(item.score) and not _vanishes(item, score)
-    ]
+    return sorted(_that_are_themselves(done, score), key=lambda item: item.score)
+
+
+def _led_out(item: Fitted, score: Score) -> Fitted:
+    """Lead a fit out of where it stopped; not to where it is another effect."""
+    led = led_out(item, score)
+    return next(_that_are_themselves([led], score), item) if led is not item else item
+
+
+def _that_are_themselves(items: Iterable[Fitted], score: Score) -> Iterator[Fitted]:
+    """Give those that do not run away, and have what makes their effects those."""
+    for item in items:
+        if np.isfinite(item.score) and not _vanishes(item, score):
+            yield item
 
 
 def _vanishes(item: Fitted, score: Score) -> bool:
