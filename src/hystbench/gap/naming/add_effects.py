@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from operator import itemgetter
 
 from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
+from hystbench.blocks.forced import ForcedDynamics
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.effects import among
 from hystbench.gap.fitting.edit_chain import at_end
@@ -198,13 +199,14 @@ class SoFar:
     ) -> SoFar:
         """Start from the base, re-tuned where it has free numbers.
 
-        Those of a base that is known roughly may have far to go.
+        Those of a base in motion that is known roughly may have far to go.
         """
         floor = floor_rms**2
         if state.free:
             score = make_score(state, floor_rms)
             starts = [state]
-            if any(free.tolerance is not None for free in state.free):
+            moves = any(isinstance(block, ForcedDynamics) for block in state.chain)
+            if moves and any(free.tolerance is not None for free in state.free):
                 plain = Score.plain(state.sample, floor)
                 far = led_out(fitted_to_the_end(state, plain), plain)
                 starts.append(far.state)
