@@ -235,7 +235,8 @@ def _beside(
     if inside is not None:
         beside = beside_forces(inside.named, inside.start, floor.rms, share, say)
         inside = replace(inside, named=beside)
-        if beside.state.paths and own_offsets(start.records, evidence.quantities):
+        apart = bool(own.records) or not own_offsets(start.records, evidence.quantities)
+        if beside.state.paths and not apart:
             start, named, own = offsets_for_paths(start, beside, floor.rms, say)
             alone = on_records(inside.start, start.records)
             inside = replace(inside, start=alone, named=named)

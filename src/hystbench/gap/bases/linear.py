@@ -164,8 +164,8 @@ def linear_of(evidence: Evidence) -> Linear:
     lowers both errors by more than 2 %, that on folds of the fit records and that on
     all of them, of those that do better on folds than a constant. Then the numerator is
     shortened by the same rule, and the input may come up to a sample early or late.
-    Where a motion makes a force, the impedance of a
-    mass on a spring is tried as well. Deterministic.
+    Where a motion makes a force, the impedance of a mass on a spring is tried as well.
+    Deterministic.
 
     Parameters
     ----------

@@ -114,12 +114,10 @@ class Orders:
         ys = [record.y for record in self.evidence.fit]
         squares, count = 0.0, 0
         for fold in self.folds:
-            fitted_to = _taken(ys, fold.train)
+            mean = float(np.mean(np.concatenate(_taken(ys, fold.train))))
             for judged in _taken(ys, fold.validation):
-                own = judged if self.evidence.own_offsets else np.concatenate(fitted_to)
-                squares += (
-                    float(np.sum((judged - np.mean(own)) ** 2)) if len(own) else 0.0
-                )
+                own = np.mean(judged) if self.evidence.own_offsets else mean
+                squares += float(np.sum((judged - own) ** 2))
                 count += len(judged)
         return float(np.sqrt(squares / count))
 

@@ -80,6 +80,18 @@ def led_out(found: Fitted, score: Score) -> Fitted:
     return found
 
 
+def fitted_far(state: ModelState, score: Score) -> Fitted:
+    """Fit a model whose numbers may have far to go, and lead it out of where it stops.
+
+    Parameters
+    ----------
+    state : ModelState
+    score : Score
+        Of all records.
+    """
+    return led_out(fitted_to_the_end(state, score), score)
+
+
 def gentlest(state: ModelState) -> tuple[int, ...]:
     """Give half of the records: those of whose output a model leaves the least share.
 

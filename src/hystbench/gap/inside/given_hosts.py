@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.gap.fitting.in_stages import led_out
-from hystbench.gap.fitting.least_squares import Fitted, fitted, fitted_to_the_end
+from hystbench.gap.fitting.in_stages import fitted_far
+from hystbench.gap.fitting.least_squares import fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.one_coordinate import ZEROS, Host, Kind
@@ -34,7 +34,7 @@ def as_given(
     """
     if free:
         known = all(item.given is not None for item in free)
-        own = _fitted(about if known else state, score)
+        own = fitted_far(about if known else state, score)
         yield Host(state, own, words, kind=kind)
         return
     held = replace(state, free=())
@@ -42,12 +42,8 @@ def as_given(
     yield Host(held, fitted(held, score), as_they_are, kind=kind)
     if not exact:
         words = f"{words}, its numbers fitted to the records"
-        own = _fitted(about, score)
+        own = fitted_far(about, score)
         yield Host(state, own, words, charge=FURTHER, kind=kind)
-
-
-def _fitted(state: ModelState, score: Score) -> Fitted:
-    return led_out(fitted_to_the_end(state, score), score)
 
 
 def held_about(state: ModelState) -> ModelState:

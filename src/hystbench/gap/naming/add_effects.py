@@ -11,7 +11,7 @@ from hystbench.blocks.forced import ForcedDynamics
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.effects import among
 from hystbench.gap.fitting.edit_chain import at_end
-from hystbench.gap.fitting.in_stages import led_out
+from hystbench.gap.fitting.in_stages import fitted_far
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import (
     above_floor,
@@ -208,8 +208,7 @@ class SoFar:
             moves = any(isinstance(block, ForcedDynamics) for block in state.chain)
             if moves and any(free.tolerance is not None for free in state.free):
                 plain = Score.plain(state.sample, floor)
-                far = led_out(fitted_to_the_end(state, plain), plain)
-                starts.append(far.state)
+                starts.append(fitted_far(state, plain).state)
             ends = (finished(each, score) for each in starts)
             state, _ = min(ends, key=itemgetter(1))
         return cls(state, max(state.power(floor), floor * 1e-6), share)
