@@ -1,6 +1,6 @@
 """Block ``impedance``: the force that a given motion takes."""
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from functools import lru_cache
 
 import numpy as np
@@ -131,16 +131,14 @@ class Impedance(Dynamics, name="impedance", place="base"):
         """Give the motion of one record, and those of others."""
         path = np.ascontiguousarray(z, dtype=np.float64)
         still = Motion(*self._moved(path, dt), np.zeros(len(path)))
-        own = still._replace(force=self._met(still, path, dt, forces))
-        found = [own]
+        alike = [other.forces for other, moved in others if moved is z]
+        met = self._met(still, path, dt, {forces, *alike})
+        found = [still._replace(force=met[forces])]
         for other, moved in others:
-            if moved is not z:
-                found.append(other.host.motion(moved, dt, other.forces))
-            elif other.forces != forces:
-                met = self._met(own, path, dt, other.forces)
-                found.append(own._replace(force=met))
+            if moved is z:
+                found.append(still._replace(force=met[other.forces]))
             else:
-                found.append(own)
+                found.append(other.host.motion(moved, dt, other.forces))
         return found
 
     def given(self, motion: Motion) -> FloatArray:
@@ -209,15 +207,20 @@ class Impedance(Dynamics, name="impedance", place="base"):
         )
 
     def _met(
-        self, motion: Motion, z: FloatArray, dt: float, forces: tuple[Force, ...]
-    ) -> FloatArray:
-        """Give the sum of the forces that a motion meets, which is that of an input."""
-        if not forces:
-            return np.zeros(len(z))
-        if not self._is_curve(z):
-            return against(forces, motion.position, motion.velocity, dt)
-        fine = self._between(z, motion.position, dt)
-        return coarser(against(forces, *fine, dt / SHORT_STEPS))
+        self, motion: Motion, z: FloatArray, dt: float, every: Set[tuple[Force, ...]]
+    ) -> dict[tuple[Force, ...], FloatArray]:
+        """Give the sum of each of some forces along a motion, that of an input."""
+        found = {forces: np.zeros(len(z)) for forces in every}
+        acting = [forces for forces in every if forces]
+        curved = self._is_curve(z)
+        if acting and curved:
+            fine = self._between(z, motion.position, dt)
+        for forces in acting:
+            if curved:
+                found[forces] = coarser(against(forces, *fine, dt / SHORT_STEPS))
+            else:
+                found[forces] = against(forces, motion.position, motion.velocity, dt)
+        return found
 
     def _is_curve(self, z: FloatArray) -> bool:
         return self.holding == "band-limited" and len(z) >= 3

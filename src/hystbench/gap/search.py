@@ -7,8 +7,9 @@ from dataclasses import replace
 from functools import cache, partial
 
 from hystbench.gap.asked import USUAL, Asked
+from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.bases.lead import without_leads
-from hystbench.gap.bases.linear import effect_found_with, is_identified
+from hystbench.gap.bases.linear import found_with, is_identified
 from hystbench.gap.bases.roughly_known import roughly_known
 from hystbench.gap.beside_base import BesideBase, stays
 from hystbench.gap.effects.places import places_between_halves
@@ -36,6 +37,7 @@ from hystbench.gap.judge_and_tell import Decision, judge_and_tell
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.naming.begun_otherwise import begun_as_named
 from hystbench.gap.naming.beside_forces import beside_forces
+from hystbench.gap.naming.identified_again import freed_of_laws
 from hystbench.gap.naming.poles_of_base import named_beside_them, with_poles_named
 from hystbench.gap.naming.with_own_values import (
     named_apart,
@@ -55,6 +57,9 @@ no curve over its place has a meaning."""
 OF_THE_PLACE = "asymmetry"
 """Closed as well where the base may hold a hysteresis: it then stands behind it. Before
 a linear base it bends what drives the mass, as a valve does that opens more one way."""
+
+TURNS = 3
+"""Times that a loop is identified anew; after each its effects are known better."""
 
 NOT_EXACT = "the base does not call its numbers exact, and was re-tuned"
 EXACT = "write 'free: []' in a model file that is exact"
@@ -97,6 +102,7 @@ def search(
         again = _beside(shifted, evidence, sought, quantities, found.hosts)
         found = found if stays(found, again) else again
         say("it is" if found is again else "that explains no more: it is not")
+    found = _identified_again(found, evidence, sought, quantities)
     if identified:
         found = _begun_otherwise(found, evidence, sought, quantities)
         found = _of_more_poles(found, evidence, sought)
@@ -125,6 +131,33 @@ def search(
         if inside is None:
             more[-1] += f": {re_tuned_words(start, found.named.state)}"
     return replace(told, content={**told.content, "reason": "; ".join(more)})
+
+
+def _identified_again(
+    found: BesideBase, evidence: Evidence, asked: Asked, quantities: Quantities | None
+) -> BesideBase:
+    """Name beside a loop identified from a record without what laws do to it.
+
+    The first of these loops still has a part of the law in it.
+    """
+    latest = found
+    for turn in range(TURNS):
+        about = latest.base, latest.named, evidence, latest.floor.rms
+        freed = freed_of_laws(*about)
+        if freed is None:
+            break
+        asked.say("the record of the base shows an effect: naming beside it without")
+        base, _ = identified_gpi(freed)
+        again = _beside(base, evidence, asked, quantities, found.hosts)
+        if turn and stays(latest, again):
+            break
+        latest = again
+    if latest is found:
+        return found
+    if stays(found, latest):
+        asked.say("that explains no more: the base stays")
+        return found
+    return latest
 
 
 def _begun_otherwise(
@@ -206,7 +239,7 @@ def _beside(
             return start, floor
         return start_state(shorter, base, hold, declared, offered)
 
-    known = bool(places_between_halves(start.simulation) or effect_found_with(base))
+    known = bool(places_between_halves(start.simulation) or found_with(base))
     if known:  # what that effect hides of a start is no reason to try forces
         start, floor = begun_as(in_a_chain())
         if start is not first:

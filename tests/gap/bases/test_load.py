@@ -14,13 +14,14 @@ from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.bases import load as bases
+from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.bases.linear import (
     IdentifiedModel,
     Linear,
     identified_linear,
     is_identified,
 )
-from hystbench.gap.bases.load import identified_gpi, load_base
+from hystbench.gap.bases.load import load_base
 from hystbench.gap.bases.spectral import Spectra, fit_ratio, stable
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.simulation import Simulation

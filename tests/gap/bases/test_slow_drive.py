@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.gap import search as search_module
-from hystbench.gap.bases.linear import effect_found_with
+from hystbench.gap.bases.linear import found_with
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.bases.slow_drive import behind_a_slow_drive
 from hystbench.gap.cache import Remembered, remembering
@@ -89,4 +89,4 @@ def test_the_limit_is_named_and_no_force_looked_for(limited, monkeypatch):
 def test_a_base_that_was_kept_is_found_beside_the_same(limited, tmp_path):
     with remembering(Remembered(tmp_path, print)):
         first, again = (load_base("linear", limited)[0] for _ in range(2))
-    assert effect_found_with(first) == effect_found_with(again) == "slew-limit"
+    assert found_with(first) == found_with(again) == "slew-limit"

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from hystbench.gap.fitting import in_stages
 from hystbench.gap.fitting.in_stages import fitted_in_stages, gentlest, led_out
-from hystbench.gap.fitting.least_squares import fitted_to_the_end
+from hystbench.gap.fitting.least_squares import Fitted, fitted_to_the_end
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.one_coordinate import best_host, one_coordinate
@@ -93,3 +94,27 @@ def test_a_host_is_known_by_the_records_in_which_the_spring_is_linear():
     mass = best_host(hosts, score).state.chain[0]
     assert mass.output == "position"
     assert mass.stiffness / mass.mass == pytest.approx(100.0, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("scores", "last"),
+    [
+        ((100.0, 60.0, 30.0, 10.0), "to the end"),  # overtakes
+        ((100.0, 95.0, 60.0), 95.0),  # falls too slowly
+        ((100.0, 99.0, 20.5, 20.4, 20.3), 99.0),
+        ((22.0, 20.5, 20.4, 20.3), 20.5),  # comes to the same place
+        ((np.inf, np.inf, np.inf), np.inf),  # runs away
+    ],
+)
+def test_a_fit_is_left_that_does_not_overtake(scores, last, monkeypatch):
+    """The other fit has a score of 20."""
+    left = list(scores)
+
+    def fitted_on(state, score, evaluations=0):
+        return Fitted(state, left.pop(0))
+
+    monkeypatch.setattr(in_stages, "fitted", fitted_on)
+    monkeypatch.setattr(in_stages, "fitted_to_the_end", lambda *_: "to the end")
+    begun = Fitted(None, left.pop(0))
+    found = in_stages._overtaking(begun, None, Fitted(None, 20.0))
+    assert getattr(found, "score", found) == last

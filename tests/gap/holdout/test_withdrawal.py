@@ -69,6 +69,17 @@ def test_where_there_is_no_gap_the_base_goes_back_to_what_it_was():
     assert found["withdrawn"]["names"] == []
 
 
+@pytest.mark.parametrize(
+    ("names", "reason"), [((), "no effect pays; "), (("creep",), "")]
+)
+def test_what_was_found_stands_before_a_re_tuning_that_is_taken_back(names, reason):
+    """A reader is to learn that there was no name to be taken back."""
+    given = content(1.0, 2.0, "unnamed", names) | {"reason": "no effect pays"}
+    taken = withdrawal(given)
+    found = without_names(given | {"base_parameters": {}}, taken)
+    assert found["reason"] == reason + taken["why"]
+
+
 def test_the_first_figure_says_of_what_it_is_a_share():
     said = first_figure(content(2.0, 1.0))
     assert said == (

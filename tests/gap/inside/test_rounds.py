@@ -147,6 +147,28 @@ def test_threes_are_tried_where_a_pair_pays_or_no_single_does(
     assert tried_levels == [2, 3][:levels]
 
 
+def test_another_effect_is_put_where_the_search_has_not_gone_on(monkeypatch):
+    """It went on from friction; of drag beside nothing nobody has asked."""
+    begun = []
+
+    def of(*effects):
+        state = SimpleNamespace(chain=(), added=added(effects), freedom=0.0)
+        return Fitted(state, 0.0)
+
+    def without(state, place):
+        left = [x.effect for k, x in enumerate(state.added) if k != place]
+        return of(*left).state
+
+    monkeypatch.setattr(combine_forces, "without_effect", without)
+    monkeypatch.setattr(combine_forces, "fitted", lambda state, _: Fitted(state, 0.0))
+    monkeypatch.setattr(
+        combine_forces, "_one_more", lambda found, *_: begun.extend(found)
+    )
+    best = of("friction", "drag")
+    combine_forces._with_another(best, [of("friction")], None, None, 0.0, None)
+    assert [item.effects for item in begun] == [("drag",)]
+
+
 @pytest.fixture(scope="module")
 def sliding():
     """Records of friction whose law has another form, and a linear base of them."""

@@ -427,7 +427,7 @@ def test_where_a_linear_store_begins_is_no_effect():
     found = decided("body", (record,), base, "zero-order", quantities=thermal)
     assert found.content["verdict"] == "no-gap"
     assert not found.content["effects"]
-    assert "a store stands in place of the base, and leaves" in found.content["reason"]
+    assert "a store stands in place of the base; then" in found.content["reason"]
     (store,) = (x for x in found.base.chain if isinstance(x, Store))
     assert store.exponent == 1.0
     assert store.rate == pytest.approx(0.04, rel=0.02)

@@ -4,41 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
-from hystbench.blocks.impedance import INPUTS, NUMBERS, Impedance
+from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.errors import InputError
 from hystbench.gap.bases.orders import (
     HIGHEST,
     ROUNDS,
     Found,
-    Judged,
     Orders,
     none_lowers_both,
     simplest_as_good,
     with_plainest_start,
 )
-from hystbench.gap.bases.output_error import without_mean
 from hystbench.gap.bases.slow_drive import behind_a_slow_drive
 from hystbench.gap.bases.spectral import fit_ratio
 from hystbench.gap.bases.split_linear import ENOUGH, best_split, chain_of, is_bent
+from hystbench.gap.bases.static_curve import behind_a_curve
+from hystbench.gap.bases.sums import Sum, impedance, static
 from hystbench.gap.bases.unsigned import with_signs
 from hystbench.gap.bases.wiener_hammerstein import HalvesError
 from hystbench.gap.records.coarser import coarser
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.thresholds import LOOSE, NUMBER_PAYS
 from hystbench.model import Model
-from hystbench.record import FloatArray, Mask
 
 LINEAR = "linear"
 """Name of the base that is identified as a linear model."""
-NO_SIGN, SLOW = "sensor-nonlinearity", "slew-limit"
-"""Names of effects that a linear model is found together with."""
+NO_SIGN, SLOW, CURVE = "sensor-nonlinearity", "slew-limit", "static curve"
+"""What a linear model is found together with: effects, and a curve of no name yet."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ class IdentifiedModel(Model):
     """A linear model that was identified from the fit records, with the gap in them."""
 
     found_with: str = ""
-    """Name of the effect that it was found together with, which is no part of it."""
+    """What it was found together with, which is no part of it."""
 
 
 def is_identified(base: Model) -> bool:
@@ -54,8 +53,8 @@ def is_identified(base: Model) -> bool:
     return isinstance(base, IdentifiedModel) and bool(base.free)
 
 
-def effect_found_with(base: Model) -> str:
-    """Name the effect that a base was found together with; nothing for most."""
+def found_with(base: Model) -> str:
+    """Say what a base was found together with; nothing for most."""
     return base.found_with if isinstance(base, IdentifiedModel) else ""
 
 
@@ -97,8 +96,9 @@ def identified_linear(evidence: Evidence) -> Linear:
     """Find the linear model that simulates the fit records best.
 
     The model is of input and output. One of an output with a sign is tried too if the
-    output is never below zero, and one behind a drive that goes no faster than a rate.
-    Either is taken if it leaves less than a quarter of the power on folds.
+    output is never below zero, one behind a drive that goes no faster than a rate, and
+    one behind a static curve. Any is taken if it leaves less than a quarter of the
+    power on folds.
 
     Parameters
     ----------
@@ -112,17 +112,15 @@ def identified_linear(evidence: Evidence) -> Linear:
     """
     plain, unit = linear_of(evidence), evidence.output.unit
     best = plain
-    for effect, words, without, other in _with_an_effect(evidence):
+    for effect, words, without, other in _with_an_effect(evidence, plain):
         found = linear_of(other)
         if found.fold_rms**2 < LOOSE * best.fold_rms**2:
             note = (
                 f"{found.note}, {words} ({without} {plain.fold_rms:.4g} {unit} on "
                 "folds)"
             )
-            model, constant = (
-                replace(found.model, found_with=effect),
-                plain.constant_rms,
-            )
+            model = replace(found.model, found_with=effect)
+            constant = plain.constant_rms
             best = found._replace(model=model, note=note, constant_rms=constant)
     fold, still = best.fold_rms, best.constant_rms
     if fold > (1 - NUMBER_PAYS) * still:
@@ -135,7 +133,7 @@ def identified_linear(evidence: Evidence) -> Linear:
 
 
 def _with_an_effect(
-    evidence: Evidence,
+    evidence: Evidence, plain: Linear
 ) -> Iterator[tuple[str, str, str, Evidence]]:
     """Give effects that no linear model shows, with records that are freed of each.
 
@@ -151,6 +149,9 @@ def _with_an_effect(
         slow, rate = slowed
         words = f"behind a drive of {rate:.4g} {evidence.input.unit}/s at most"
         yield SLOW, words, "without that limit", slow
+    curved = behind_a_curve(evidence, plain.model.chain, plain.fit_rms)
+    if curved is not None:
+        yield CURVE, "behind a static curve", "without that curve", curved
 
 
 def linear_of(evidence: Evidence) -> Linear:
@@ -286,81 +287,3 @@ def _halves(
         f"{np.sqrt(halves.cost / count):.4g} {unit}"
     )
     return chain, float(np.sqrt(error / count)), words
-
-
-@dataclass(frozen=True)
-class Sum(Judged):
-    """A base that is the sum of some signals, each times a number."""
-
-    chain: tuple[Block, ...]
-    words: str
-
-
-def static(orders: Orders) -> Sum:
-    """Fit a gain and a constant."""
-    signals = [np.column_stack([x.u, np.ones(len(x))]) for x in orders.evidence.fit]
-    fit, folds, (value, offset) = summed(signals, orders)
-    chain = (Gain(value=value, offset=offset),)
-    return Sum(fit, folds, orders.constant, chain, "order 0 (a gain and an offset)")
-
-
-def summed(
-    signals: Sequence[FloatArray], orders: Orders
-) -> tuple[float, float, list[float]]:
-    """Fit a sum of signals: error on all records, on the folds, and the numbers.
-
-    Parameters
-    ----------
-    signals : sequence of ndarray, shape (n, k)
-        Of each record, in columns; the last is of ones.
-    orders : Orders
-        The records with their folds.
-    """
-    evidence, whole = orders.evidence, orders.whole
-    sizes = np.maximum(np.sqrt(np.mean(np.vstack(signals) ** 2, axis=0)), 1e-300)
-    scaled = [columns / sizes for columns in signals]
-    outputs = [record.y for record in evidence.fit]
-    apart = evidence.own_offsets
-
-    def masked(parts: Sequence[FloatArray], masks: tuple[Mask, ...]) -> FloatArray:
-        taken = [x[mask] for x, mask in zip(parts, masks, strict=True)]
-        return np.concatenate([without_mean(x) for x in taken] if apart else taken)
-
-    def solved(masks: tuple[Mask, ...]) -> FloatArray:
-        left, right = masked(scaled, masks), masked(outputs, masks)
-        return np.asarray(np.linalg.lstsq(left, right, rcond=None)[0], np.float64)
-
-    def squares(numbers: FloatArray, masks: tuple[Mask, ...]) -> float:
-        error = masked(outputs, masks) - masked(scaled, masks) @ numbers
-        return float(error @ error)
-
-    best = solved(whole)
-    if apart:  # the mean of what each record has of its own
-        each = zip(scaled, outputs, whole, strict=True)
-        best[-1] = np.mean(
-            np.concatenate([(y - x @ best)[mask] for x, y, mask in each])
-        )
-    judged = sum(squares(solved(fold.train), fold.validation) for fold in orders.folds)
-    count = sum(int(mask.sum()) for mask in whole)
-    fit, folds = (float(np.sqrt(x / count)) for x in (squares(best, whole), judged))
-    return fit, folds, (best / sizes).tolist()
-
-
-def impedance(orders: Orders) -> Sum | None:
-    """Fit the force of a mass on a spring to a motion; none to any other input.
-
-    It grows with the frequency: a ratio of polynomials that can be run has no such.
-    """
-    evidence, about = orders.evidence, orders.evidence.quantities
-    if about.causality != "motion to force" or about.input not in INPUTS:
-        return None
-    signals = [
-        Impedance.columns(about.input, evidence.input_hold, record.u, record.dt)
-        for record in evidence.fit
-    ]
-    fit, folds, found = summed(signals, orders)
-    numbers: dict[str, Any] = dict(zip(NUMBERS, found, strict=True))
-    block = Impedance(**numbers, input=about.input, hold=evidence.input_hold)
-    return Sum(
-        fit, folds, orders.constant, (block,), "the impedance of a mass on a spring"
-    )

@@ -10,23 +10,21 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.blocks.base import Block
 from hystbench.blocks.calls import current
 from hystbench.blocks.command import Command
 from hystbench.blocks.external import External
 from hystbench.blocks.fmu import Fmu
-from hystbench.blocks.gain import Gain
-from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.blocks.onnx import Onnx
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.simulator import Simulator
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
+from hystbench.gap.bases.gpi import IdentifiedGpi, identified_gpi
 from hystbench.gap.bases.kinds import COMMAND, IDENTIFIED, kind_of_base
 from hystbench.gap.bases.linear import (
     NO_SIGN,
     IdentifiedModel,
-    effect_found_with,
+    found_with,
     identified_linear,
     with_its_numbers_free,
 )
@@ -34,10 +32,7 @@ from hystbench.gap.bases.split_linear import split_given
 from hystbench.gap.cache import records_digest, remembered
 from hystbench.gap.records.evidence import Evidence, check_units
 from hystbench.gap.simulation.simulation import Simulation
-from hystbench.gap.thresholds import ABOVE_NOISE
-from hystbench.metrics import rms
 from hystbench.model import Model, check_bounded, load_model
-from hystbench.record import Record
 
 
 def load_base(text: str | Model, evidence: Evidence) -> tuple[Model, str]:
@@ -69,7 +64,7 @@ def load_base(text: str | Model, evidence: Evidence) -> tuple[Model, str]:
     if isinstance(text, Model):
         model, note = checked_base(text, text.name, evidence), f"base {text.name}"
     elif text in IDENTIFIED:
-        of = IdentifiedModel if text == "linear" else Model
+        of = IdentifiedModel if text == "linear" else IdentifiedGpi
         return _kept(["base", text], deciding, lambda: _identified(text, deciding), of)
     else:
         model, note = given_base(text, evidence)
@@ -95,16 +90,16 @@ def _kept(
             evidence.identification,
         ],
         compute,
-        lambda found: [found[0].to_mapping(), found[1], effect_found_with(found[0])],
+        lambda found: [found[0].to_mapping(), found[1], found_with(found[0])],
         lambda kept: (_given_back(of, kept[0], kept[2]), kept[1]),
     )
 
 
-def _given_back(of: type[Model], content: Any, found_with: str) -> Model:
+def _given_back(of: type[Model], content: Any, beside: str) -> Model:
     """Give a base that was kept, and what it was found together with."""
     model = of.from_mapping(content, "a base that was kept")
     if isinstance(model, IdentifiedModel):
-        return replace(model, found_with=found_with)
+        return replace(model, found_with=beside)
     return model
 
 
@@ -243,70 +238,3 @@ def _column(evidence: Evidence) -> tuple[Model, str]:
         "needs a simulator that can be run again"
     )
     return model, note
-
-
-ORDER = 20
-"""Order N of the base: so many operators and one more."""
-
-
-def identified_gpi(evidence: Evidence) -> tuple[Model, str]:
-    """Identify the generalized Prandtl-Ishlinskii model of the slowest fit record.
-
-    Parameters
-    ----------
-    evidence : Evidence
-        Of its fit records only the slowest is looked at, or the one that the dataset
-        names for identification.
-
-    Returns
-    -------
-    Model
-        A ``gpi`` block, and a ``gain`` behind it where a constant was fitted.
-    str
-        One sentence: the record, the relative error, and whether it is tolerable.
-
-    Raises
-    ------
-    InputError
-        If the record is too short.
-    """
-    from hystbench.identification import identify  # late: scipy
-
-    slow = evidence.slowest
-    found = identify(slow.u, slow.y, ORDER)
-    block = GeneralizedPrandtlIshlinskii(
-        envelope=tuple(found.envelope.to_dict().values()),
-        thresholds=tuple(found.thresholds.tolist()),
-        weights=tuple(found.weights.tolist()),
-        start=found.start,
-    )
-    chain: tuple[Block, ...] = (block,)
-    if found.offset:
-        chain = (block, Gain(value=1.0, offset=found.offset))
-    note = (
-        f"gpi base of order {ORDER} from record {slow.name}, from {found.start}: "
-        f"{found.message}"
-    )
-    if not found.reached:
-        left = rms(slow.y - found.simulate(slow.u))
-        note += f". {_leaves(slow, left, evidence)}"
-    return Model("gpi", evidence.input, evidence.output, chain), note
-
-
-def _leaves(record: Record, left: float, evidence: Evidence) -> str:
-    """Say what it means that a base is not as near to its record as was asked."""
-    unit = record.output.unit
-    noise = evidence.noise_rms
-    known = "" if noise is None else f", with a noise of {noise:.3g} {unit}"
-    share = left / max(float(np.std(record.y)), 1e-300)
-    told = (
-        f"So it leaves {left:.3g} {unit} rms of record {record.name}, "
-        f"{100 * share:.2g} % of its output{known}"
-    )
-    if noise is not None and left**2 <= (1 + ABOVE_NOISE) * noise**2:
-        return f"{told}: that is noise, and the loop fits its record"
-    return (
-        f"{told}: an effect smaller than that can hide in the base's own error. Name a "
-        "slower or less noisy record under 'identification' in dataset.yaml, bring a "
-        "model of your own (--model FILE), or take --model linear for what has no loop"
-    )

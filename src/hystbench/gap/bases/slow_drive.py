@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from hystbench.blocks.slew_limit import SlewLimit
 from hystbench.gap.bases.spectral import Spectra, fit_ratio
@@ -64,6 +63,8 @@ def behind_a_slow_drive(evidence: Evidence) -> tuple[Evidence, float] | None:
     best = int(np.argmin(costs))
     if costs[best] >= costs[-1]:
         return None
+    from scipy.optimize import minimize_scalar  # late: few drives are slow
+
     low, high = shares[max(best - 1, 0)], shares[best + 1]
     steps = {"maxiter": STEPS}
     found = minimize_scalar(left, bounds=(low, high), method="bounded", options=steps)

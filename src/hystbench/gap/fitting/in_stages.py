@@ -7,6 +7,9 @@ These gentle records lead the numbers to where the others can be followed
 (continuation [1]_). So may all but the one of which most is left. Or they hold the
 numbers in a narrow valley, and that one leads on alone.
 
+Most fits are not stuck. A fit from where some records led is therefore ended early if
+it does not overtake the fit that it is to replace.
+
 References
 ----------
 .. [1] E. L. Allgower, K. Georg, "Introduction to Numerical Continuation Methods",
@@ -20,7 +23,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.gap.fitting.least_squares import Fitted, fitted, fitted_to_the_end
+from hystbench.gap.fitting.least_squares import (
+    QUICK,
+    Fitted,
+    fitted,
+    fitted_to_the_end,
+    judged,
+)
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.scored_samples import ScoredSamples
@@ -48,7 +57,7 @@ def fitted_in_stages(
     best = fitted_to_the_end(begun, score)
     if not gentle or not _leaves_much(best, score):
         return best
-    return min(best, _in_stages(begun, gentle, score), key=_score)
+    return min(best, _in_stages(begun, gentle, score, best), key=_score)
 
 
 def led_out(found: Fitted, score: Score) -> Fitted:
@@ -72,8 +81,9 @@ def led_out(found: Fitted, score: Score) -> Fitted:
     while count > 1 and found.state.free and _leaves_much(found, score):
         worst = int(np.argmax(found.state.squares))
         others = tuple(k for k in range(count) if k != worst)
-        ways = (_in_stages(found.state, some, score) for some in (others, (worst,)))
-        best = min(ways, key=_score)
+        best = found
+        for some in (others, (worst,)):
+            best = min(best, _in_stages(found.state, some, score, best), key=_score)
         if best.score > found.score - SCALE:
             break
         found = best
@@ -103,12 +113,29 @@ def gentlest(state: ModelState) -> tuple[int, ...]:
     return tuple(sorted(order[: len(order) // 2]))
 
 
-def _in_stages(state: ModelState, first: Sequence[int], score: Score) -> Fitted:
+def _in_stages(
+    state: ModelState, first: Sequence[int], score: Score, best: Fitted
+) -> Fitted:
+    """Fit to some records, and from there to all as long as that may overtake."""
     records = tuple(state.records[k] for k in first)
     some = replace(state, records=records, sample=ScoredSamples.of(records))
     near = fitted(some.settled(), Score.plain(some.sample, score.floor)).state
-    whole = replace(near, records=state.records, sample=state.sample)
-    return fitted_to_the_end(whole.settled(), score)
+    whole = replace(near, records=state.records, sample=state.sample).settled()
+    return _overtaking(Fitted(whole, judged(whole, score)), score, best)
+
+
+def _overtaking(begun: Fitted, score: Score, best: Fitted) -> Fitted:
+    """Fit a model on, to the end if it overtakes another fit.
+
+    It is left where the score would not fall so far in as many evaluations more, or
+    falls by what does not matter.
+    """
+    while begun.score >= best.score:
+        before, begun = begun, fitted(begun.state, score, QUICK)
+        behind = max(begun.score - best.score, SCALE)
+        if not before.score - begun.score >= behind:  # nor if it has run away
+            return begun
+    return fitted_to_the_end(begun.state, score)
 
 
 def _leaves_much(item: Fitted, score: Score) -> bool:

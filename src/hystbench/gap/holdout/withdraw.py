@@ -217,10 +217,15 @@ def without_names(
         for name, item in content["base_parameters"].items()
     }
     no_gap = taken["verdict"] == "no-gap"  # of the base re-tuned: there was no name
+    reason = content["reason"]
+    if taken["names"]:
+        reason = taken["why"]
+    elif not no_gap:
+        reason = f"{reason}; {taken['why']}"
     return {
         **content,
         "verdict": "no-gap" if no_gap else "unnamed",
-        "reason": content["reason"] if no_gap else taken["why"],
+        "reason": reason,
         "effects": [],
         "withdrawn": dict(taken),
         "base_parameters": numbers,

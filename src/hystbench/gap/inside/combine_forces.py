@@ -82,6 +82,7 @@ def together(
         The host alone first; of each set of effects the best laws.
     """
     every, alone, carried = list(found), found[0].score, list(found[1:])
+    went_on: list[Fitted] = []
     for count, keep in ((2, PAIRS), (3, 1)):
         if (
             count > most
@@ -91,6 +92,7 @@ def together(
             break
         if not of_stores(found[0]):
             carried = [item for item in carried if item.score < alone]
+        went_on += carried
         carried = _one_more(carried, offer, score, keep, alone, say)
         every += carried
     best = least(every)
@@ -98,7 +100,7 @@ def together(
         every += with_one_fewer(best, every, score)
         paying = best_that_pays(every)
         every += with_one_fewer(paying, every, score)
-        every += _with_another(paying, offer, score, alone, say)
+        every += _with_another(paying, went_on, offer, score, alone, say)
     return with_a_way(best_of_each(every))
 
 
@@ -145,17 +147,30 @@ def with_one_fewer(best: Fitted, found: Sequence[Fitted], score: Score) -> list[
 
 
 def _with_another(
-    best: Fitted, offer: Offer, score: Score, alone: float, say: Say
+    best: Fitted,
+    went_on: Sequence[Fitted],
+    offer: Offer,
+    score: Score,
+    alone: float,
+    say: Say,
 ) -> list[Fitted]:
     """Put another effect in the place of each of several.
 
-    One that came early may stand for another that is only seen beside the rest.
+    One that came early may stand for another that is only seen beside the rest. Not
+    where the search went on from the rest already.
     """
     if len(best.effects) < 2:
         return []
-    fewer = [without_effect(best.state, k) for k in range(len(best.effects))]
-    carried = [fitted(state, score) for state in fewer]
+    fewer = [
+        Fitted(without_effect(best.state, k), np.inf) for k in range(len(best.effects))
+    ]
+    known = {_laws(item) for item in went_on}
+    carried = [fitted(x.state, score) for x in fewer if _laws(x) not in known]
     return _one_more(carried, offer, score, SINGLES, alone, say)
+
+
+def _laws(item: Fitted) -> frozenset[tuple[str, str]]:
+    return frozenset(zip(item.effects, item.forms, strict=True))
 
 
 def _one_more(

@@ -191,8 +191,8 @@ def without_forces(
     alone = found[0].state.settled()
     before, after = lefts((start, alone), floor_rms, base.output.unit)
     sentence = (
-        f"{words}, and leaves {after} rms of the fit records above the noise "
-        f"floor, the base {before}"
+        f"{words}; then {after} rms of the fit records is left above the noise floor, "
+        f"with the base {before}"
     )
     rounds = (not_taken(alone, found),) if len(found) > 1 else ()
     model = of_free_numbers(base, alone)

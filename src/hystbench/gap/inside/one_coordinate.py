@@ -76,14 +76,27 @@ def best_host(states: Iterable[ModelState], score: Score) -> Fitted | None:
 
 def likeliest(states: Iterable[ModelState], score: Score) -> Fitted | None:
     """Fit hosts a little, and the best two of them to the end; None without any."""
-    quick = sorted(
-        (fitted(state, score, QUICK) for state in states), key=lambda item: item.score
-    )
-    return min(
-        (fitted_to_the_end(item.state, score) for item in quick[:2]),
-        key=lambda item: item.score,
-        default=None,
-    )
+
+    def moving(found: Iterable[Fitted]) -> list[Fitted]:
+        own = (item for item in found if not _is_constant_pull(item.state))
+        return sorted(own, key=lambda item: item.score)
+
+    quick = moving(fitted(state, score, QUICK) for state in states)
+    done = moving(fitted_to_the_end(item.state, score) for item in quick[:2])
+    return done[0] if done else None
+
+
+def _is_constant_pull(state: ModelState) -> bool:
+    """Tell whether a spring pulls alike from the first sample of a record to the last.
+
+    It then holds a mass that is begun in balance so far off that its motion is lost in
+    rounding. A mass without a spring, and a constant force on it, do the same.
+    """
+    block = state.chain[0]
+    if not isinstance(block, Mechanism) or block.stiffness == 0.0:
+        return False
+    slowest = np.min(np.abs(np.roots([block.mass, block.damping, block.stiffness])))
+    return bool(slowest * span_and_step(state.records)[0] < ROUNDED)
 
 
 def with_a_zero(best: Fitted, score: Score) -> Fitted:
@@ -104,6 +117,8 @@ BEGUN = 3
 Begun = tuple[Mechanism, float, float]
 """A mechanism of a grid, how many times it moves, and another signal beside it."""
 MOTIONS = ("position", "velocity", "acceleration")
+ROUNDED = 1e-6
+"""Share of itself by which what is no motion may change in a record."""
 
 
 def one_coordinate(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import minimize
 
 from hystbench.gap.fitting.least_squares import QUICK, fitted
 from hystbench.gap.fitting.model_score import score_of
@@ -49,6 +48,8 @@ def of_the_same_motion(state: ModelState, score: Score) -> ModelState:
     def at(moved: FloatArray) -> ModelState:
         numbers = np.clip(begun * (1 + moved), low, high)
         return state.at(dict(enumerate(numbers.tolist()))).settled()
+
+    from scipy.optimize import minimize  # late: most motions are one
 
     still = np.zeros(len(begun))
     found = minimize(

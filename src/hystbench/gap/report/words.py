@@ -178,16 +178,17 @@ def _withdrawn_sentence(gap: dict[str, Any]) -> str:
     taken = gap["withdrawn"]
     names = listed([_called(name, gap) for name in taken["names"]])
     what = f"{names[:1].upper()}{names[1:]}" if names else "The re-tuning of the base"
+    first = "No name stands" if names else "No name was found"
     were = "were" if len(taken["names"]) > 1 else "was"
     they = "they make" if len(taken["names"]) > 1 else "it makes"
     if taken["after"] is None:
         return (
-            f"No name stands. {what} {were} withdrawn: with that, the model cannot be "
-            "run to the end of the hold-out records."
+            f"{first}. {what} {were} withdrawn: with that, the model cannot be run to "
+            "the end of the hold-out records."
         )
     return (
-        f"No name stands. {what} {were} withdrawn: {they} the gap on the hold-out "
-        "records wider."
+        f"{first}. {what} {were} withdrawn: {they} the gap on the hold-out records "
+        "wider."
     )
 
 

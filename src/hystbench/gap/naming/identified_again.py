@@ -1,0 +1,91 @@
+"""Records for a loop to be identified from, without what named effects do to them.
+
+A base of plays is identified from a slow record, in which heat and creep show as well:
+the loop takes a part of them, and what is left of the record then looks like a slow
+path. Beside the law that does most the record is freed of what it does, and the loop
+can be identified again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.gap.bases.gpi import IdentifiedGpi
+from hystbench.gap.effects import effects
+from hystbench.gap.fitting.augmented_model import augmented
+from hystbench.gap.fitting.on_records import run_base
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.naming.add_effects import Named
+from hystbench.gap.naming.rounds import Candidate
+from hystbench.gap.naming.with_own_values import without
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.thresholds import ABOVE_NOISE, PAYS, SHAPE
+from hystbench.model import Model
+from hystbench.record import Record
+
+
+def freed_of_laws(
+    base: Model, named: Named, evidence: Evidence, floor_rms: float
+) -> Evidence | None:
+    """Take what laws do off the record that a loop was identified from.
+
+    Parameters
+    ----------
+    base : Model
+    named : Named
+        What was named beside it. Paths and a wrong shape are no laws; where there is
+        nothing else, the first law that paid in a round is taken.
+    evidence : Evidence
+        With the fit records.
+    floor_rms : float
+
+    Returns
+    -------
+    Evidence or None
+        None where the base is no loop that was identified, no law pays, or laws do no
+        more to the record than noise does.
+    """
+    laws = _laws(named) if isinstance(base, IdentifiedGpi) else None
+    if laws is None:
+        return None
+    slow = evidence.slowest
+    place = [item is slow for item in evidence.fit].index(True)
+    models = augmented(base, laws), base
+    with_them, alone = (run_base(x, (slow,), evidence.input_hold)[0] for x in models)
+    does = with_them - alone
+    if np.var(does) <= ABOVE_NOISE * floor_rms**2:
+        return None
+    freed = replace(slow, y=slow.y - does)
+    return replace(evidence, fit=_in_place(evidence.fit, place, freed))
+
+
+def _in_place(
+    records: Sequence[Record], place: int, record: Record
+) -> tuple[Record, ...]:
+    return (*records[:place], record, *records[place + 1 :])
+
+
+def _laws(named: Named) -> ModelState | None:
+    """Give the base with the laws that were named, or with the one that does best.
+
+    A path that was named first may have taken what a law does: beside it the law pays.
+    """
+    laws = _without_paths(named.state)
+    if laws.added:
+        return laws
+    tried = (item for one in named.rounds for item in one.ranking)
+    states = (x.state for x in tried if _is_law(x))
+    return next((_without_paths(x) for x in states if x is not None), None)
+
+
+def _without_paths(state: ModelState) -> ModelState:
+    return without(state, {*state.paths, SHAPE})
+
+
+def _is_law(item: Candidate) -> bool:
+    """Tell whether an effect pays, by a law of few numbers."""
+    pays = item.state is not None and item.gain >= PAYS
+    return pays and item.form not in effects()[item.effect].free_forms

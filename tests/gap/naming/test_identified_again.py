@@ -1,0 +1,77 @@
+"""A loop identified from a record in which an effect shows as well."""
+
+import numpy as np
+import pytest
+
+from hystbench.gap import search as module
+from hystbench.gap.asked import Asked
+from hystbench.gap.bases.load import load_base
+from hystbench.gap.naming.identified_again import freed_of_laws
+from hystbench.gap.records.evidence import Evidence
+from hystbench.model import Model
+from tests.gap.made import CURRENT, DISPLACEMENT, record
+from tests.gap.searched import among
+from tests.gap.small import hysteresis
+
+DT, TAU_S, HEAT_UM, NOISE = 0.02, 5.0, 0.04, 0.05
+LAWS = among("thermal-drift", "drift", "creep", "calibration-error", "sensor-lag")
+
+
+def warmed(u):
+    """What a body does that a current heats: exact over each sample."""
+    warm, path = 0.0, []
+    for value in u.tolist():
+        path.append(warm)
+        warm += (value**2 - warm) * -np.expm1(-DT / TAU_S)
+    return HEAT_UM * np.array(path)
+
+
+def rod(heats):
+    """A slow loop of falling size, and bursts with rest between them."""
+    random, t = np.random.default_rng(5), DT * np.arange(2000)
+    falling = 8.0 * np.interp(t, [0, 20, 40], [1.0, 1.0, 0.3])
+    inputs = {"slow": falling * np.sin(2 * np.pi * 0.2 * t)}
+    for name, start in (("a", 5.0), ("b", 12.0)):
+        on = (t > start) & (t < start + 15.0)
+        inputs[name] = 7.0 * on * np.sin(2 * np.pi * 1.5 * t)
+    loop = Model("loop", CURRENT, DISPLACEMENT, (hysteresis(),))
+    records = []
+    for name, u in inputs.items():
+        y = loop.simulate(u, DT) + heats * warmed(u)
+        y += NOISE * random.standard_normal(len(u))
+        records.append(record(u, y, name=name, dt=DT))
+    return Evidence("rod", tuple(records), (), "linear", NOISE, "slow")
+
+
+@pytest.fixture(scope="module")
+def heated():
+    evidence = rod(1.0)
+    return evidence, load_base("gpi", evidence)[0]
+
+
+def named(evidence, base):
+    found = module.search(evidence, base, Asked(vocabulary=LAWS)).content
+    return [item["name"] for item in found["effects"]]
+
+
+def test_heat_that_the_loop_had_taken_for_its_own_is_named(heated, monkeypatch):
+    evidence, base = heated
+    assert named(evidence, base) == ["thermal-drift"]
+    monkeypatch.setattr(module, "freed_of_laws", lambda *_: None)
+    assert named(evidence, base) == ["drift"]
+
+
+def test_a_record_of_the_loop_alone_is_left_as_it_is():
+    evidence = rod(0.0)
+    base, _ = load_base("gpi", evidence)
+    found = module._beside(base, evidence, Asked(vocabulary=LAWS), None)
+    about = found.named, evidence, found.floor.rms
+    assert freed_of_laws(base, *about) is None
+
+
+def test_a_base_that_was_given_is_not_identified(heated):
+    evidence, base = heated
+    given = Model(base.name, base.input, base.output, base.chain)
+    found = module._beside(given, evidence, Asked(vocabulary=LAWS), None)
+    assert freed_of_laws(base, found.named, evidence, found.floor.rms) is not None
+    assert freed_of_laws(given, found.named, evidence, found.floor.rms) is None
