@@ -290,7 +290,9 @@ def test_forces_have_to_be_fewer_than_what_leaves_nothing(alike, effects, most):
     left = score_of(base.state, score) - score.least(base.state.freedom)
     there = len(base.state.added)
     assert most_inside(base, floor.rms) == there + (left - PAYS) // FURTHER > there
-    # A path bends to whatever is there, and leaves nothing to any law.
+    # A path bends to whatever is there, and leaves nothing to any law. So do plays.
     path = state.added[0]._replace(effect="drift", form="winding path")
-    free = replace(named, state=replace(state, added=(path,)))
-    assert most_inside(free, floor.rms) == np.inf
+    plays = state.added[0]._replace(effect="hysteresis", charge=16.0)
+    for bends in (path, plays):
+        free = replace(named, state=replace(state, added=(bends,)))
+        assert most_inside(free, floor.rms) == np.inf

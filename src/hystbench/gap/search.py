@@ -102,7 +102,7 @@ def search(
         again = _beside(shifted, evidence, sought, quantities, found.hosts)
         found = found if stays(found, again) else again
         say("it is" if found is again else "that explains no more: it is not")
-    found = _identified_again(found, evidence, sought, quantities)
+    found = _identified_again(found, found.named, evidence, sought, quantities)
     if identified:
         found = _begun_otherwise(found, evidence, sought, quantities)
         found = _of_more_poles(found, evidence, sought)
@@ -112,6 +112,9 @@ def search(
         again = _beside(about, evidence, sought, quantities, found.hosts)
         if stays(found, again, re_tuned=True):
             say("that explains no more: they stay as they are")
+            if found.named.state.paths:  # beside other numbers it may be a law
+                by = again.named
+                found = _identified_again(found, by, evidence, sought, quantities)
         else:
             found = again
     found = _apart(found, sought)
@@ -134,7 +137,11 @@ def search(
 
 
 def _identified_again(
-    found: BesideBase, evidence: Evidence, asked: Asked, quantities: Quantities | None
+    found: BesideBase,
+    named: Named,
+    evidence: Evidence,
+    asked: Asked,
+    quantities: Quantities | None,
 ) -> BesideBase:
     """Name beside a loop identified from a record without what laws do to it.
 
@@ -142,8 +149,7 @@ def _identified_again(
     """
     latest = found
     for turn in range(TURNS):
-        about = latest.base, latest.named, evidence, latest.floor.rms
-        freed = freed_of_laws(*about)
+        freed = freed_of_laws(found.base, named, evidence, found.floor.rms)
         if freed is None:
             break
         asked.say("the record of the base shows an effect: naming beside it without")
@@ -151,7 +157,7 @@ def _identified_again(
         again = _beside(base, evidence, asked, quantities, found.hosts)
         if turn and stays(latest, again):
             break
-        latest = again
+        latest, named = again, again.named
     if latest is found:
         return found
     if stays(found, latest):

@@ -164,11 +164,12 @@ def most_inside(chain: Named, floor_rms: float) -> float:
 
     They have to lower its score by what an effect has to gain, and by what a further
     effect has to for each that the chain does not have. Where the chain leaves so
-    little that nothing can, they have to be fewer. A free form, as a path is, bends to
-    much of what is there: it says nothing of what could do better.
+    little that nothing can, they have to be fewer. A free form, as a path is, and a law
+    of many numbers bend to much of what is there: they say nothing of what could do
+    better.
     """
     state = chain.state
-    if has_free_form(state):
+    if has_free_form(state) or any(x.is_of_many_numbers for x in state.added):
         return np.inf
     score = Score.plain(state.sample, floor_rms**2)
     left = score_of(state, score) - score.least(state.freedom)

@@ -52,7 +52,7 @@ from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.memory import may_have_hysteresis
-from hystbench.gap.thresholds import FURTHER, PAYS
+from hystbench.gap.thresholds import AS_GOOD, FURTHER, PAYS
 from hystbench.model import Model
 from hystbench.quantities import Quantities, angle_in
 from hystbench.sentences import finely
@@ -283,9 +283,13 @@ def beats_chain(
 
     They have to lower the score on folds by as much as any effect; what either has to
     pay for each effect more than the other counts. Both models are refitted without
-    those records.
+    those records. Beside a law of many numbers it is enough that as many effects of few
+    numbers leave as little.
     """
     state, chain = inside.named.state, named.state
+    if _in_fewer_numbers(state, named, floor_rms**2):
+        say("inside: laws of few numbers leave as little as a chain of many")
+        return True
     score = Score.plain(state.sample, floor_rms**2)
     # What the chain changes elsewhere says nothing of where forces show.
     about = score, shows_in_one_record(inside.start, state, score)
@@ -295,6 +299,16 @@ def beats_chain(
     more = len(chain.added) - len(state.added) - inside.counts
     gain -= state.moved_charge - chain.moved_charge
     return gain + FURTHER * more >= PAYS
+
+
+def _in_fewer_numbers(state: ModelState, named: Named, floor: float) -> bool:
+    """Tell whether as few effects, none of many numbers, leave as little of the gap."""
+    own, others = state.added, named.state.added
+    some, every = (any(x.is_of_many_numbers for x in each) for each in (own, others))
+    if some or not every or len(own) > len(others):
+        return False
+    gap = max(named.rounds[0].before.power(floor), floor)
+    return named.state.share(state, floor, gap) < AS_GOOD
 
 
 def quantities_if_linear(base: Model, evidence: Evidence) -> Quantities | None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from hystbench.gap.bases.gpi import IdentifiedGpi
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.augmented_model import augmented
+from hystbench.gap.fitting.augmented_model import beside_blocks
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.add_effects import Named
@@ -24,7 +24,7 @@ from hystbench.gap.naming.with_own_values import without
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.thresholds import ABOVE_NOISE, PAYS, SHAPE
 from hystbench.model import Model
-from hystbench.record import Record
+from hystbench.record import FloatArray, Record
 
 
 def freed_of_laws(
@@ -36,8 +36,9 @@ def freed_of_laws(
     ----------
     base : Model
     named : Named
-        What was named beside it. Paths and a wrong shape are no laws; where there is
-        nothing else, the first law that paid in a round is taken.
+        What was named beside it, or beside the same with other numbers. Paths and a
+        wrong shape are no laws; where there is nothing else, the first law that paid in
+        a round is taken.
     evidence : Evidence
         With the fit records.
     floor_rms : float
@@ -53,13 +54,20 @@ def freed_of_laws(
         return None
     slow = evidence.slowest
     place = [item is slow for item in evidence.fit].index(True)
-    models = augmented(base, laws), base
-    with_them, alone = (run_base(x, (slow,), evidence.input_hold)[0] for x in models)
+    bare = without(laws, {item.effect for item in laws.added})
+    with_them, alone = (_simulated(base, own, slow) for own in (laws, bare))
     does = with_them - alone
     if np.var(does) <= ABOVE_NOISE * floor_rms**2:
         return None
     freed = replace(slow, y=slow.y - does)
     return replace(evidence, fit=_in_place(evidence.fit, place, freed))
+
+
+def _simulated(base: Model, state: ModelState, record: Record) -> FloatArray:
+    """Simulate a state's chain, with what stands beside it, on a whole record."""
+    chain = (*state.chain, *beside_blocks(state))
+    model = Model(base.name, base.input, base.output, chain)
+    return run_base(model, (record,), state.hold)[0]
 
 
 def _in_place(
