@@ -10,7 +10,9 @@ import contextlib
 import hashlib
 import importlib
 import json
+import multiprocessing
 import os
+import resource
 import runpy
 import shutil
 import signal
@@ -19,7 +21,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import hystbench
 from hystbench.errors import InputError
@@ -232,75 +234,49 @@ def _run(command: Sequence[str], folder: Path, log: Path, limit_s: float) -> End
     limit_s : float
         Seconds on the clock. Then it is killed with all that it began.
     """
-    sys.stdout.flush()
-    sys.stderr.flush()
-    begun = time.monotonic()
-    child = os.fork()
-    if child == 0:
-        _become(command, folder, log)
+    begun, before = time.monotonic(), _computed()
+    forked = multiprocessing.get_context("fork")
+    child = forked.Process(target=_become, args=(command, folder, log))
+    child.start()
     try:
-        while True:
-            ended, status, usage = os.wait4(child, os.WNOHANG)
-            seconds = time.monotonic() - begun
-            if ended:
-                code: int | None = os.waitstatus_to_exitcode(status)
-                break
-            if seconds > limit_s:
-                _kill(child)
-                _, _, usage = os.wait4(child, 0)
-                code = None
-                break
+        while child.is_alive() and time.monotonic() - begun <= limit_s:
             time.sleep(POLL_S)
-    except BaseException:
-        _kill(child)
-        raise
-    # what it began and left behind
-    _kill(child)
-    return Ended(code, seconds, usage.ru_utime + usage.ru_stime)
+        seconds, status = time.monotonic() - begun, child.exitcode
+    finally:
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            # also what it began and left behind
+            os.killpg(cast(int, child.pid), signal.SIGKILL)
+        child.kill()
+        child.join()
+    return Ended(status, seconds, _computed() - before)
 
 
-def _kill(group: int) -> None:
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.killpg(group, signal.SIGKILL)
+def _computed() -> float:
+    """Give the computing time of all processes that this one waited for."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def _become(command: Sequence[str], folder: Path, log: Path) -> None:
-    """Turn the forked process into the command; never returns."""
-    status = NOT_FOUND
-    try:
-        os.setsid()
-        printed = os.open(log, os.O_CREAT | os.O_WRONLY | os.O_TRUNC)
-        os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-        os.dup2(printed, 1)
-        os.dup2(printed, 2)
-        os.chdir(folder)
-        # a shell leaves behind where it was, and the workflow what it runs
-        for name in [key for key in os.environ if key.startswith(_TELLING)]:
-            del os.environ[name]
-        if command[0] == OWN:
-            status = _call(command)
-        else:
-            os.execvp(command[0], list(command))  # noqa: S606  (no shell is wanted)
-    except BaseException as error:
-        os.write(2, f"{type(error).__name__}: {error}\n".encode())
-        status = status or 1
-    finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(status)
-
-
-def _call(command: Sequence[str]) -> int:
-    """Run hystbench in this process, as ``python -m hystbench`` would."""
+    """Turn the forked process into the command."""
+    os.setsid()
+    printed = os.open(log, os.O_CREAT | os.O_WRONLY | os.O_TRUNC)
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    os.dup2(printed, 1)
+    os.dup2(printed, 2)
     # Print to the log: the parent's streams may be anything, a test's capture too.
     sys.stdout = os.fdopen(1, "w", closefd=False)
     sys.stderr = os.fdopen(2, "w", closefd=False)
-    sys.argv = list(command)
-    try:
+    os.chdir(folder)
+    # a shell leaves behind where it was, and the workflow what it runs
+    for name in [key for key in os.environ if key.startswith(_TELLING)]:
+        del os.environ[name]
+    if command[0] == OWN:
+        sys.argv = list(command)
         runpy.run_module(OWN, run_name="__main__")
-    except SystemExit as ended:
-        if ended.code is None or isinstance(ended.code, int):
-            return ended.code or 0
-        print(ended.code, file=sys.stderr)
-        return 1
-    return 0
+        return
+    try:
+        os.execvp(command[0], list(command))  # noqa: S606  (no shell is wanted)
+    except OSError as error:
+        print(f"{type(error).__name__}: {error}", file=sys.stderr)
+        sys.exit(NOT_FOUND)
