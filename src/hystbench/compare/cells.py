@@ -7,6 +7,7 @@ from statistics import median
 from typing import Literal
 
 from hystbench.compare.runs import ClaimEvidence, Run
+from hystbench.compare.words import paragraphs
 from hystbench.metrics import rms
 from hystbench.published import FILTERS, METRICS, Metric
 from hystbench.published.consistency import Standing, check, standings
@@ -188,81 +189,26 @@ def off_cells(
     off = [cell for cell in mse if cell.distance > math.log10(NEAR_FACTOR)]
     percent = rms_error_percent(evidence)
 
+    def same_way(cell: ComparedCell, others: Sequence[ComparedCell]) -> str:
+        """Count those of a row or a column that are off to the same side."""
+        ratios = [
+            (cell.log10_ratio or 0) * (other.log10_ratio or 0) for other in others
+        ]
+        return f"{sum(ratio > 0 for ratio in ratios)} of {len(others)}"
+
     def known(cell: ComparedCell) -> str:
-        if cell.ours is None:
-            return f"Ours {cell.status}."
-        parts = (
-            _size(cell),
-            _company(cell, mse),
-            _consistency(cell),
-            _record(percent.get(cell.signal)),
-            _start_up(evidence.runs[cell.signal, cell.model]),
-            _spread(cell),
+        row = [c for c in mse if c.signal == cell.signal and c.model in FILTERS]
+        column = [c for c in mse if c.model == cell.model]
+        (text,) = paragraphs(
+            __package__,
+            "known.txt.j2",
+            cell=cell,
+            is_filter=cell.model in FILTERS,
+            row=same_way(cell, row),
+            column=same_way(cell, column),
+            percent=percent.get(cell.signal),
+            run=evidence.runs[cell.signal, cell.model],
         )
-        return f"{'; '.join(filter(None, parts))}."
+        return text
 
     return tuple(OffCell(cell, known(cell)) for cell in off)
-
-
-def _size(cell: ComparedCell) -> str:
-    if not cell.ours:
-        return "Ours is zero"
-    high = cell.ours > float(cell.published)
-    factor = 10**cell.distance
-    return f"Ours is too {'high' if high else 'low'} by a factor of {factor:.2g}"
-
-
-def _company(cell: ComparedCell, cells: Sequence[ComparedCell]) -> str:
-    """Tell whether the row or the column is off the same way."""
-
-    def same_way(other: ComparedCell) -> bool:
-        mine, theirs = cell.log10_ratio, other.log10_ratio
-        return mine is not None and theirs is not None and mine * theirs > 0
-
-    if cell.model not in FILTERS:
-        return ""
-    row = [c for c in cells if c.signal == cell.signal and c.model in FILTERS]
-    column = [c for c in cells if c.model == cell.model]
-    return (
-        f"{sum(map(same_way, row))} of {len(row)} filters on this signal and this "
-        f"filter on {sum(map(same_way, column))} of {len(column)} signals lie on "
-        "that side"
-    )
-
-
-def _consistency(cell: ComparedCell) -> str:
-    return {
-        "yes": "",
-        "no": "the published pair of MSE and RE cannot be true beside the others of "
-        "its signal",
-        "undecided": "the published pair of MSE and RE may be wrong",
-    }[cell.published_consistent]
-
-
-def _record(percent: float | None) -> str:
-    if percent is None:
-        return ""
-    off = f"{percent:+.1f}"
-    return f"the RMS displacement is off by {off} %" if float(off) else ""
-
-
-def _start_up(run: Run) -> str:
-    share = run.start_up_share
-    if share is None or run.error_kind == "free-run simulation":
-        return ""
-    return (
-        f"the first {100 * run.transient_fraction:.0f} % of the record hold "
-        f"{100 * share:.0f} % of our squared error"
-    )
-
-
-def _spread(cell: ComparedCell) -> str:
-    low, high = cell.spread_low, cell.spread_high
-    if low is None or high is None:
-        return ""
-    reached = low <= float(cell.published) <= high
-    return (
-        f"over equally good twins ours goes from {low:.2g} to "
-        + ("divergence" if math.isinf(high) else f"{high:.2g}")
-        + f", which {'holds' if reached else 'does not hold'} the published value"
-    )

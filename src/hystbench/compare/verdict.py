@@ -4,12 +4,13 @@ The words are in ``sentences.txt.j2`` and ``first.txt.j2``; every number comes f
 summary.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from hystbench.compare.claims import CLAIMS
 from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.tables import PrintedTable, grid
+from hystbench.compare.words import paragraphs
 
 #: An RMS displacement is told where it is off by more (%).
 NEAR_RMS = 3.0
@@ -25,45 +26,21 @@ def _percent(fraction: float | None) -> str:
     return "none" if fraction is None else f"{100 * fraction:.0f} %"
 
 
-def _rms_off(percent: Mapping[str, float]) -> list[str]:
-    """List the signals on which the twin's RMS displacement is off."""
-    return [f"{name} {v:+.1f} %" for name, v in percent.items() if abs(v) > NEAR_RMS]
-
-
-def _paragraphs(template: str, summary: Mapping[str, Any]) -> list[str]:
-    """Fill a template with the summary; a paragraph of it is one line."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    words = Environment(
-        loader=PackageLoader("hystbench.compare", ""),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        autoescape=False,  # noqa: S701 - plain text
-    )
+def _filled(template: str, summary: Mapping[str, Any]) -> list[str]:
+    """Fill a template with the summary."""
     short = {each.id: each.shortly or each.id for each in CLAIMS}
-    filters: dict[str, Callable[[Any], str]] = {
-        "percent": _percent,
-        "shortly": lambda name: short[name],
-        "digits": lambda value: f"{value:.3g}",
-        "short": lambda value: f"{value:g}",
-        "milli": lambda value: f"{1e3 * value:+.3g}",
-    }
-    words.filters.update(filters)
     given = {"held_out": None, "calibrated": None, "whole": summary, **summary}
-    text = words.get_template(template).render(
-        given, rms_off=_rms_off, near_rms=f"{NEAR_RMS:g}"
-    )
-    return [" ".join(part.split()) for part in text.split("\n\n") if part.strip()]
+    return paragraphs(__package__, template, short=short, near_rms=NEAR_RMS, **given)
 
 
 def sentences(summary: Mapping[str, Any]) -> list[str]:
     """Give the verdict in words: first what no fit has read, apart from the rest."""
-    return _paragraphs("sentences.txt.j2", summary)
+    return _filled("sentences.txt.j2", summary)
 
 
 def first_result(summary: Mapping[str, Any]) -> str:
     """Write the README's table of what was found as Markdown, failures among it."""
-    lines = [line.split(" | ") for line in _paragraphs("first.txt.j2", summary)]
+    lines = [line.split(" | ") for line in _filled("first.txt.j2", summary)]
     return grid(lines, ("of the paper", "found"), "pipe") + "\n"
 
 

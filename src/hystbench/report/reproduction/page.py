@@ -41,8 +41,7 @@ def page(results: Results) -> str:
     ]
     measured = results.settings["dataset"] is not None
     own = (_measured if measured else _twin)(results)
-    expected = words.OF_MEASURED if measured else words.OF_TWIN
-    own["missing"] += words.not_drawn(expected, pictures)
+    own["missing"] = words.missing(own.pop("run"), pictures, measured)
     own["files"] += [
         *(_file(each.file.href, each.caption.partition(".")[0]) for each in further),
         *(
@@ -90,10 +89,10 @@ def _twin(results: Results) -> dict[str, Any]:
     return {
         "title": "hystbench: a filter of generalized play operators, reproduced on a "
         "twin",
-        "sentences": [words.of_errors(held), words.of_claims(on_held_out)],
+        "sentences": words.of_twin(held, on_held_out),
         "source": "The paper's numbers are of a measured actuator whose data are not "
         "public. Ours are of its twin, a simulation.",
-        "missing": words.not_run(cells),
+        "run": cells,
         "first": errors.headline_table(cells, "held-out" if held else "calibrated"),
         "near": errors.nearness_table(cells),
         **_full((compare / "verdict.md").read_text(encoding="utf-8")),
@@ -133,7 +132,7 @@ def _measured(results: Results) -> dict[str, Any]:
         "sentences": words.of_measured(name, rows),
         "source": "The paper has no numbers for these records, so the errors stand "
         "alone.",
-        "missing": [],
+        "run": (),
         "first": errors.measured_headline(rows),
         "errors": errors.measured_table(rows, results.caption("errors"), files),
         "files": [
