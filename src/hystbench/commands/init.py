@@ -12,10 +12,10 @@ from hystbench import options
 from hystbench.command_files import writes
 from hystbench.errors import InputError
 from hystbench.files import write_text
-from hystbench.inspection.columns import Flags
 from hystbench.inspection.draft import Draft, draft
 from hystbench.inspection.entries import dataset_text
 from hystbench.inspection.input_summary import summary_of
+from hystbench.inspection.user import Flags
 from hystbench.options import In, command, of_class
 
 PLACE = "dataset.yaml"

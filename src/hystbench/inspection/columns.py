@@ -2,13 +2,11 @@
 
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Annotated, Literal
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from hystbench.device_kinds import DEVICE_KINDS, DeviceKind
 from hystbench.errors import InputError, refuse_unknown
 from hystbench.formats import Column, Table
 from hystbench.inspection.clocks import clock_of
@@ -19,7 +17,7 @@ from hystbench.inspection.names import (
     is_time,
     split_unit,
 )
-from hystbench.options import ChoiceOrNone
+from hystbench.inspection.user import Flags, User
 from hystbench.record import FloatArray
 from hystbench.units import NONE, check_known, is_known, plain
 
@@ -27,41 +25,6 @@ SHORTEST = 20
 """Samples of a signal; fewer are a table of something else."""
 
 _OF_MATRIX = re.compile(r"(?P<stem>.+)(?P<place>\(:,\d+\))")
-
-
-Ask = Callable[[str, Sequence[str], str, str | None], str]
-"""Asks the user: takes a question, the choices that there are, if any, the flag that
-answers it, and what is taken where nobody is there; if that is None it is refused."""
-
-
-@dataclass(frozen=True)
-class Flags:
-    """What flags say already, each with its help."""
-
-    input: Annotated[str | None, "Column of the input."] = None
-    output: Annotated[str | None, "Column of the output."] = None
-    time: Annotated[str | None, "Column of time."] = None
-    input_unit: Annotated[str | None, "Its unit, such as A; '-' for none."] = None
-    output_unit: Annotated[str | None, "Its unit, such as um; '-' for none."] = None
-    time_unit: Annotated[str | None, "Its unit; seconds where the file tells none."] = (
-        None
-    )
-    sampling_frequency: Annotated[float | None, "In Hz, where no column is time."] = (
-        None
-    )
-    hold_out: tuple[Annotated[str, "Name of a record to hold out."], ...] = ()
-    missing: Annotated[
-        Literal["interpolate", "split"] | None,
-        "What to do where samples are missing.",
-    ] = None
-    device: Annotated[
-        DeviceKind | None,
-        ChoiceOrNone(DEVICE_KINDS),
-        "Kind of the device; leave it out where none fits.",
-    ] = None
-    name: Annotated[
-        str | None, "Name of the dataset; by default that of its folder."
-    ] = None
 
 
 @dataclass(frozen=True)
@@ -90,7 +53,6 @@ class ChosenColumns:
     output: str
     units: dict[str, str]
     simulated: str | None = None
-    notes: list[str] = field(default_factory=list)
 
 
 def parts_of(table: Table) -> list[RecordColumns]:
@@ -147,58 +109,45 @@ def _part(
     )
 
 
-def signals_of(parts: Sequence[RecordColumns], given: Flags, ask: Ask) -> ChosenColumns:
+def signals_of(parts: Sequence[RecordColumns], user: User) -> ChosenColumns:
     """Find which columns are time, input and output, of most parts."""
-    common = _common(parts)
+    given, asked, common = user.given, _asked(user.given), _common(parts)
     first = next(part for part in parts if set(common) <= set(part.columns))
-    told = {name: _told(name, first.columns[name]) for name in common}
-    time = _time(first, told, given)
-    rest = [
-        name
-        for name in common
-        if name != time and not (is_time(*told[name]) and name not in _asked(given))
-    ]
-    simulated = [n for n in rest if is_simulated(told[n][0]) and n not in _asked(given)]
-    rest = [name for name in rest if name not in simulated]
-    for name in _asked(given):
+    for name in asked:
         refuse_unknown(
             name, common, f"{first.where}: no column {name!r} in all records"
         )
-    chosen = _channels(first, rest, told, given, ask)
-    units, notes = {}, []
-    if given.input is None and given.output is None:
-        pair = [name for name in rest if name in chosen]
-        if both_answer([told[name] for name in pair]):
-            notes.append(
-                f"input: {chosen[0]!r}, output: {chosen[1]!r}; names and units do not "
-                f"tell which is which ('--input {chosen[1]}' takes the other)"
-            )
-    for key, name in (("input", chosen[0]), ("output", chosen[1])):
-        asked = getattr(given, f"{key}_unit")
-        unit = asked if asked is not None else told[name][1]
-        if unit is None:
-            unit = ask(
-                f"Unit of the {key} {name!r} ('-' for none)", (), f"--{key}-unit", "-"
-            )
-        check_known(f"--{key}-unit", unit)
-        if unit in NONE and asked is None:
-            notes.append(
-                f"{key} {name!r}: no unit is told; '-' is written (--{key}-unit)"
-            )
-        units[key] = plain(unit) or "-"
+    told = {name: _told(name, first.columns[name]) for name in common}
+    time = _time(first, told, given)
+    rest = [n for n in common if n != time and (n in asked or not is_time(*told[n]))]
+    simulated = [n for n in rest if is_simulated(told[n][0]) and n not in asked]
+    rest = [name for name in rest if name not in simulated]
+    chosen = _channels(first, rest, told, user)
+    names = dict(zip(("input", "output"), chosen, strict=True))
+    pair = [told[name] for name in rest if name in chosen]
+    if given.input is None and given.output is None and both_answer(pair):
+        user.note("either way", **names)
+    units = {key: _unit(key, name, told[name][1], user) for key, name in names.items()}
     unit_of_time = given.time_unit or (told[time][1] if time else None)
     if time is not None and unit_of_time is None:
         counted = clock_of(first.columns[time].values)
         unit_of_time, taken = counted or ("s", "seconds")
-        notes.append(f"time {time!r}: no unit is told; taken for {taken} (--time-unit)")
-    return ChosenColumns(
-        time,
-        plain(unit_of_time or "s"),
-        *chosen,
-        units,
-        simulated[0] if len(simulated) == 1 else None,
-        notes,
-    )
+        user.note("time", time=time, taken=taken)
+    of_base = simulated[0] if len(simulated) == 1 else None
+    return ChosenColumns(time, plain(unit_of_time or "s"), *chosen, units, of_base)
+
+
+def _unit(key: str, name: str, told: str | None, user: User) -> str:
+    """Give a channel's unit: that of a flag, the one that is told, or one asked for."""
+    flag = f"--{key}-unit"
+    asked = getattr(user.given, f"{key}_unit")
+    unit = told if asked is None else asked
+    if unit is None:
+        unit = user.ask(f"Unit of the {key} {name!r} ('-' for none)", (), flag, "-")
+    check_known(flag, unit)
+    if unit in NONE and asked is None:
+        user.note("no unit", key=key, name=name)
+    return plain(unit) or "-"
 
 
 def _common(parts: Sequence[RecordColumns]) -> list[str]:
@@ -255,10 +204,10 @@ def _channels(
     part: RecordColumns,
     names: Sequence[str],
     told: Mapping[str, tuple[str, str | None]],
-    given: Flags,
-    ask: Ask,
+    user: User,
 ) -> tuple[str, str]:
     """Name input and output: asked for, told by names and units, or asked."""
+    given = user.given
     moving = [
         n for n in names if n in _asked(given) or np.ptp(_finite(part.columns[n])) > 0
     ]
@@ -277,9 +226,9 @@ def _channels(
         if found[k] is None:
             open_ = [name for name in left if name not in found]
             alone = len(open_) == 1 and found[1 - k] is not None
-            asked = f"Which column is the {key}"
+            asked = f"Which column is the {key}", open_, f"--{key}"
             likely_one = open_[0] if both_answer([told[n] for n in open_]) else None
-            found[k] = open_[0] if alone else ask(asked, open_, f"--{key}", likely_one)
+            found[k] = open_[0] if alone else user.ask(*asked, likely_one)
     one, two = found
     if one is None or two is None or one == two:
         raise InputError(

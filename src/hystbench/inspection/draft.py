@@ -12,8 +12,6 @@ from hystbench.errors import InputError
 from hystbench.formats import Table, read_table
 from hystbench.inspection.columns import (
     SHORTEST,
-    Ask,
-    Flags,
     RecordColumns,
     fits,
     parts_of,
@@ -26,6 +24,7 @@ from hystbench.inspection.entries import (
     missing_in,
     with_roles,
 )
+from hystbench.inspection.user import Ask, Flags, User, words
 from hystbench.periods import find_period
 from hystbench.record import Record
 from hystbench.written import sha256
@@ -65,11 +64,12 @@ def draft(files: Sequence[Path], place: Path, given: Flags, ask: Ask) -> Draft:
     """
     if given.sampling_frequency is not None:
         checked_frequency(given.sampling_frequency)
-    notes: list[str] = []
+    user = User(given, ask)
     parts: list[RecordColumns] = []
     for file in files:
         table = read_table(file)
-        notes += [f"{file.name}: {note}" for note in table.notes]
+        for note in table.notes:
+            user.note("of file", file=file.name, note=note)
         found = parts_of(table)
         if not found:
             raise InputError(
@@ -77,16 +77,12 @@ def draft(files: Sequence[Path], place: Path, given: Flags, ask: Ask) -> Draft:
                 f"input and an output{_has(table)}"
             )
         parts += found
-    signals = signals_of(parts, given, ask)
+    signals = signals_of(parts, user)
     used = [part for part in parts if fits(part, signals)]
     for part in parts:
         if part not in used:
-            notes.append(
-                f"{part.where}: left out, as it has no {signals.input!r} and "
-                f"{signals.output!r}"
-            )
-    notes += signals.notes
-    about, entries, owners = content_of(used, signals, given, place, ask, notes)
+            user.note("left out", where=part.where, **vars(signals))
+    about, entries, owners = content_of(used, signals, place, user)
     records = _read(place, about, entries)
     warnings: list[str] = []
     if len(entries) == 1 and not given.hold_out:
@@ -95,19 +91,12 @@ def draft(files: Sequence[Path], place: Path, given: Flags, ask: Ask) -> Draft:
         pieces = _read(place, about, cut)
         if common_piece(*map(Written.of, pieces)) is None:
             entries, records = cut, pieces
-            notes.append(
-                "one record alone: its last part is held out, by whole periods where "
-                "it repeats; a record of another kind would prove more"
-            )
+            user.note("cut in two")
         else:
             entries = [{**entries[0], "use": "fit"}]
-            warnings.append(
-                f"{part.where}: the last part repeats what is before it to the last "
-                "digit, so nothing is held out; add a record of another input to the "
-                "files and run 'hystbench init' again"
-            )
+            warnings.append(words("repeats", where=part.where))
     else:
-        entries = with_roles(entries, records, given, notes)
+        entries = with_roles(entries, records, user)
     for entry, record in zip(entries, records, strict=True):
         period = find_period(record.u)
         if period is not None:
@@ -116,15 +105,11 @@ def draft(files: Sequence[Path], place: Path, given: Flags, ask: Ask) -> Draft:
     for entry, file in zip(entries, dataset.record_files.values(), strict=True):
         entry["sha256"] = sha256(file)
     records = [
-        replace(
-            record,
-            use=entry["use"],
-            period_samples=entry.get("period_samples"),
-        )
+        replace(record, use=entry["use"], period_samples=entry.get("period_samples"))
         for entry, record in zip(entries, records, strict=True)
     ]
     warnings += doubts(dataset, records)
-    return Draft(dataset, tuple(records), tuple(notes), tuple(warnings))
+    return Draft(dataset, tuple(records), tuple(user.notes), tuple(warnings))
 
 
 def _read(

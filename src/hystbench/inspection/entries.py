@@ -16,9 +16,7 @@ from hystbench.errors import InputError, refuse_unknown
 from hystbench.inspection.clocks import Ticks, ticks_of
 from hystbench.inspection.columns import (
     SHORTEST,
-    Ask,
     ChosenColumns,
-    Flags,
     RecordColumns,
 )
 from hystbench.inspection.input_summary import (
@@ -28,6 +26,7 @@ from hystbench.inspection.input_summary import (
     summary_of,
 )
 from hystbench.inspection.names import split_unit
+from hystbench.inspection.user import User, words
 from hystbench.periods import find_period
 from hystbench.record import Mask, Record
 from hystbench.samples import UNIFORM_TOLERANCE
@@ -48,14 +47,9 @@ Entry = dict[str, Any]
 
 
 def content_of(
-    parts: Sequence[RecordColumns],
-    signals: ChosenColumns,
-    given: Flags,
-    place: Path,
-    ask: Ask,
-    notes: list[str],
+    parts: Sequence[RecordColumns], signals: ChosenColumns, place: Path, user: User
 ) -> tuple[dict[str, Any], list[Entry], list[RecordColumns]]:
-    """Give dataset.yaml but for roles and periods; notes are added to.
+    """Give dataset.yaml but for roles and periods.
 
     Returns
     -------
@@ -66,60 +60,50 @@ def content_of(
     owners : list of RecordColumns
         The part that each entry is of.
     """
-    about: dict[str, Any] = {"name": given.name or _name_of(place)}
-    if given.device is not None:
-        about["device"] = {"kind": given.device}
+    about: dict[str, Any] = {"name": user.given.name or _name_of(place)}
+    if user.given.device is not None:
+        about["device"] = {"kind": user.given.device}
+    clocks = [] if signals.time is None else [_ticks(each, signals) for each in parts]
+    rounded = any(clock.rounded for clock in clocks)
     entries: list[Entry] = []
     owners: list[RecordColumns] = []
-    clocks: list[Ticks] = []
-    for part in parts:
-        if signals.time is not None:
-            unit = seconds("--time-unit", signals.time_unit)
-            time = part.columns[signals.time].values * unit
-            clocks.append(ticks_of(time, part.where, part.table))
-        whole = {"file": _from(place, part)}
+    for k, part in enumerate(parts):
+        whole: Entry = {"file": _from(place, part)}
         if part.group:
             whole["group"] = part.group
-        pieces = _without_missing(part, signals, whole, given, ask, notes)
+        if rounded:
+            whole["sampling_frequency_hz"] = float(f"{1 / clocks[k].step:.9g}")
+        pieces = _without_missing(part, signals, whole, user)
         entries += pieces
         owners += [part] * len(pieces)
-    if any(clock.rounded for clock in clocks):
-        steps = {
-            id(part): clock.step for part, clock in zip(parts, clocks, strict=True)
-        }
-        for entry, part in zip(entries, owners, strict=True):
-            entry["sampling_frequency_hz"] = float(f"{1 / steps[id(part)]:.9g}")
-        notes.append(
-            f"time {signals.time!r} is rounded to more than the sampling interval; "
-            "the sampling frequency is written in its place"
-        )
+    if rounded:
+        user.note("rounded", time=signals.time)
     elif clocks:
         about["time"] = {"column": signals.time, "unit": signals.time_unit}
         tolerance = max(clock.tolerance for clock in clocks)
         if tolerance > UNIFORM_TOLERANCE:
             about["time"]["tolerance"] = round(tolerance, 3)
-            notes.append(
-                f"time: steps differ by up to {100 * tolerance:.2g} % of their mean; "
-                "'tolerance' is written, and the mean step is taken"
-            )
-    else:
-        _frequency(about, parts, signals, given, ask, notes)
+            user.note("tolerance", percent=100 * tolerance)
+    elif (frequency := _frequency(parts, signals, user)) is not None:
+        about["sampling_frequency_hz"] = frequency
     for key, name in (("input", signals.input), ("output", signals.output)):
         about[key] = {"column": name, "unit": signals.units[key]}
         words = split_unit(name)[0]
         if words and words != name and not name.endswith("_" + signals.units[key]):
             about[key]["name"] = words
     if signals.simulated is not None:
-        about["simulated"] = {
-            "column": signals.simulated,
-            "unit": signals.units["output"],
-        }
-        notes.append(
-            f"{signals.simulated!r} is taken for a simulator's output, in the unit of "
-            "the output; it is a base for 'hystbench gap --model column'"
-        )
+        unit = signals.units["output"]
+        about["simulated"] = {"column": signals.simulated, "unit": unit}
+        user.note("simulated", column=signals.simulated)
     _give_names(entries)
     return about, entries, owners
+
+
+def _ticks(part: RecordColumns, signals: ChosenColumns) -> Ticks:
+    """Look at the clock of a part."""
+    unit = seconds("--time-unit", signals.time_unit)
+    time = part.columns[signals.time or ""].values * unit
+    return ticks_of(time, part.where, part.table)
 
 
 def _from(place: Path, part: RecordColumns) -> str:
@@ -131,35 +115,22 @@ def _from(place: Path, part: RecordColumns) -> str:
 
 
 def _frequency(
-    about: dict[str, Any],
-    parts: Sequence[RecordColumns],
-    signals: ChosenColumns,
-    given: Flags,
-    ask: Ask,
-    notes: list[str],
-) -> None:
-    """Write a sampling frequency, unless each file tells its own when it is read."""
-    if given.sampling_frequency is not None:
-        about["sampling_frequency_hz"] = given.sampling_frequency
-        return
+    parts: Sequence[RecordColumns], signals: ChosenColumns, user: User
+) -> float | None:
+    """Give a sampling frequency; none where each file tells its own when it is read."""
+    if user.given.sampling_frequency is not None:
+        return user.given.sampling_frequency
+    names = signals.input, signals.output
     told = [
-        part.table.sampling_frequency(
-            [part.columns[signals.input], part.columns[signals.output]]
-        )
+        part.table.sampling_frequency([part.columns[name] for name in names])
         for part in parts
     ]
     if None in told:
-        text = ask(
-            "No column of time; sampling frequency in Hz",
-            (),
-            "--sampling-frequency",
-            None,
-        )
-        about["sampling_frequency_hz"] = checked_frequency(text)
-        return
+        question = "No column of time; sampling frequency in Hz"
+        return checked_frequency(user.ask(question, (), "--sampling-frequency", None))
     frequencies = sorted({value for value in told if value})
-    said = " and ".join(f"{value:g} Hz" for value in frequencies)
-    notes.append(f"no column of time; the files tell a sampling frequency of {said}")
+    user.note("frequency", told=" and ".join(f"{value:g} Hz" for value in frequencies))
+    return None
 
 
 def checked_frequency(told: str | float) -> float:
@@ -187,28 +158,22 @@ def missing_in(part: RecordColumns, signals: ChosenColumns) -> Mask:
 
 
 def _without_missing(
-    part: RecordColumns,
-    signals: ChosenColumns,
-    entry: Entry,
-    given: Flags,
-    ask: Ask,
-    notes: list[str],
+    part: RecordColumns, signals: ChosenColumns, entry: Entry, user: User
 ) -> list[Entry]:
     """Give the entries of a part: one, or a piece each between missing samples."""
     bad = missing_in(part, signals)
     if not bad.any():
         return [entry]
-    first = int(np.argmax(bad))
-    said = (
-        f"{part.where}: {np.count_nonzero(bad)} of {len(bad)} samples are missing, the "
-        f"first at {part.table.place(first)}"
+    said = words(
+        "missing",
+        where=part.where,
+        count=np.count_nonzero(bad),
+        samples=len(bad),
+        place=part.table.place(int(np.argmax(bad))),
     )
-    what = given.missing or ask(
-        f"{said}; 'interpolate' them or 'split' the record there",
-        ("interpolate", "split"),
-        "--missing",
-        None,
-    )
+    ways = ("interpolate", "split")
+    question = f"{said}; 'interpolate' them or 'split' the record there"
+    what = user.given.missing or user.ask(question, ways, "--missing", None)
     u = part.columns[signals.input].values
     cut = cannot_be_bridged(u) if what == "interpolate" else bad
     entries, left = [], np.count_nonzero(~bad)
@@ -221,17 +186,15 @@ def _without_missing(
         whole = not bad[there[0] : there[-1]].any()
         entries.append(piece if whole else {**piece, "missing": "interpolate"})
         left -= len(there)
-    if what == "interpolate":
-        said += "; they are interpolated, and no score counts them"
-    if cut.any():
-        long = "the input's gaps are longer than a quarter of its fastest period; "
-        said += (
-            f"; {long if what == 'interpolate' else ''}the record is split into "
-            f"{len(entries)} pieces"
-        )
-    if left:
-        said += f"; {left} samples in pieces shorter than {SHORTEST} are left out"
-    notes.append(said)
+    told = {
+        "interpolated": what == "interpolate",
+        "split": what == "split",
+        "split at long gaps": what == "interpolate" and cut.any(),
+        "short pieces": left > 0,
+    }
+    numbers = {"pieces": len(entries), "left": left, "shortest": SHORTEST}
+    more = [words(topic, **numbers) for topic, holds in told.items() if holds]
+    user.notes.append("; ".join([said, *more]))
     return entries
 
 
@@ -267,21 +230,19 @@ def _name_of(place: Path) -> str:
 
 
 def with_roles(
-    entries: list[Entry], records: Sequence[Record], given: Flags, notes: list[str]
+    entries: list[Entry], records: Sequence[Record], user: User
 ) -> list[Entry]:
     """Give the entries of several records with their roles."""
     names = [record.name for record in records]
-    if given.hold_out:
-        for name in given.hold_out:
+    if user.given.hold_out:
+        for name in user.given.hold_out:
             refuse_unknown(name, names, f"--hold-out: no record {name!r}")
-        held, why = given.hold_out, "the hold-out records are those asked for"
+        held, why = user.given.hold_out, words("asked for")
         if set(names) <= set(held):
             raise InputError("--hold-out: all records; expected at least one to fit")
     else:
-        held, why = propose(
-            {record.name: summary_of(record.u, record.dt) for record in records}
-        )
-    notes.append(f"roles: {why}")
+        held, why = propose({x.name: summary_of(x.u, x.dt) for x in records})
+    user.notes.append(why)
     return [
         {**entry, "use": "hold-out" if name in held else "fit"}
         for name, entry in zip(names, entries, strict=True)
@@ -342,21 +303,13 @@ def propose(inputs: Mapping[str, InputSummary]) -> tuple[tuple[str, ...], str]:
     if len(kinds) > 1:
         *_, kind = min(tried)
         others = " and ".join(sorted(set(kinds) - {kind}))
-        return (
-            tuple(kinds[kind]),
-            f"the inputs held out are of another kind ({kind}) than those to fit "
-            f"({others})",
-        )
+        return tuple(kinds[kind]), words("another kind", kind=kind, others=others)
     by_rate = sorted(inputs, key=lambda name: inputs[name].rate)
     count = max(1, len(by_rate) // 4)
     step = len(by_rate) / count
     chosen = {by_rate[int((k + 0.5) * step - 0.5)] for k in range(count)}
-    kind = next(iter(kinds))
-    return (
-        tuple(name for name in inputs if name in chosen),
-        f"all inputs are of one kind ({kind}); of these one in the middle of the rates "
-        "is held out, and a record of another kind would prove more",
-    )
+    held = tuple(name for name in inputs if name in chosen)
+    return held, words("one kind", kind=next(iter(kinds)))
 
 
 def _beyond(inputs: Mapping[str, InputSummary], names: list[str]) -> tuple[bool, float]:
