@@ -86,7 +86,7 @@ def test_a_loop_that_does_not_fit_is_no_base_to_count_effects_on(tmp_path):
     found = check(load_dataset(place))
     assert found.judged
     assert not found.base.fits
-    said = screen.headline(found)
+    said = screen.words_of(found)("headline")[0]
     assert "effects judged" not in said
     assert "does not fit" in said
     shown = "\n".join(screen.lines(found))
@@ -99,4 +99,4 @@ def test_a_loop_that_fits_is_counted_on(tmp_path):
     place = write(tmp_path, made, roles={"held": "hold-out"})
     found = check(load_dataset(place))
     assert found.base.fits
-    assert "effects judged" in screen.headline(found)
+    assert "effects judged" in screen.words_of(found)("headline")[0]

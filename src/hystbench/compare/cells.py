@@ -7,10 +7,10 @@ from statistics import median
 from typing import Literal
 
 from hystbench.compare.runs import ClaimEvidence, Run
-from hystbench.compare.words import paragraphs
 from hystbench.metrics import rms
 from hystbench.published import FILTERS, METRICS, Metric
 from hystbench.published.consistency import Standing, check, standings
+from hystbench.templates import paragraphs
 
 NOT_RUN = "not run"
 #: Ours over the paper's, or theirs over ours: up to it a cell is near.

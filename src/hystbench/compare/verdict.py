@@ -10,7 +10,7 @@ from typing import Any
 from hystbench.compare.claims import CLAIMS
 from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.tables import PrintedTable, grid
-from hystbench.compare.words import paragraphs
+from hystbench.templates import paragraphs
 
 #: An RMS displacement is told where it is off by more (%).
 NEAR_RMS = 3.0

@@ -25,11 +25,11 @@ from hystbench.inspection.screen import (
     FLOORS,
     KINDS,
     band,
-    headline,
+    capital,
     jitter_text,
-    leaves,
     percent,
     quantity,
+    words_of,
 )
 from hystbench.inspection.visible import REVEALED, SmallestSeen, could_do
 from hystbench.report.layout import page_environment
@@ -53,21 +53,22 @@ def page(found: Check) -> str:
     template = page_environment("hystbench.inspection").get_template("page.html.j2")
     record = found.records[0]
     unit = unit_text(record.output.unit)
+    words = words_of(found)
     made = template.render(
         name=found.dataset.name,
-        headline=headline(found),
+        headline=" ".join(words("headline")),
         channels=f"{record.input.name} ({unit_text(record.input.unit)}) to "
         f"{record.output.name} ({unit})",
         noise=f"{quantity(found.floor.rms, record.output.unit)} rms, "
         f"{FLOORS[found.floor.method]}",
-        leaves=_sentence(leaves(found)),
+        leaves=capital(" ".join(words("leaves"))),
         called=found.base.called,
         could=could_do(True, bool(found.base.model.free)),
         findings=found.findings,
         kinds=KINDS,
         records=_records(found),
         pictures=_pictures(found),
-        misfit=_misfit(found),
+        misfit=" ".join(words("misfit")),
         chart=_chart(found),
         revealed=_revealed(found),
         hidden=_why_not("hidden", "Not revealed", found.hidden, len(found.judged)),
@@ -76,29 +77,6 @@ def page(found: Check) -> str:
         ),
     )
     return one_micro(made)
-
-
-def _misfit(found: Check) -> str:
-    """Warn where the base is none to judge effects on; else nothing."""
-    base = found.base
-    if base.fits:
-        return ""
-    share = percent(base.share_left)
-    if base.given:
-        return (
-            f"{_sentence(base.called)} leaves {share} of the output's rms. So read the "
-            "tables as of a device that is such a model."
-        )
-    return (
-        f"That loop does not fit: it leaves {share} of the output's rms. So read the "
-        "tables as of a device that is such a loop; they do not tell what this one "
-        "shows. With --model the effects are judged beside your simulator."
-    )
-
-
-def _sentence(text: str) -> str:
-    """Begin a sentence."""
-    return text[:1].upper() + text[1:]
 
 
 def _records(found: Check) -> PageTable:

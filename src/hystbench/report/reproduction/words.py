@@ -9,10 +9,10 @@ from typing import Any
 
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.summary import nearness
-from hystbench.compare.words import paragraphs
 from hystbench.figures.style import look
 from hystbench.report.reproduction.errors import within
 from hystbench.report.reproduction.read import Row
+from hystbench.templates import paragraphs
 
 #: Kind of error of a model that is simulated.
 FREE_RUN = "free-run simulation"

@@ -1,4 +1,4 @@
-"""Sentences that are filled with numbers: a template beside its module holds them."""
+"""Templates of plain text: each stands beside the module that fills it."""
 
 from functools import cache
 from typing import Any
@@ -16,12 +16,13 @@ def paragraphs(package: str, template: str, **given: Any) -> list[str]:
     **given
         What it is filled with; an unknown name is an error.
     """
-    text = _templates(package).get_template(template).render(given)
+    text = templates(package).get_template(template).render(given)
     return [" ".join(part.split()) for part in text.split("\n\n") if part.strip()]
 
 
 @cache
-def _templates(package: str) -> Any:
+def templates(package: str) -> Any:
+    """Give the Jinja environment of the templates in the folder of a package."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     words = Environment(
