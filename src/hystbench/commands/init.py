@@ -12,11 +12,12 @@ from hystbench import options
 from hystbench.command_files import writes
 from hystbench.errors import InputError
 from hystbench.files import write_text
-from hystbench.inspection.draft import Draft, draft
+from hystbench.inspection.draft import draft
 from hystbench.inspection.entries import dataset_text
 from hystbench.inspection.input_summary import summary_of
 from hystbench.inspection.user import Flags
 from hystbench.options import In, command, of_class
+from hystbench.templates import templates
 
 PLACE = "dataset.yaml"
 
@@ -43,8 +44,9 @@ def init(
     there = sys.stdin.isatty() and sys.stdout.isatty()
     found = draft(files, place, Flags(**given), _asked if there else _refused)
     write_text(place, dataset_text(found.dataset.about))
-    for line in _said(place, found):
-        click.echo(line)
+    kinds = [summary_of(record.u, record.dt).kind for record in found.records]
+    given = {"place": place, "found": found, "kinds": kinds}
+    click.echo(templates(__package__).get_template("init.txt.j2").render(given))
     options.warn(found.warnings)
 
 
@@ -65,35 +67,3 @@ def _asked(
     kind = click.Choice(list(choices)) if choices else None
     answer: str = click.prompt(question, type=kind, default=likely, err=True)
     return answer
-
-
-def _said(place: Path, found: Draft) -> list[str]:
-    """Tell what was written, and what to do next."""
-    about = found.dataset.about
-    lines = [
-        f"{place}: {len(found.records)} records of {found.dataset.name}",
-        *(
-            f"  {key}: {about[key]['column']} ({about[key]['unit']})"
-            for key in ("time", "input", "output", "simulated")
-            if key in about
-        ),
-    ]
-    width = max(len(record.name) for record in found.records)
-    for record in found.records:
-        kind = summary_of(record.u, record.dt).kind
-        period = record.period_samples
-        lines.append(
-            f"  {record.name:{width}}  {record.use:8}  {len(record)} samples at "
-            f"{1 / record.dt:.6g} Hz, {kind}, "
-            + (f"period_samples: {period}" if period else "no period")
-        )
-    lines += [f"  note: {note}" for note in found.notes]
-    base = "column" if "simulated" in about else "linear"
-    folder = place.parent
-    lines += [
-        "Next:",
-        f"  hystbench check {place} --out {folder / 'check.html'}",
-    ]
-    if any(record.use == "hold-out" for record in found.records):  # gap wants one
-        lines.append(f"  hystbench gap {place} --model {base} --out {folder / 'gap'}")
-    return lines

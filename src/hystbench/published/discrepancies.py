@@ -201,38 +201,20 @@ def wording(text: Text) -> Iterator[AuditRow]:
 
 def _consistency(signal: str, found: SignalCheck) -> Iterator[AuditRow]:
     """Tell what MSE / RE^2 = mean(d^2) says about a signal."""
-    rms = found.intervals
+    rms, left, ways = found.intervals, found.removals.values(), len(found.removals)
     for one, other in found.conflicts:
-        yield AuditRow(
-            "conflict",
-            f"Tables 1-3, {signal}",
-            f"the pairs of {one} and {other} cannot both be true",
-            f"they imply an RMS of {rms[one]} um and {rms[other]} um",
-        )
-    for removed, left in found.removals.items():
-        ways = len(found.removals)
+        both = {"one": one, "other": other, "rms": (rms[one], rms[other])}
+        yield _row("pairs-conflict", signal=signal, **both)
+    for removed, agreed in found.removals.items():
         rank = "the smallest set" if ways == 1 else f"one of {ways} smallest sets"
-        agreed = "all filters agree"
-        if removed:
-            agreed = f"the filters agree without {' and '.join(removed)} ({rank})"
-        yield AuditRow(
-            "implied RMS",
-            f"Tables 1-3, {signal}",
-            agreed,
-            f"RMS displacement {left} um",
-        )
+        about = {"removed": " and ".join(removed), "rank": rank, "left": agreed}
+        yield _row("agree-without" if removed else "agree", signal=signal, **about)
     for model in rms:
         standing = found.standing(model)
-        if model in FILTERS or standing == "yes":
-            continue
-        yield AuditRow(
-            "conflict" if standing == "no" else "undecided",
-            f"Table 4, {signal}",
-            f"the pair of {model} against the filters of Tables 1-3: "
-            + ("it cannot be true of their record" if standing == "no" else "open"),
-            f"it implies an RMS of {rms[model]} um; they leave "
-            + " or ".join(f"{left} um" for left in found.removals.values()),
-        )
+        if model not in FILTERS and standing != "yes":
+            about = {"model": model, "rms": rms[model]}
+            told = " or ".join(f"{each} um" for each in left)
+            yield _row(f"against-filters-{standing}", signal=signal, left=told, **about)
 
 
 def audit() -> tuple[AuditRow, ...]:
