@@ -53,13 +53,8 @@ def states(model: Described) -> list[tuple[str, int]]:
 
 def source(model: Described) -> str:
     """Write the source, which includes the header."""
-    return "\n\n".join(
-        [
-            f'#include "{model.name}.h"',
-            library([model]),
-            body(model),
-        ]
-    )
+    include = f'#include "{model.name}.h"'
+    return "\n\n".join([include, library([model]), body(model)])
 
 
 def library(models: Iterable[Described]) -> str:
@@ -229,37 +224,22 @@ def fmu_files(model: Described, fmi: Version = "3") -> dict[str, str]:
     names = [model.input.name, model.output.name]
     if len({"time", *names}) < 3:
         names = [f"input {names[0]}", f"output {names[1]}"]
-    units = dict.fromkeys([model.input.unit, model.output.unit])
-    told = " ".join([f"{model.about}.", *model.differences])
-    values = {
-        "title": model.title,
-        "name": model.name,
-        "source": f"{model.name}.c",
+    given = {
+        "model": model,
+        "fmi": fmi,
         "token": token,
-        "about": told,
+        "names": names,
+        "about": " ".join([f"{model.about}.", *model.differences]),
         "tool": f"hystbench {__version__}",
-        "dt": repr(model.sampling.dt),
-        "input": names[0],
-        "output": names[1],
-        "input_unit": model.input.unit,
-        "output_unit": model.output.unit,
     }
-    own = {"name": model.name, "NAME": model.name.upper(), "token": token}
-    description = filled(
-        f"fmi{fmi}.xml",
-        units="\n".join(f"    <Unit name={quoteattr(unit)}/>" for unit in units),
-        **{key: quoteattr(value) for key, value in values.items()},
-    )
     return {
-        "modelDescription.xml": description,
+        "modelDescription.xml": filled(f"fmi{fmi}.xml", **given),
         # Later releases of FMI 2.0 have this file of FMI 3.0 too.
-        "sources/buildDescription.xml": filled(
-            "buildDescription.xml", name=model.name, fmi=fmi
-        ),
+        "sources/buildDescription.xml": filled("buildDescription.xml", **given),
         f"sources/{model.name}.h": opening,
         f"sources/{model.name}.c": text,
         **{
-            f"sources/{file}": filled(file, **own)
+            f"sources/{file}": filled(file, **given)
             for file in ("hb_unit.h", f"fmi{fmi}.c")
         },
     }
@@ -275,7 +255,7 @@ def filled(file: str, **words: Any) -> str:
 def _templates() -> Any:
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    return Environment(
+    made = Environment(
         loader=PackageLoader(__package__, ""),
         undefined=StrictUndefined,
         variable_start_string="@",
@@ -285,3 +265,5 @@ def _templates() -> Any:
         keep_trailing_newline=True,
         autoescape=False,  # noqa: S701 - it makes code
     )
+    made.filters["quoted"] = lambda value: quoteattr(str(value))
+    return made

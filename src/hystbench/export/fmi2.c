@@ -4,7 +4,7 @@
  * The FMI headers are the importing tool's.
  */
 #ifndef FMI2_OVERRIDE_FUNCTION_PREFIX /* set for a shared library: names as they are */
-#define FMI2_FUNCTION_PREFIX @name@_
+#define FMI2_FUNCTION_PREFIX @model.name@_
 #endif
 #include "fmi2Functions.h"
 

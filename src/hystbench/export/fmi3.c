@@ -3,7 +3,7 @@
  *
  * The FMI headers are the importing tool's.
  */
-#define FMI3_FUNCTION_PREFIX @name@_
+#define FMI3_FUNCTION_PREFIX @model.name@_
 #include "fmi3Functions.h"
 
 typedef fmi3ValueReference Reference;

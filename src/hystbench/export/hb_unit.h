@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "@name@.h"
+#include "@model.name@.h"
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wunused-parameter"
@@ -23,13 +23,13 @@ typedef struct {
     double variable[VARIABLES];
     double start; /* time */
     double count; /* steps since the start */
-    @name@_state state;
+    @model.name@_state state;
 } Values;
 
 static void begin(Values *now)
 {
     memset(now, 0, sizeof *now);
-    @name@_init(&now->state);
+    @model.name@_init(&now->state);
 }
 
 /* These tell what is wrong; NULL where nothing is. */
@@ -66,8 +66,8 @@ static const char *keep(const Values *now, void **kept)
 static void advance(Values *now, double end)
 {
     /* times are sums, which are a little off */
-    const double due = floor((end - now->start) / @NAME@_DT + 1e-6);
+    const double due = floor((end - now->start) / @model.name | upper@_DT + 1e-6);
     for (; now->count < due; now->count++)
-        now->variable[OUTPUT] = @name@_step(&now->state, now->variable[INPUT]);
+        now->variable[OUTPUT] = @model.name@_step(&now->state, now->variable[INPUT]);
     now->variable[TIME] = end;
 }

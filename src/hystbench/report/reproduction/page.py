@@ -41,28 +41,25 @@ def page(results: Results) -> str:
     ]
     measured = results.settings["dataset"] is not None
     own = (_measured if measured else _twin)(results)
-    own["missing"] = words.missing(own.pop("run"), pictures, measured)
-    own["files"] += [
-        *(_file(each.file.href, each.caption.partition(".")[0]) for each in further),
-        *(
-            _file(link.href, f"figure, {link.label}")
-            for picture in pictures.values()
-            for link in picture.files
-        ),
-    ]
-    headline = pictures.pop(HEADLINE, None)
+    missing = words.missing(own.pop("run"), pictures, measured)
     # the paper's figures first, by their number
     figures = sorted(
-        pictures.values(), key=lambda f: (not f.name.startswith("figure"), f.name)
+        (picture for name, picture in pictures.items() if name != HEADLINE),
+        key=lambda f: (not f.name.startswith("figure"), f.name),
     )
     return one_micro(
-        page_environment("hystbench.report.reproduction")
+        page_environment(__package__)
         .get_template(TEMPLATE)
         .render(
-            headline=headline,
-            figures=figures,
-            more=[_as_it_is(each) for each in further],
+            folder=results.folder,
+            dataset=results.settings["dataset"],
             measured=measured,
+            missing=missing,
+            headline=pictures.get(HEADLINE),
+            figures=figures,
+            further=further,
+            more=[_as_it_is(each) for each in further],
+            pictures=pictures.values(),
             **own,
         )
     )
@@ -87,11 +84,7 @@ def _twin(results: Results) -> dict[str, Any]:
         return results.caption(name), Link("CSV", f"{folder}/{name}.csv")
 
     return {
-        "title": "hystbench: a filter of generalized play operators, reproduced on a "
-        "twin",
         "sentences": words.of_twin(held, on_held_out),
-        "source": "The paper's numbers are of a measured actuator whose data are not "
-        "public. Ours are of its twin, a simulation.",
         "run": cells,
         "first": errors.headline_table(cells, "held-out" if held else "calibrated"),
         "near": errors.nearness_table(cells),
@@ -102,43 +95,23 @@ def _twin(results: Results) -> dict[str, Any]:
         "counted": claims.counts_table(ledger),
         "claims": claims.claims_table(ledger, *about("claims")),
         "audit": claims.audit_table(audit, *about("audit")),
-        "files": [
-            _file(f"{folder}/verdict.md", "the verdict in full"),
-            _file(f"{folder}/cells.csv", "every printed error with ours"),
-            _file(f"{folder}/off.csv", "errors off by more than a factor of 2"),
-            _file(f"{folder}/claims.csv", "every claim, verdict and evidence"),
-            _file(f"{folder}/audit.csv", "the audit of the paper's numbers"),
-            _file(f"{folder}/summary.json", "how near ours come, in numbers"),
-            *(
-                _file(each.file.href, "a table of the paper, ours beside it")
-                for each in tables
-            ),
-        ],
     }
 
 
 def _measured(results: Results) -> dict[str, Any]:
     """Fill what the page says of a measured dataset alone."""
-    name, folder = results.settings["dataset"], results.folder
     rows = results.rows("errors.csv", ERROR_COLUMNS)
-    stem = f"{folder}/tables/errors"
+    stem = f"{results.folder}/tables/errors"
     files = (
-        Link("CSV", f"{folder}/errors.csv"),
+        Link("CSV", f"{results.folder}/errors.csv"),
         Link("Markdown", f"{stem}.md"),
         Link("LaTeX", f"{stem}.tex"),
     )
     return {
-        "title": f"hystbench: five models on the measured records of {name}",
-        "sentences": words.of_measured(name, rows),
-        "source": "The paper has no numbers for these records, so the errors stand "
-        "alone.",
+        "sentences": words.of_measured(results.settings["dataset"], rows),
         "run": (),
         "first": errors.measured_headline(rows),
         "errors": errors.measured_table(rows, results.caption("errors"), files),
-        "files": [
-            _file(f"{folder}/errors.csv", "every error, a row a record and model"),
-            _file(f"{stem}.csv", "the same, a row a record"),
-        ],
     }
 
 
@@ -182,7 +155,3 @@ def _is_number(text: str) -> bool:
     except ValueError:
         return False
     return True
-
-
-def _file(href: str, what: str) -> tuple[Link, str]:
-    return Link(href, href), what
