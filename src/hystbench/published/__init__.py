@@ -185,3 +185,10 @@ def sine_frequency(signal: str) -> float | None:
     """Read the frequency in Hz off the name of a sine, as ``sine-010hz``."""
     match = re.fullmatch(r"sine-(\d+)hz", signal)
     return float(match[1]) if match else None
+
+
+def sines(pairs: Iterable[Pair]) -> dict[str, float]:
+    """Give the frequencies in Hz of the sines of the tables, rising."""
+    told = {signal: sine_frequency(signal) for signal in signals(pairs)}
+    found = {signal: hz for signal, hz in told.items() if hz is not None}
+    return dict(sorted(found.items(), key=lambda sine: sine[1]))

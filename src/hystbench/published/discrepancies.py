@@ -23,7 +23,7 @@ from hystbench.published import (
     load_text,
     read_text,
     signals,
-    sine_frequency,
+    sines,
 )
 from hystbench.published.consistency import SignalCheck, check
 from hystbench.published.equations import (
@@ -66,13 +66,8 @@ def _row(name: str, **numbers: Any) -> AuditRow:
 
 def _sines(pairs: tuple[Pair, ...], model: str) -> dict[float, Pair]:
     """Give the pairs of a model under sines, by rising frequency."""
-    found = {
-        frequency: pair
-        for pair in pairs
-        if pair.model == model
-        and (frequency := sine_frequency(pair.signal)) is not None
-    }
-    return dict(sorted(found.items()))
+    own = {pair.signal: pair for pair in pairs if pair.model == model}
+    return {hz: own[signal] for signal, hz in sines(own.values()).items()}
 
 
 def table4_gpo_repeats(pairs: tuple[Pair, ...], rows: tuple[Pair, ...]) -> bool:

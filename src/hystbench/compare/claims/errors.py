@@ -5,13 +5,12 @@ from itertools import pairwise
 from statistics import median
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from hystbench.compare.claims.claim import NotTestable, Numbers, number
 from hystbench.compare.claims.statistics import rank_correlation
 from hystbench.compare.runs import Cell, ClaimEvidence
-from hystbench.published import FILTERS, MODELS, Metric, sine_frequency
+from hystbench.published import FILTERS, MODELS, Metric, sines
 from hystbench.published import signals as signals_of
 
 TABLES = {"sines": (1,), "chirp": (2,), "sums": (3,), "all": (1, 2, 3)}
@@ -58,15 +57,9 @@ def errors_on(
     return pd.DataFrame(values, index=list(signals), columns=models)
 
 
-def sines(evidence: ClaimEvidence, up_to_hz: float = np.inf) -> dict[str, float]:
-    """Give the frequencies of the sines of Table 1 in Hz, rising."""
-    found = {
-        pair.signal: frequency
-        for pair in evidence.published
-        if (frequency := sine_frequency(pair.signal)) is not None
-        and frequency <= up_to_hz
-    }
-    return dict(sorted(found.items(), key=lambda sine: sine[1]))
+def low_sines(evidence: ClaimEvidence, up_to_hz: float) -> list[str]:
+    """List the sines of Table 1 up to a frequency."""
+    return [s for s, hz in sines(evidence.published).items() if hz <= up_to_hz]
 
 
 def least(
@@ -129,7 +122,7 @@ def along_sines(
     ahead: bool = False,
 ) -> Numbers:
     """Follow an error from each sine to the next, or the next best filter's over it."""
-    frequencies = sines(evidence)
+    frequencies = sines(evidence.published)
     models = FILTERS if ahead else [model]
     errors = errors_on(list(frequencies), models, evidence, of, metric)
     own, hz = errors[model], list(frequencies.values())
@@ -160,7 +153,7 @@ def largest_at_low_sines(
     evidence: ClaimEvidence, model: str, up_to_hz: float, of: str = "twin"
 ) -> Numbers:
     """Compare the filters at the lowest sines."""
-    errors = errors_on(list(sines(evidence, up_to_hz)), FILTERS, evidence, of)
+    errors = errors_on(low_sines(evidence, up_to_hz), FILTERS, evidence, of)
     worse = [
         f"{other} {number(there[other])} on {signal}"
         for signal, there in errors.to_dict("index").items()
@@ -180,7 +173,7 @@ def chirp_and_sines(
     evidence: ClaimEvidence, model: str, up_to_hz: float, of: str = "twin"
 ) -> Numbers:
     """Hold the chirp against the sines of its band."""
-    chirp, low = signals_of(evidence.published, 2), list(sines(evidence, up_to_hz))
+    chirp, low = signals_of(evidence.published, 2), low_sines(evidence, up_to_hz)
     on_chirp, on_sines = (
         errors_on(each, [model], evidence, of, "re")[model] for each in (chirp, low)
     )

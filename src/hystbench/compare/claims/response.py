@@ -12,7 +12,7 @@ from hystbench.compare.claims.statistics import (
     turning_points,
 )
 from hystbench.compare.runs import ClaimEvidence
-from hystbench.published import signals, sine_frequency
+from hystbench.published import signals, sines
 from hystbench.record import FloatArray, Record
 
 #: The sum of sines of random phases.
@@ -38,8 +38,8 @@ def records(evidence: ClaimEvidence, names: Iterable[str]) -> list[Record]:
 
 def sine_records(evidence: ClaimEvidence) -> list[Record]:
     """Give the records of the sines of Table 1; raises as :func:`records`."""
-    found = [s for s in signals(evidence.published) if sine_frequency(s) is not None]
-    return records(evidence, found)
+    known = sines(evidence.published)
+    return records(evidence, [s for s in signals(evidence.published) if s in known])
 
 
 def chirp_record(evidence: ClaimEvidence) -> Record:
@@ -140,20 +140,16 @@ def turns(evidence: ClaimEvidence, tables: Sequence[int]) -> Numbers:
 
 def sizes_over_frequency(evidence: ClaimEvidence, of: str = "twin") -> Numbers:
     """Compare displacements under the sines, our own or those implied by Table 1."""
+    hz = sines(evidence.published)
     if of == "published":
         name = "implied RMS displacement"
-        sizes = {
-            frequency: pair.rms.middle
-            for pair in evidence.published
-            if pair.model == "backlash"
-            and (frequency := sine_frequency(pair.signal)) is not None
-        }
+        pairs = [pair for pair in evidence.published if pair.model == "backlash"]
+        found = {pair.signal: pair.rms.middle for pair in pairs if pair.signal in hz}
     else:
         name = "peak-to-peak displacement"
-        sizes = {
-            float(sine_frequency(record.name) or 0): float(np.ptp(settled(record.y)))
-            for record in sine_records(evidence)
-        }
+        shown = sine_records(evidence)
+        found = {record.name: float(np.ptp(settled(record.y))) for record in shown}
+    sizes = {hz[signal]: size for signal, size in found.items()}
     low, high = min(sizes), max(sizes)
     change = max(sizes.values()) / min(sizes.values()) - 1
     return {
