@@ -91,7 +91,12 @@ def _about(packed: Any, project: Path) -> Any:
     root["license"] = _entity(packed, place, "CreativeWork", name=terms)
     root["keywords"] = cited["keywords"]
     root["author"] = [_author(packed, one) for one in cited["authors"]]
-    root["citation"] = [_article(packed, one) for one in cited["references"]]
+    root["citation"] = [
+        _entity(
+            packed, f"https://doi.org/{x['doi']}", "ScholarlyArticle", name=x["title"]
+        )
+        for x in cited["references"]
+    ]
     workflow = packed.add_workflow(
         project / WORKFLOW,
         WORKFLOW,
@@ -129,12 +134,6 @@ def _author(packed: Any, one: Mapping[str, str]) -> Any:
     name = one.get("name", " ".join(named))
     place = one.get("orcid", f"#{name.replace(' ', '-')}")
     return _entity(packed, place, "Person" if named else "Organization", name=name)
-
-
-def _article(packed: Any, one: Mapping[str, Any]) -> Any:
-    """Add a reference of CITATION.cff."""
-    place = f"https://doi.org/{one['doi']}"
-    return _entity(packed, place, "ScholarlyArticle", name=one["title"])
 
 
 def _software(packed: Any) -> Iterator[Any]:

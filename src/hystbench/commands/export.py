@@ -11,7 +11,7 @@ from hystbench.blocks.held import Hold
 from hystbench.blocks.step import LARGEST_POINTS, Sampling
 from hystbench.errors import InputError, placed
 from hystbench.export import code
-from hystbench.export.described import Described, describe, exact_delay
+from hystbench.export.described import describe, exact_delay
 from hystbench.export.inverse import describe_inverse
 from hystbench.export.on_record import begun, begun_inverse, off
 from hystbench.files import atomic_path, whole_folder, write_text
@@ -19,28 +19,6 @@ from hystbench.model import Model, load_model
 from hystbench.options import In, InputHigh, InputLow, OutFolder, command
 from hystbench.record import Channel, FloatArray, column_name
 from hystbench.samples import read_input
-
-
-class Delay(click.ParamType[int | None]):
-    """A number of samples, or as many as make the code the simulation."""
-
-    name = "samples or 'exact'"
-
-    def convert(
-        self,
-        value: str | int,
-        param: click.Parameter | None,
-        ctx: click.Context | None,
-    ) -> int | None:
-        """Give the number, none for ``exact``."""
-        if value == EXACT:
-            return None
-        if not str(value).isdecimal():
-            self.fail(
-                f"{value!r}; expected a number of samples, or {EXACT!r}", param, ctx
-            )
-        return int(value)
-
 
 EXACT = "exact"
 Part = Literal["before", "behind"]
@@ -69,12 +47,11 @@ def export(
         {"show_default": True},
     ] = 6,
     delay: Annotated[
-        int | None,
-        Delay(),
+        str,
         "Samples by which the output may be late: values between samples, and rates, "
         "are then taken with samples on both sides. 'exact': as many as make the code "
         "the simulation of a whole record.",
-    ] = 0,
+    ] = "0",
     duration: Annotated[
         float | None, "Length in seconds of the record of a path of drift."
     ] = None,
@@ -127,29 +104,39 @@ def export(
             "--compare: expected none with --inverse; 'hystbench invert --sampled' "
             "says how far the output is from what is wanted"
         )
-    if inverse and delay is None:
+    if delay != EXACT and not delay.isdecimal():
+        raise InputError(
+            f"--delay: {delay!r}; expected a number of samples, or {EXACT!r}"
+        )
+    if inverse and delay == EXACT:
         raise InputError(
             f"--delay: {EXACT}; expected a number with --inverse, as 'hystbench "
             "invert' looks at the whole record"
         )
-    sampling = Sampling(dt, points, duration, delay or 0)
+    late = 0 if delay == EXACT else int(delay)
+    sampling = Sampling(dt, points, duration, late)
     with options.refused_of(model):
         if inverse:
             both = options.both_limits(*limits, "--inverse")
             described = describe_inverse(system, sampling, both)
         else:
             described = describe(system, sampling)
-        if delay is None and exact_delay(described):
+        if delay == EXACT and exact_delay(described):
             exact = replace(sampling, delay=exact_delay(described))
             described = describe(system, exact)
-    if part == "behind":
-        _check_alone(described)
+    for piece in described.watching if part == "behind" else ():
+        raise InputError(
+            f"--part behind: {piece.label}: looks at the model's input, which does not "
+            "enter there; expected blocks that take the simulator's output alone"
+        )
     if past is not None:
         start = begun_inverse if inverse else begun
         described = start(described, system, _record(system, past, dt))
     told = [described.memory, *described.differences]
     if compare is not None:
-        told.append(_compared(described, system, compare))
+        u = _record(system, compare, dt)
+        with placed(f"--compare: {compare}: "):
+            told.append(f"{compare}: {off(described, system, u).words}.")
     unit = f"{described.name}.fmu"
     files = {"c": code.c_files, "python": code.python_files}.get(to)
     texts = files(described) if files else {}
@@ -201,22 +188,6 @@ def part_of(model: Model, part: Part) -> Model:
             model.output,
         )
     return Model(f"{model.name} {part} {own}", *sides, chain)
-
-
-def _check_alone(part: Described) -> None:
-    """Refuse a part behind a simulator that looks at the input of the whole model."""
-    for piece in part.watching:
-        raise InputError(
-            f"--part behind: {piece.label}: looks at the model's input, which does not "
-            "enter there; expected blocks that take the simulator's output alone"
-        )
-
-
-def _compared(described: Described, system: Model, file: Path) -> str:
-    """Say how far the code is from the simulation of a record."""
-    u = _record(system, file, described.sampling.dt)
-    with placed(f"--compare: {file}: "):
-        return f"{file}: {off(described, system, u).words}."
 
 
 def _record(system: Model, file: Path, wanted: float) -> FloatArray:

@@ -1,28 +1,15 @@
 """What the names of columns tell: which is time, input or output, and in which unit."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from hystbench.errors import InputError
 from hystbench.units import PREFIXES, SIMPLE, is_known, plain, seconds
+from hystbench.yaml_files import load_yaml
 
-#: Words of a name, in small letters. Of compounds the end counts: ``spulenstrom``.
-TIME = ("time", "t", "zeit", "temps", "tiempo", "tempo", "timestamp", "timestamps")
-INPUT = (
-    *("u", "in", "input", "eingang", "command", "cmd", "drive", "excitation", "i"),
-    *("voltage", "spannung", "tension", "current", "strom", "courant", "pump", "v"),
-    *("control", "actuation", "field", "feld"),
-)
-OUTPUT = (
-    *("y", "out", "output", "ausgang", "displacement", "position", "pos", "disp"),
-    *("stroke", "hub", "weg", "auslenkung", "strain", "dehnung", "deflection", "x"),
-    *("response", "measured", "level", "acceleration", "beschleunigung", "velocity"),
-    *("deplacement", "déplacement", "polarization", "flux", "torque", "moment"),
-)
-SIMULATED = ("simulated", "simulation", "sim", "simuliert", "model", "modell")
-#: Units that tell an input from an output where names do not.
-DRIVEN_BY = ("A", "V")
-ANSWERED_IN = ("m", "N", "g", "Pa", "rad", "T")
+#: Words of a name by what it is, and units that tell an input from an output.
+KNOWN: Mapping[str, Sequence[str]] = load_yaml(Path(__file__).with_suffix(".yaml"))
 
 _BRACKET = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 _SLASH = re.compile(r"^(?P<name>.*?)\s+(?:/|in)\s+(?P<unit>\S+)\s*$")
@@ -54,7 +41,7 @@ def split_unit(name: str) -> tuple[str, str | None]:
 
 def is_time(name: str, unit: str | None) -> bool:
     """Tell whether a column is called time, and its unit, if it has one, is of time."""
-    if not _has(name, TIME) and name.strip().lower() != "x value":
+    if not _has(name, "time") and name.strip().lower() != "x value":
         return False
     try:
         return unit is None or seconds("", unit) > 0
@@ -64,7 +51,7 @@ def is_time(name: str, unit: str | None) -> bool:
 
 def is_simulated(name: str) -> bool:
     """Tell whether a column is called an output of a simulator."""
-    return _has(name, SIMULATED)
+    return _has(name, "simulated")
 
 
 def leaning(name: str, unit: str | None) -> int:
@@ -72,9 +59,11 @@ def leaning(name: str, unit: str | None) -> int:
 
     The words of its name count twice, its unit once.
     """
-    words = 2 * (_has(name, INPUT) - _has(name, OUTPUT))
+    words = 2 * (_has(name, "input") - _has(name, "output"))
     symbol = plain(unit or "").lstrip("".join(PREFIXES)) or plain(unit or "")
-    units = (symbol in DRIVEN_BY) - (symbol in ANSWERED_IN or plain(unit or "") == "m")
+    units = (symbol in KNOWN["driven by"]) - (
+        symbol in KNOWN["answered in"] or plain(unit or "") == "m"
+    )
     return words + units
 
 
@@ -116,8 +105,9 @@ def both_answer(columns: Sequence[tuple[str, str | None]]) -> bool:
     return len(columns) == 2 and all(leaning(*column) < 0 for column in columns)
 
 
-def _has(name: str, known: Sequence[str]) -> bool:
-    words = re.findall(r"[^\W\d_]+", name.lower())
+def _has(name: str, what: str) -> bool:
+    """Tell whether a name has a word of some kind; of compounds the end counts."""
+    words, known = re.findall(r"[^\W\d_]+", name.lower()), KNOWN[what]
     return any(
         word in known or any(len(end) > 3 and word.endswith(end) for end in known)
         for word in words

@@ -327,8 +327,8 @@ def recovered(
         if answer is None:
             continue
         # diffusion into a slab and into a rod of one time constant differ
-        choices = {_word(name, answer) for name in ("geometry", "form")}
-        if choices - {None, effect["form"]}:
+        told = [answer["parameters"].get(name) for name in ("geometry", "form")]
+        if {str(said["value"]) for said in told if said} - {effect["form"]}:
             continue
         forms = table("comparable").get(effect["name"], {})
         for name in forms.get(effect["form"], ()):
@@ -343,12 +343,6 @@ def recovered(
         "covered": covered,
         "parameter_error": median(errors) if errors else None,
     }
-
-
-def _word(name: str, answer: Mapping[str, Any]) -> str | None:
-    """Give the word that an answer has for a choice; None where it has none."""
-    said = answer["parameters"].get(name)
-    return None if said is None else str(said["value"])
 
 
 def _pairs(
