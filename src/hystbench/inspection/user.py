@@ -55,15 +55,15 @@ class User:
     """What was found and what was taken for what, one line each."""
 
     def note(self, topic: str, **told: Any) -> None:
-        """Note something in the words of notes.yaml, filled with what is told."""
+        """Note something in the words of user.yaml, filled with what is told."""
         self.notes.append(words(topic, **told))
 
 
 def words(topic: str, **told: Any) -> str:
-    """Give the words of notes.yaml on a topic, filled with what is told."""
+    """Give the words of user.yaml on a topic, filled with what is told."""
     return str(_words()[topic]).format(**told)
 
 
 @cache
 def _words() -> Any:
-    return load_yaml(Path(__file__).with_name("notes.yaml"))
+    return load_yaml(Path(__file__).with_suffix(".yaml"))
