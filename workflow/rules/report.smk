@@ -20,7 +20,7 @@ rule page:
         code=code("hystbench.commands.jobs.report"),
         look=sorted(
             str(file)
-            for suffix in ("j2", "css", "js")
+            for suffix in ("j2", "css", "js", "yaml")
             for file in PACKAGE.glob(f"report/**/*.{suffix}")
         ),
     output:

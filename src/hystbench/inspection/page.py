@@ -1,8 +1,9 @@
 """The page of a check: tables and pictures, HTML in one file."""
 
 import math
-from collections.abc import Callable, Sequence
-from operator import attrgetter
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -34,7 +35,7 @@ from hystbench.inspection.screen import (
 from hystbench.inspection.visible import REVEALED, SmallestSeen, could_do
 from hystbench.report.layout import page_environment
 from hystbench.report.markup import one_micro
-from hystbench.report.table import Cell, Heading, PageTable, number, table_of
+from hystbench.report.table import PageTable, number, table_in
 
 MOST_LOOPS = 8
 """Records whose loops are drawn."""
@@ -53,7 +54,7 @@ def page(found: Check) -> str:
     template = page_environment("hystbench.inspection").get_template("page.html.j2")
     record = found.records[0]
     unit = unit_text(record.output.unit)
-    words = words_of(found)
+    words, judged = words_of(found), len(found.judged)
     made = template.render(
         name=found.dataset.name,
         headline=" ".join(words("headline")),
@@ -66,53 +67,33 @@ def page(found: Check) -> str:
         could=could_do(True, bool(found.base.model.free)),
         findings=found.findings,
         kinds=KINDS,
-        records=_records(found),
+        records=_table(found, "records", found.facts),
         pictures=_pictures(found),
         misfit=" ".join(words("misfit")),
         chart=_chart(found),
-        revealed=_revealed(found),
-        hidden=_why_not("hidden", "Not revealed", found.hidden, len(found.judged)),
-        unjudged=_why_not(
-            "unjudged", "Not judged here", found.unjudged, len(found.effects)
-        ),
+        revealed=_table(found, "revealed", found.revealed, every=judged),
+        hidden=_table(found, "hidden", found.hidden, every=judged),
+        unjudged=_table(found, "unjudged", found.unjudged, every=len(found.effects)),
     )
     return one_micro(made)
 
 
-def _records(found: Check) -> PageTable:
+def _table(found: Check, name: str, items: Sequence[Any], **known: Any) -> PageTable:
     record = found.records[0]
-    shown: dict[Heading, Callable[[Facts], Cell | str]] = {
-        Heading("record"): attrgetter("name"),
-        Heading("use"): attrgetter("use"),
-        Heading("samples", True): lambda x: number(x.samples, str(x.samples)),
-        Heading("rate (Hz)", True): lambda x: number(1 / x.dt, f"{1 / x.dt:.6g}"),
-        Heading("jitter (%)", True): lambda x: number(x.jitter, _jitter(x)),
-        Heading("input"): attrgetter("input.kind"),
-        Heading("period (samples)", True): lambda x: number(
-            x.period, str(x.period or "none")
-        ),
-        Heading("periods", True): lambda x: number(x.periods, f"{x.periods:.3g}"),
-        Heading("band"): band,
-        Heading(f"input ({unit_text(record.input.unit)})"): lambda x: (
-            f"{x.input.low:.3g} to {x.input.high:.3g}"
-        ),
-        Heading(f"output ({unit_text(record.output.unit)})"): lambda x: (
-            f"{x.low:.3g} to {x.high:.3g}"
-        ),
-        Heading("delay (ms)", True): lambda x: number(
-            x.delay_s, f"{1e3 * x.delay_s:.3g} ± {1e3 * x.delay_error_s:.2g}"
-        ),
-        Heading("missing", True): lambda x: number(x.missing, str(x.missing)),
+    given = {
+        "band": band,
+        "called": found.base.called,
+        "input": unit_text(record.input.unit),
+        "jitter": _jitter,
+        "mistaken": _mistaken,
+        "number": number,
+        "output": unit_text(record.output.unit),
+        "percent": percent,
+        "shown": len(items),
+        "strength": partial(_strength, found),
+        **known,
     }
-    return table_of(
-        "records",
-        "All records. The band holds 99 % of the input's power. The delay is that of "
-        f"the output behind {found.base.called}: a lag and a late trigger both show in "
-        "it.",
-        found.facts,
-        shown,
-        dense=True,
-    )
+    return table_in(__package__, name, items, given)
 
 
 def _jitter(item: Facts) -> str:
@@ -157,38 +138,6 @@ def _chart(found: Check) -> EmbeddedPicture | None:
         f"other effect; beyond the dashed line, {100 * REVEALED:g} % of the output, it "
         "counts as not revealed",
         height=0.8 + 0.2 * len(shown),
-    )
-
-
-def _revealed(found: Check) -> PageTable:
-    record = found.records[0]
-    units = record.input.unit, record.output.unit
-    shown: dict[Heading, Callable[[SmallestSeen], Cell | str]] = {
-        Heading("effect"): attrgetter("effect"),
-        Heading("seen from", True): lambda x: number(x.seen_from, percent(x.seen_from)),
-        Heading("that is"): lambda x: _strength(x, *units),
-        Heading("in the form"): lambda x: x.form.replace("_", " "),
-        Heading("can be mistaken for"): lambda x: _mistaken(x) or "nothing",
-    }
-    return table_of(
-        "revealed",
-        f"Revealed: {len(found.revealed)} of {len(found.judged)} effects. Until it is "
-        "as strong as the last column says, it can be mistaken for another.",
-        found.revealed,
-        shown,
-        cards=True,
-    )
-
-
-def _why_not(
-    name: str, said: str, effects: Sequence[SmallestSeen], every: int
-) -> PageTable:
-    return table_of(
-        name,
-        f"{said}: {len(effects)} of {every} effects.",
-        effects,
-        {Heading("effect"): attrgetter("effect"), Heading("why"): attrgetter("why")},
-        cards=True,
     )
 
 
@@ -284,11 +233,12 @@ def _legend(ax: Axes) -> None:
     ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, frameon=False)
 
 
-def _strength(item: SmallestSeen, of_input: str, of_output: str) -> str:
+def _strength(found: Check, item: SmallestSeen) -> str:
     """Write the number at which an effect is seen first, with its unit."""
+    record = found.records[0]
     if math.isnan(item.value):
         return ""
-    unit = written(item.unit, of_input, of_output)
+    unit = written(item.unit, record.input.unit, record.output.unit)
     name = item.number.replace("_", " ").removesuffix(" s").removesuffix(" hz")
     return f"{name} {quantity(item.value, unit)}"
 

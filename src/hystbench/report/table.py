@@ -3,10 +3,14 @@
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache, partial
+from importlib import resources
 from itertools import groupby
 from typing import Any, TypeVar
 
 from hystbench.report.picture import Link
+from hystbench.templates import templates
+from hystbench.yaml_files import parse_yaml
 
 Item = TypeVar("Item")
 #: What a cell is sorted by.
@@ -104,6 +108,53 @@ def number(value: float | None, shown: str = "", mark: str = "") -> Cell:
     if math.isinf(value):
         return Cell(shown or "diverged", "Infinity", mark or "bad")
     return Cell(shown or f"{value:.4g}", value, mark)
+
+
+def table_in(
+    package: str,
+    name: str,
+    items: Iterable[Any],
+    known: Mapping[str, Any],
+    caption: str = "",
+    **about: Any,
+) -> PageTable:
+    """Make a table as ``tables.yaml`` of a package has it, with a row an item.
+
+    Of a column the file has the title, and an expression of Jinja for what it shows of
+    an item ``x``: text or a cell. Behind the title of one of numbers stands ``#``,
+    before it what it stands under, with a bar between.
+
+    Parameters
+    ----------
+    package, name : str
+    items : iterable
+    known : mapping
+        Names that titles, caption and expressions use.
+    caption : str
+        By default that of the file.
+    **about
+        What else a :class:`PageTable` is told.
+    """
+    said = dict(_tables(package)[name])
+    written = said.pop("caption", "").format(**known)
+    shown: dict[Heading, Callable[[Any], Any]] = {}
+    for title, text in said.pop("columns").items():
+        group, _, own = title.format(**known).rpartition(" | ")
+        heading = Heading(own.removesuffix(" #"), own.endswith(" #"), group)
+        compute = templates(package).compile_expression(text, undefined_to_none=False)
+        shown[heading] = partial(_shown, compute, known)
+    return table_of(name, caption or written, items, shown, **said, **about)
+
+
+def _shown(compute: Callable[..., Any], known: Mapping[str, Any], item: Any) -> Any:
+    return compute(**known, x=item)
+
+
+@cache
+def _tables(package: str) -> dict[str, Any]:
+    file = resources.files(package).joinpath("tables.yaml")
+    found: dict[str, Any] = parse_yaml(file.read_text("utf-8"), "tables.yaml")
+    return found
 
 
 def table_of(

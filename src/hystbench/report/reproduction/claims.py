@@ -1,8 +1,7 @@
 """The paper's claims and the audit of its printed numbers, as tables."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
-from operator import itemgetter
+from collections.abc import Sequence
 
 from markupsafe import Markup
 
@@ -15,16 +14,11 @@ from hystbench.report.table import (
     Heading,
     PageTable,
     number,
-    table_of,
+    table_in,
 )
 
 #: How a verdict looks; one that is not listed looks as text.
 _SIGNS = {"reproduced": ("✓", "good"), "not reproduced": ("✗", "bad")}
-#: Columns of claims.csv that have a place in the table; others stand behind them.
-_PLACED = {
-    *("id", "claim", "where", "kind", "basis", "reading", "verdict", "holds_on"),
-    *("evidence", "published_bears_out", "published_evidence"),
-}
 #: Held-out evidence leads; an empty basis is that of theory and notation.
 BASES = ("held-out", "fitted", "constrained", "built-in", "")
 #: The verdict of a claim that is fitted in part, on held-out signals alone.
@@ -56,27 +50,9 @@ def counts_table(claims: Sequence[Row]) -> PageTable:
 
 def claims_table(claims: Sequence[Row], caption: str, file: Link) -> PageTable:
     """Show every claim with its verdict and the evidence for it."""
-    shown: dict[Heading, Callable[[Row], Cell | str]] = {
-        Heading("verdict"): lambda row: _verdict(row["verdict"]),
-        Heading("basis"): lambda row: row["basis"] or "none",
-        Heading("kind"): itemgetter("kind"),
-        Heading("claim of the paper"): _claim,
-        Heading("evidence"): itemgetter("evidence"),
-        Heading("the paper's own numbers"): _borne_out,
-        Heading("holds on twins"): lambda row: row.get("holds_on", ""),
-    }
-    for key in claims[0] if claims else ():
-        if key not in _PLACED:
-            shown[Heading(key.replace("_", " "))] = itemgetter(key)
-    return table_of(
-        "claims",
-        inline(caption),
-        _in_order(claims),
-        shown,
-        files=(file,),
-        filtered=("verdict", "basis", "kind"),
-        cards=True,
-    )
+    known = {"verdict": _verdict, "claim": _claim, "borne_out": _borne_out}
+    about = (_in_order(claims), known, inline(caption))
+    return table_in(__package__, "claims", *about, files=(file,))
 
 
 def _in_order(claims: Sequence[Row]) -> list[Row]:
@@ -110,18 +86,9 @@ def _borne_out(row: Row) -> str:
 
 def audit_table(audit: Sequence[Row], caption: str, file: Link) -> PageTable:
     """Show where the paper's own numbers contradict each other, conflicts first."""
-    shown: dict[Heading, Callable[[Row], Cell | str]] = {
-        Heading(key): itemgetter(key) for key in ("where", "statement", "evidence")
-    }
-    return table_of(
-        "audit",
-        inline(caption),
-        sorted(audit, key=lambda row: row["kind"] != "conflict"),
-        {Heading("kind"): _kind, **shown},
-        files=(file,),
-        filtered=("kind",),
-        cards=True,
-    )
+    ordered = sorted(audit, key=lambda row: row["kind"] != "conflict")
+    about = (ordered, {"kind": _kind}, inline(caption))
+    return table_in(__package__, "audit", *about, files=(file,))
 
 
 def _kind(row: Row) -> Cell:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
 
 from hystbench.compare.cells import NEAR_FACTOR, ComparedCell
 from hystbench.compare.summary import nearness
@@ -17,6 +18,7 @@ from hystbench.report.table import (
     Heading,
     PageTable,
     number,
+    table_in,
     table_of,
 )
 
@@ -181,72 +183,35 @@ def _printed(text: str) -> Cell:
 
 def all_cells(cells: Sequence[ComparedCell], caption: str, file: Link) -> PageTable:
     """Show every printed error with ours, the spread of equally good twins and all."""
-    spread = "equally good twins"
-    shown: dict[Heading, Callable[[ComparedCell], Cell | str]] = {
-        Heading("twin"): lambda c: HALF_WORDS[c.half],
-        Heading("signal"): lambda c: signal_title(c.signal),
-        Heading("model"): lambda c: look(c.model).label,
-        Heading("error"): lambda c: c.metric.upper(),
-        Heading("paper", True): lambda c: number(float(c.published), c.published),
-        Heading("ours", True): lambda c: number(
-            c.ours, "none" if c.ours is None else ""
-        ),
-        Heading("ours / paper", True): lambda c: number(
-            None if c.log10_ratio is None else 10**c.log10_ratio
-        ),
-        Heading("least", True, spread): lambda c: number(c.spread_low),
-        Heading("most", True, spread): lambda c: number(c.spread_high),
-        Heading("printed pair can be true"): lambda c: c.published_consistent,
-        Heading("status"): lambda c: c.status,
-    }
-    return table_of(
-        "cells",
-        inline(caption),
-        sorted(cells, key=lambda cell: cell.half != "held-out"),
-        shown,
-        files=(file,),
-        filtered=("twin", "model", "error"),
-        dense=True,
-    )
+    ordered = sorted(cells, key=lambda cell: cell.half != "held-out")
+    return _table("cells", ordered, caption, (file,))
 
 
 def off_table(off: Sequence[Row], caption: str, file: Link) -> PageTable:
     """Show the errors that are off by more than a factor of 2."""
-    shown: dict[Heading, Callable[[Row], Cell | str]] = {
-        Heading("twin"): lambda row: HALF_WORDS.get(row["half"], row["half"]),
-        Heading("signal"): lambda row: signal_title(row["signal"]),
-        Heading("model"): lambda row: look(row["model"]).label,
-        Heading("paper", True): lambda row: number(
-            float(row["published"]), row["published"]
-        ),
-        Heading("ours", True): lambda row: _error(row["ours"]),
-        Heading("ours / paper", True): lambda row: _error(row["ratio"]),
-        Heading("what is known"): lambda row: row["known"],
-    }
     ordered = sorted(off, key=lambda row: row["half"] != "held-out")
-    return table_of("off", inline(caption), ordered, shown, files=(file,), cards=True)
+    return _table("off", ordered, caption, (file,))
 
 
 def measured_table(
     errors: Sequence[Row], caption: str, files: tuple[Link, ...]
 ) -> PageTable:
     """Show the errors on a measured dataset: a row a record and model."""
-    shown: dict[Heading, Callable[[Row], Cell | str]] = {
-        Heading("record"): lambda row: row["signal"],
-        Heading("model"): lambda row: look(row["model"]).label,
-        Heading("error"): lambda row: row["error_kind"],
-        Heading("RE", True): lambda row: _error(row["re"]),
-        Heading("MSE", True): lambda row: _error(row["mse"]),
-        Heading("unit"): lambda row: unit_text(row["unit"]),
-        Heading("RE after the transient", True): lambda row: _error(
-            row.get("re_after_transient", "")
-        ),
-        Heading("status"): lambda row: row["status"],
+    return _table("errors", errors, caption, files)
+
+
+def _table(
+    name: str, items: Sequence[Any], caption: str, files: tuple[Link, ...]
+) -> PageTable:
+    known = {
+        "error": _error,
+        "half": HALF_WORDS,
+        "label": lambda model: look(model).label,
+        "number": number,
+        "title": signal_title,
+        "unit": unit_text,
     }
-    filtered = ("record", "model")
-    return table_of(
-        "errors", inline(caption), errors, shown, files=files, filtered=filtered
-    )
+    return table_in(__package__, name, items, known, inline(caption), files=files)
 
 
 def measured_headline(errors: Sequence[Row]) -> PageTable:
