@@ -71,6 +71,12 @@ def load_yaml(path: str | Path, expected: str = "a YAML file") -> Any:
     return parse_yaml(read_text(path, expected), str(path))
 
 
+@cache
+def table_of(module: str) -> Any:
+    """Read, once, the table that stands beside a module's file under its name."""
+    return load_yaml(Path(module).with_suffix(".yaml"))
+
+
 def parse_yaml(text: str, place: str) -> Any:
     """Read YAML from a text, as :func:`load_yaml` reads it from a file.
 

@@ -2,11 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
 from typing import Any
 
-from hystbench.yaml_files import load_yaml
+from hystbench.yaml_files import table_of
 
 
 @dataclass(frozen=True)
@@ -30,13 +28,7 @@ KIND_ORDER = ("wrong", "model", "missing", "note")
 
 def finding(topic: str, paste: Sequence[str] = (), **told: Any) -> Finding:
     """Give a finding in the words of findings.yaml, filled with what is told."""
-    about = _words()[topic]
+    about = table_of(__file__)[topic]
     lines = tuple(paste or about.get("paste", ()))
     text = about["text"].format(**told)
     return Finding(about["kind"], text, lines, topic, told.get("name", ""))
-
-
-@cache
-def _words() -> dict[str, Any]:
-    found: dict[str, Any] = load_yaml(Path(__file__).with_suffix(".yaml"))
-    return found

@@ -2,14 +2,13 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 from hystbench.errors import InputError
 from hystbench.units import PREFIXES, SIMPLE, is_known, plain, seconds
-from hystbench.yaml_files import load_yaml
+from hystbench.yaml_files import table_of
 
 #: Words of a name by what it is, and units that tell an input from an output.
-KNOWN: Mapping[str, Sequence[str]] = load_yaml(Path(__file__).with_suffix(".yaml"))
+KNOWN: Mapping[str, Sequence[str]] = table_of(__file__)
 
 _BRACKET = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 _SLASH = re.compile(r"^(?P<name>.*?)\s+(?:/|in)\s+(?P<unit>\S+)\s*$")

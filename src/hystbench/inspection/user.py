@@ -2,13 +2,11 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cache
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from hystbench.device_kinds import DEVICE_KINDS, DeviceKind
 from hystbench.options import ChoiceOrNone
-from hystbench.yaml_files import load_yaml
+from hystbench.yaml_files import table_of
 
 Ask = Callable[[str, Sequence[str], str, str | None], str]
 """Asks the user: takes a question, the choices that there are, if any, the flag that
@@ -61,9 +59,4 @@ class User:
 
 def words(topic: str, **told: Any) -> str:
     """Give the words of user.yaml on a topic, filled with what is told."""
-    return str(_words()[topic]).format(**told)
-
-
-@cache
-def _words() -> Any:
-    return load_yaml(Path(__file__).with_suffix(".yaml"))
+    return str(table_of(__file__)[topic]).format(**told)

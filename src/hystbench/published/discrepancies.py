@@ -6,7 +6,6 @@ are in ``discrepancies.yaml``.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import astuple, dataclass, fields
-from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -21,7 +20,6 @@ from hystbench.published import (
     load_errors,
     load_table4_gpo,
     load_text,
-    read_text,
     signals,
     sines,
 )
@@ -33,7 +31,7 @@ from hystbench.published.equations import (
     generalized_play_eq12,
 )
 from hystbench.record import FloatArray
-from hystbench.yaml_files import parse_yaml
+from hystbench.yaml_files import table_of
 
 
 @dataclass(frozen=True)
@@ -46,14 +44,6 @@ class AuditRow:
     evidence: str
 
 
-@cache
-def _words() -> dict[str, Any]:
-    found: dict[str, Any] = parse_yaml(
-        read_text("discrepancies.yaml"), "discrepancies.yaml"
-    )
-    return found
-
-
 def _filled(words: Mapping[str, str], **numbers: Any) -> AuditRow:
     """Make a row of words, filled with numbers."""
     return AuditRow(**{key: text.format(**numbers) for key, text in words.items()})
@@ -61,7 +51,7 @@ def _filled(words: Mapping[str, str], **numbers: Any) -> AuditRow:
 
 def _row(name: str, **numbers: Any) -> AuditRow:
     """Make the row of what was found, filled with its numbers."""
-    return _filled(_words()["found"][name], **numbers)
+    return _filled(table_of(__file__)["found"][name], **numbers)
 
 
 def _sines(pairs: tuple[Pair, ...], model: str) -> dict[float, Pair]:
@@ -190,7 +180,7 @@ def wording(text: Text) -> Iterator[AuditRow]:
     """List what the words and the symbols of the paper leave wrong or open."""
     n = text.filter_length
     numbers = {"n": n, "taps": n + 1, "volterra": n + 1 + (n + 1) ** 2, "less": n - 1}
-    for words in _words()["read"]:
+    for words in table_of(__file__)["read"]:
         yield _filled(words, **numbers)
 
 
