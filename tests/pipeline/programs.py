@@ -86,7 +86,9 @@ def started(forking: ForkServerContext, prepare: Callable[[], None]) -> Path:
     client.write_text(CLIENT.format(python=sys.executable, address=str(address)))
     client.chmod(0o700)
     (folder / "bash").write_text(FOR_BASH.format(client=client))
-    server = forking.Process(target=serve, args=(str(address), prepare), daemon=True)
+    # No daemon, as a solver's job has processes of its own; it ends with the tests.
+    server = forking.Process(target=serve, args=(str(address), prepare))
+    atexit.register(server.terminate)
     server.start()
     while not address.exists():
         server.join(0.01)
