@@ -18,7 +18,8 @@ from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from hystbench.record import Channel, Record
-from tests.gap.searched import search
+from tests.gap.searched import among, search
+from tests.gap.small import block
 
 DT, COUNT, NOISE = 1e-3, 3000, 1e-3
 COMMAND, POSITION = Channel("command", "1"), Channel("position", "1")
@@ -87,3 +88,34 @@ def test_a_mode_stands_before_the_sensors_lag():
     given = (Record("run", DT, np.ones(9), np.ones(9), COMMAND, POSITION, "measured"),)
     assert Simulation((PLANT, lag), given, "zero-order").behind_linear == 1
     assert Simulation((PLANT, lag), given, "linear").behind_linear == 0
+
+
+def test_a_creep_stands_behind_a_mass_with_the_forces_inside():
+    """Before it, the half of a sample by which straight lines come late hid it."""
+    mass = block("mechanism", mass=1.0, damping=2.0, stiffness=400.0, hold="zero-order")
+    spring = block("stiffness", quadratic=0.0, cubic=1.0)
+    given = (Record("run", DT, np.ones(9), np.ones(9), COMMAND, POSITION, "measured"),)
+    assert Simulation((mass,), given, "zero-order").behind_linear == 1
+    assert Simulation((mass,), given, "linear").behind_linear == 0
+    assert Simulation((mass, spring), given, "zero-order").behind_linear == 2
+
+
+def test_a_suspension_that_creeps_is_named_beside_a_given_mass():
+    """A step of the force, as long as it lasts, and small ones in between."""
+    random, tau = np.random.default_rng(3), 0.8
+    mass = block("mechanism", mass=1.0, damping=15.0, stiffness=900.0)
+    base = Model("suspension", COMMAND, POSITION, (mass,))
+    records = []
+    for name in ("a", "b"):
+        u = np.repeat(random.uniform(-300.0, 300.0, 60), 25)
+        x = base.with_hold("zero-order").simulate(u, DT)
+        slow = block("sensor-lag", time_constant_s=tau).simulate(x, x, DT)
+        y = x + 0.2 * slow + 1e-3 * random.standard_normal(len(u))
+        records.append(Record(name, DT, u, y, COMMAND, POSITION, "measured"))
+    only = among("creep", "drift", "hysteresis", "calibration-error")
+    asked = {"hold": "zero-order", "vocabulary": only}
+    found = search("suspension", records, base, **asked)
+    (effect,) = found.content["effects"]
+    assert effect["name"] == "creep"
+    (time,) = np.atleast_1d(effect["parameters"]["time_constants_s"]["value"])
+    assert time == pytest.approx(tau, rel=0.05)

@@ -12,7 +12,7 @@ import numpy as np
 from hystbench.blocks.attached import AttachedBlock, attached, through_near
 from hystbench.blocks.base import Block
 from hystbench.blocks.curve import SHORT_STEPS, finer
-from hystbench.blocks.force import Driven
+from hystbench.blocks.force import Driven, Dynamics
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.linear import LinearBlock
@@ -234,12 +234,16 @@ class Simulation:
 
         Linear blocks commute. Only a staircase must not come to it: a part of what it
         gives would be a staircase, the rest smooth, and no block behind takes both. So
-        it stands behind the first linear block that smooths.
+        it stands behind the first linear block that smooths, or the first mechanism
+        with the forces inside.
         """
         k = self.behind_material
         for place in range(k, len(self.chain)):
             block = self.chain[place]
-            if self.hold_at(k) != "zero-order" or not isinstance(block, LinearBlock):
+            inside = isinstance(block, AttachedBlock)
+            if not inside and self.hold_at(k) != "zero-order":
+                break
+            if not (inside or isinstance(block, LinearBlock | Dynamics)):
                 break
             k = place + 1
         return k
