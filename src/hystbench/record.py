@@ -85,7 +85,7 @@ class Record:
         Samples at the beginning that remember what was before the record. Models run
         over them; scores leave them out.
     past : int
-        How many of these were put before the record: the period that came before.
+        How many of these were put before the record: what came just before it.
     """
 
     name: str
@@ -127,7 +127,7 @@ class Record:
 
     @property
     def as_measured(self) -> Record:
-        """The record without the period that was put before it."""
+        """The record without what was put before it."""
         if not self.past:
             return self
         alone = self.cut(slice(self.past, None))

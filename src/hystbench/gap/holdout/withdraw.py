@@ -121,7 +121,7 @@ def worse_than_a_constant(before: float, evidence: Evidence, floor: float) -> li
         One warning, or none.
     """
     mean = np.mean(np.concatenate([record.y for record in evidence.fit]))
-    outputs = np.concatenate([record.y for record in evidence.hold_out])
+    outputs = np.concatenate([record.as_measured.y for record in evidence.hold_out])
     still = rms(outputs - mean)
     noisy = still**2 <= (1 + AS_GOOD) * floor**2
     if noisy or before**2 <= (1 + AS_GOOD) * still**2:

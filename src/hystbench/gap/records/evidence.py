@@ -12,6 +12,7 @@ from hystbench.device_kinds import DeviceKind
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
 from hystbench.gap.records import folds, nuisance
+from hystbench.gap.records.continued import continued
 from hystbench.gap.records.free_mass import decay_of_free_mass, windows
 from hystbench.gap.records.usable import check_usable
 from hystbench.model import Model
@@ -130,6 +131,8 @@ def evidence_of(
     if decay is not None:
         notes, named = (*notes, CUT), None
         records = [window for record in records for window in windows(record, decay)]
+    else:
+        records = continued(records, dataset)
     return Evidence(
         dataset.name,
         tuple(record for record in records if record.use == "fit"),

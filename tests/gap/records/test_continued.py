@@ -1,0 +1,99 @@
+"""A measurement that was cut in two: the second part begins where the first ends."""
+
+import numpy as np
+import pytest
+
+from hystbench.gap.asked import Asked
+from hystbench.gap.bases.load import load_base
+from hystbench.gap.records.evidence import load_evidence
+from hystbench.gap.run import closed_gap
+
+DT, TAU_S, NOISE, FIRST, LAST = 1.0, 120.0, 0.05, 400, 600
+
+
+def heated():
+    """A body of one heat capacity, with steps of its heater."""
+    random = np.random.default_rng(2)
+    u = np.repeat(random.uniform(10.0, 70.0, LAST // 50), 50)
+    y, now = [], 0.0
+    for value in u.tolist():
+        y.append(now)
+        now += (0.4 * value - now) * -np.expm1(-DT / TAU_S)
+    return u, np.array(y) + NOISE * random.standard_normal(LAST)
+
+
+@pytest.fixture(scope="module")
+def signals():
+    return heated()
+
+
+def dataset(folder, signals, parts, **more):
+    """Write the measurement, and a dataset that cuts it into parts."""
+    u, y = signals
+    table = np.column_stack([DT * np.arange(LAST), u, y])
+    header = "time_s,heater_W,temperature_degC"
+    for name in {file for file, *_ in parts}:
+        np.savetxt(folder / name, table, "%.9g", ",", header=header, comments="")
+    entries = "".join(
+        f"  - {{file: {file}, name: part-{k}, rows: [{first}, {last}], use: {use}}}\n"
+        for k, (file, first, last, use) in enumerate(parts)
+    )
+    (folder / "dataset.yaml").write_text(
+        "name: heater\n"
+        "time: {column: time_s, unit: s}\n"
+        "input: {column: heater_W, unit: W, hold: zero-order}\n"
+        "output: {column: temperature_degC, unit: degC}\n"
+        f"noise_rms: {NOISE}\n"
+        f"records:\n{entries}"
+    )
+    return folder / "dataset.yaml"
+
+
+BOTH = [("run.csv", 1, FIRST, "fit"), ("run.csv", FIRST + 1, LAST, "hold-out")]
+
+
+def test_the_part_that_is_held_out_has_the_other_before_it(tmp_path, signals):
+    evidence = load_evidence(dataset(tmp_path, signals, BOTH))
+    (fit,), (held,) = evidence.fit, evidence.hold_out
+    assert (len(fit), fit.past) == (FIRST, 0)
+    assert (len(held), held.past, held.lead) == (LAST, FIRST, FIRST)
+    np.testing.assert_allclose(held.u, signals[0], rtol=1e-8)
+    assert np.count_nonzero(held.counted) == LAST - FIRST
+    assert len(held.as_measured) == LAST - FIRST
+
+
+def test_a_base_of_long_memory_is_as_right_there_as_where_it_was_fitted(
+    tmp_path, signals
+):
+    """From rest it would be as many degrees off as the body is warm."""
+    evidence = load_evidence(dataset(tmp_path, signals, BOTH))
+    base, _ = load_base("linear", evidence)
+    found = closed_gap(evidence, base, Asked())
+    assert found.decision.content["gap"]["before"] < 1.3 * NOISE
+    (table,) = found.outcome.outputs
+    assert len(table[0]) == LAST - FIRST
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        # Nothing of what is held out comes into what is fitted.
+        [("run.csv", 1, 200, "hold-out"), ("run.csv", 201, LAST, "fit")],
+        # A sample between them is missing, or it is another measurement.
+        [("run.csv", 1, FIRST, "fit"), ("run.csv", FIRST + 2, LAST, "hold-out")],
+        [("run.csv", 1, FIRST, "fit"), ("other.csv", FIRST + 1, LAST, "hold-out")],
+    ],
+)
+def test_others_stay_as_they_are(parts, tmp_path, signals):
+    evidence = load_evidence(dataset(tmp_path, signals, parts))
+    assert [record.past for record in (*evidence.fit, *evidence.hold_out)] == [0, 0]
+
+
+def test_of_three_parts_the_last_has_both_before_it(tmp_path, signals):
+    three = [
+        ("run.csv", 1, 200, "fit"),
+        ("run.csv", 201, FIRST, "fit"),
+        ("run.csv", FIRST + 1, LAST, "hold-out"),
+    ]
+    (held,) = load_evidence(dataset(tmp_path, signals, three)).hold_out
+    assert held.past == FIRST
