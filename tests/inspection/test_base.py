@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import yaml
 
 from hystbench.errors import InputError
 from hystbench.inspection import screen
@@ -50,6 +51,25 @@ def test_a_loop_is_run_over_the_period_before_a_steady_motion(tmp_path):
     write_folder(tmp_path / "rig", made)
     found = looked(tmp_path, "rig", saved(tmp_path, loop), effects=False)
     assert found.base.left < 1.1 * NOISE
+
+
+def test_a_part_that_goes_on_lies_where_it_was_measured(tmp_path):
+    """It is run from the first row of the file, and compared from its own."""
+    u = np.repeat([1.0, 0.2, 0.7, 0.4], 200)
+    body = block("drive-lag", time_constant_s=0.3)
+    y = body.simulate(u, u, 1e-3)
+    write_folder(tmp_path / "rig", [record(u, y, name="run")])
+    file = tmp_path / "rig" / "dataset.yaml"
+    about = yaml.safe_load(file.read_text())
+    about["records"] = [
+        {"file": "run.csv", "name": name, "rows": rows, "use": use}
+        for name, rows, use in (("a", [1, 500], "fit"), ("b", [501, 800], "hold-out"))
+    ]
+    file.write_text(yaml.safe_dump(about))
+    found = looked(tmp_path, "rig", saved(tmp_path, body), effects=False)
+    *_, last = found.base.whole
+    assert len(last.record) == 300
+    assert np.max(np.abs(last.residual)) < 1e-3
 
 
 USED = ("a", "fit"), ("b", "hold-out")

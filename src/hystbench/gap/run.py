@@ -15,6 +15,7 @@ import numpy as np
 from hystbench.command_files import writes
 from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.asked import USUAL, Asked
+from hystbench.gap.bases.gpi import IdentifiedGpi
 from hystbench.gap.bases.lead import begun_beside, without_leads
 from hystbench.gap.bases.linear import IdentifiedModel, is_identified
 from hystbench.gap.fitting.augmented_model import augmented
@@ -174,7 +175,12 @@ def show(
         evidence, decided.base, fitted, say_in_words(say)
     )
     outcome = show_on_hold_out(
-        fitted, decided.content, evidence, vocabulary, decided.built_in
+        fitted,
+        decided.content,
+        evidence,
+        vocabulary,
+        decided.built_in,
+        decided.base,
     )
     measured = tuple(record.as_measured for record in evidence.hold_out)
     return replace(evidence, hold_out=measured), outcome
@@ -263,6 +269,7 @@ def decide_in(
             for item in decision.rungs
         ],
         "identified": base.to_mapping() if isinstance(base, IdentifiedModel) else None,
+        "hysteresis": base.to_mapping() if isinstance(base, IdentifiedGpi) else None,
         "without": list(decided.vocabulary.without),
         "with": list(decided.vocabulary.fixed),
         "built_in": None if built_in is None else built_in.mapping(),
@@ -301,6 +308,9 @@ def _decided_in(folder: Path, evidence: Evidence, base: Model) -> Decided:
     if kept["identified"]:
         named = f"{folder / NAMED}: identified"
         first = IdentifiedModel.from_mapping(kept["identified"], named)
+    if kept["hysteresis"]:
+        named = f"{folder / NAMED}: hysteresis"
+        first = IdentifiedGpi.from_mapping(kept["hysteresis"], named)
     leads = zip(begun_beside(first, evidence.fit), kept["leads"], strict=True)
     fit = tuple(replace(record, lead=lead) for record, lead in leads)
     fit = own.taken_off(fit, evidence.input_hold)

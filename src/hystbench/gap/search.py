@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import cache, partial
 
 from hystbench.gap.asked import USUAL, Asked
-from hystbench.gap.bases.gpi import identified_gpi
+from hystbench.gap.bases.gpi import identified_gpi, is_another
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import found_with, is_identified
 from hystbench.gap.bases.roughly_known import roughly_known
@@ -106,7 +106,7 @@ def search(
     if identified:
         found = _begun_otherwise(found, evidence, sought, quantities)
         found = _of_more_poles(found, evidence, sought)
-    about = None if identified else roughly_known(base, evidence.fit)
+    about = None if identified else roughly_known(found.base, evidence.fit)
     if about is not None and found.may_be_simpler():
         say("the base's numbers or timing may be off: naming beside that")
         again = _beside(about, evidence, sought, quantities, found.hosts)
@@ -118,6 +118,7 @@ def search(
         else:
             found = again
     found = _apart(found, sought)
+    anew = is_another(base, found.base)
     base, start, inside = found.base, found.start, found.inside
     if inside is not None:
         base, start = inside.base, inside.start
@@ -125,6 +126,12 @@ def search(
         evidence.name, base, start, found.floor, found.named, asked, limits, found.own
     )
     more = [told.content["reason"]]
+    if anew:
+        more.append(
+            "the hysteresis of the base was identified again, from record "
+            f"{evidence.slowest.name} without what the effects do to it, and the gap "
+            "is counted from that"
+        )
     if inside is not None:
         more.append(inside.sentence)
     if identified and (late := in_time_words(found.named.state)):

@@ -104,7 +104,7 @@ def base_of(dataset: Dataset, records: Sequence[Record], given: str = "") -> Bas
     begun = begun_beside(base, parts)
     outputs = run_base(base, begun, hold)
     compared = [
-        Compared(part, y[item.past :])
+        Compared(part.as_measured, y[item.past :])
         for part, item, y in zip(parts, begun, outputs, strict=True)
     ]
     fit = tuple(compared[: len(evidence.fit)])

@@ -86,9 +86,29 @@ def test_the_curve_has_the_inputs_mean_slope(swept):
     first = behind_a_curve(swept, plain.model.chain, plain.fit_rms)
     assert first is not None
     u, z = (np.concatenate([x.u for x in own.fit]) for own in (swept, first))
-    assert np.polyfit(u, z, 1) == pytest.approx([1.0, 0.0], abs=1e-6)
+    assert np.polyfit(u, z, 1)[0] == pytest.approx(1.0, abs=1e-6)
     expected = dead(u) / np.polyfit(u, dead(u), 1)[0]
     assert np.std(z - expected) < 0.05 * np.std(expected)  # eight bends
+
+
+def test_a_slow_device_from_rest_has_no_further_pole():
+    """A step of the curve's zero would be a transient of its own."""
+    lag = block(
+        "transfer-function",
+        numerator=(2.0,),
+        denominator=(150.0, 1.0),
+        hold="zero-order",
+    )
+    made = evidence(noises(), lambda u: lag.simulate(dead(u), dead(u), 1.0))
+    (own,) = poles(identified_linear(made).model)
+    assert own == pytest.approx([-1 / 150], rel=0.1)
+
+
+def test_of_a_square_a_line_is_no_part():
+    """A base that is scaled by it would have a gain of chance."""
+    made = evidence(noises(), lambda u: 5.0 * u**2)
+    plain = linear_of(made)
+    assert behind_a_curve(made, plain.model.chain, plain.fit_rms) is None
 
 
 def test_a_linear_device_has_no_curve():

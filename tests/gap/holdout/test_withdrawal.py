@@ -59,6 +59,14 @@ def test_what_is_worse_than_the_base_goes_whatever_the_verdict_was(verdict, name
     assert "from 1 to 30 um rms" in taken(30.0)["why"]
 
 
+def test_it_must_not_be_worse_than_the_first_base_either():
+    """A hysteresis that was identified again leaves more: the effect is not in it."""
+    assert withdrawal(content(1.0, 0.5), 0.6) is None
+    found = withdrawal(content(1.0, 0.5), 0.4)
+    assert found["before"] == 0.4
+    assert "from 0.4 to 0.5 um rms" in found["why"]
+
+
 def test_where_there_is_no_gap_the_base_goes_back_to_what_it_was():
     """Re-tuned it does worse; that says nothing of a gap."""
     given = content(1.0, 2.0, "no-gap", ()) | {"reason": "noise"}

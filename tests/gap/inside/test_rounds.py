@@ -388,29 +388,36 @@ def test_where_one_record_shows_a_force_both_answers_are_judged_on_blocks(monkey
 
 
 @pytest.mark.parametrize(
-    ("inside", "chain", "left", "better"),
+    ("inside", "counts", "chain", "left", "better"),
     [
-        ((1, 1), (1, 16), 0.104, True),  # a few thousandths of the gap of 1 more
-        ((1, 1), (1, 16), 0.2, False),  # a tenth
-        ((1, 1, 1), (1, 16), 0.1, False),  # by more effects
-        ((1, 1), (1, 2), 0.1, False),  # of no fewer numbers
-        ((1, 16), (1, 16), 0.1, False),
+        ((1, 1), 0, (1, 16), 0.104, True),  # a few thousandths of the gap of 1 more
+        ((1, 1), 0, (1, 16), 0.2, False),  # a tenth
+        ((1, 1, 1), 0, (1, 16), 0.1, False),  # by more effects
+        ((1, 1), 1, (1, 16), 0.1, False),  # and numbers of a host that nobody set free
+        ((1, 1), 0, (1, 2), 0.1, False),  # of no fewer numbers
+        ((1, 16), 0, (1, 16), 0.1, False),
+        ((1, "path"), 0, (1, 16), 0.1, False),
     ],
 )
 def test_a_law_of_many_numbers_is_no_rival_of_few_that_leave_as_little(
-    inside, chain, left, better
+    inside, counts, chain, left, better
 ):
     """The chain leaves a power of .1, of a gap of 1."""
 
+    def effect(charge):
+        path = charge == "path"
+        about = ("drift", "winding path") if path else ("creep", "one element")
+        many = not path and charge > 4
+        return SimpleNamespace(effect=about[0], form=about[1], is_of_many_numbers=many)
+
     def state(charges, power):
-        every = (SimpleNamespace(is_of_many_numbers=x > 4) for x in charges)
         return SimpleNamespace(
-            added=tuple(every),
+            added=tuple(map(effect, charges)),
             power=lambda floor: power,
             share=lambda other, floor, gap: (other.power(floor) - power) / gap,
         )
 
     before = SimpleNamespace(before=state((), 1.0))
     named = Named(state(chain, 0.1), (before,))
-    found = named_inside_module._in_fewer_numbers(state(inside, left), named, 1e-6)
-    assert found == better
+    there = Inside(None, None, Named(state(inside, left)), "", counts)
+    assert named_inside_module._in_fewer_numbers(there, named, 1e-6) == better

@@ -5,6 +5,7 @@ import pytest
 
 from hystbench.gap import search as module
 from hystbench.gap.asked import Asked
+from hystbench.gap.bases.gpi import is_another
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.naming.identified_again import freed_of_laws
 from hystbench.gap.records.evidence import Evidence
@@ -51,14 +52,43 @@ def heated():
 
 def named(evidence, base):
     found = module.search(evidence, base, Asked(vocabulary=LAWS)).content
-    return [item["name"] for item in found["effects"]]
+    return [item["name"] for item in found["effects"]], found["reason"]
 
 
 def test_heat_that_the_loop_had_taken_for_its_own_is_named(heated, monkeypatch):
     evidence, base = heated
-    assert named(evidence, base) == ["thermal-drift"]
+    effects, reason = named(evidence, base)
+    assert effects == ["thermal-drift"]
+    assert "identified again, from record slow without what the effects do" in reason
     monkeypatch.setattr(module, "freed_of_laws", lambda *_: None)
-    assert named(evidence, base) == ["drift"]
+    effects, reason = named(evidence, base)
+    assert effects == ["drift"]
+    assert "identified again" not in reason
+
+
+def test_the_base_that_is_re_tuned_is_the_one_that_was_identified_again(
+    heated, monkeypatch
+):
+    evidence, base = heated
+    asked = []
+
+    def spied(base, records):
+        asked.append(base)
+
+    monkeypatch.setattr(module, "roughly_known", spied)
+    found = module.search(evidence, base, Asked(vocabulary=LAWS))
+    assert asked == [found.base]
+    assert is_another(base, found.base)
+    assert not is_another(base, base)
+    assert not is_another(Model("given", CURRENT, DISPLACEMENT, base.chain), found.base)
+
+
+def test_a_law_that_does_less_than_noise_to_the_record_leaves_it(heated):
+    evidence, base = heated
+    found = module._beside(base, evidence, Asked(vocabulary=LAWS), None)
+    about = base, found.named, evidence
+    assert freed_of_laws(*about, found.floor.rms) is not None
+    assert freed_of_laws(*about, 100.0 * found.floor.rms) is None
 
 
 def test_a_record_of_the_loop_alone_is_left_as_it_is():

@@ -27,15 +27,17 @@ def signals():
     return heated()
 
 
-def dataset(folder, signals, parts, **more):
+def dataset(folder, signals, parts, *, times=None, period=None):
     """Write the measurement, and a dataset that cuts it into parts."""
     u, y = signals
-    table = np.column_stack([DT * np.arange(LAST), u, y])
+    times = DT * np.arange(LAST) if times is None else times
+    table = np.column_stack([times, u, y])
     header = "time_s,heater_W,temperature_degC"
     for name in {file for file, *_ in parts}:
         np.savetxt(folder / name, table, "%.9g", ",", header=header, comments="")
     entries = "".join(
-        f"  - {{file: {file}, name: part-{k}, rows: [{first}, {last}], use: {use}}}\n"
+        f"  - {{file: {file}, name: part-{k}, rows: [{first}, {last}], use: {use}"
+        + (f", period_samples: {period}}}\n" if period else "}\n")
         for k, (file, first, last, use) in enumerate(parts)
     )
     (folder / "dataset.yaml").write_text(
@@ -87,6 +89,45 @@ def test_a_base_of_long_memory_is_as_right_there_as_where_it_was_fitted(
 def test_others_stay_as_they_are(parts, tmp_path, signals):
     evidence = load_evidence(dataset(tmp_path, signals, parts))
     assert [record.past for record in (*evidence.fit, *evidence.hold_out)] == [0, 0]
+
+
+@pytest.mark.parametrize("between", [0.0, 1.4, 2.0, 1e4])
+def test_the_clock_has_to_go_on(between, tmp_path, signals):
+    """A sample is missing, or another run begins."""
+    times = DT * np.arange(LAST)
+    times[FIRST:] += between - DT
+    where = dataset(tmp_path, signals, BOTH, times=times)
+    (held,) = load_evidence(where).hold_out
+    assert held.past == (FIRST if between == 1.4 else 0)
+
+
+def test_a_period_that_still_warms_up_has_what_was_before(tmp_path):
+    """A steady one has the same period before it."""
+    u = np.tile(np.repeat([20.0, 60.0], 50), LAST // 100)
+    warm = 50.0 * -np.expm1(-np.arange(LAST) / 300.0) + 0.1 * u
+    where = dataset(tmp_path, (u, warm), BOTH, period=100)
+    (held,) = load_evidence(where).hold_out
+    assert (held.past, held.period_samples) == (FIRST, None)
+    steady = 0.1 * u + NOISE * np.random.default_rng(5).standard_normal(LAST)
+    where = dataset(tmp_path, (u, steady), BOTH, period=100)
+    (held,) = load_evidence(where).hold_out
+    assert (held.past, held.period_samples) == (0, 100)
+
+
+def test_samples_that_were_not_measured_stay_so(tmp_path, signals):
+    u, y = signals
+    y = y.copy()
+    y[[100, 500]] = np.nan
+    where = dataset(tmp_path, (u, y), BOTH)
+    where.write_text(where.read_text().replace("use:", "missing: interpolate, use:"))
+    (held,) = load_evidence(where).hold_out
+    assert np.flatnonzero(held.interpolated).tolist() == [100, 500]
+
+
+def test_of_overlapping_parts_the_longest_past_counts(tmp_path, signals):
+    parts = [*BOTH, ("run.csv", 300, FIRST, "fit")]
+    (held,) = load_evidence(dataset(tmp_path, signals, parts)).hold_out
+    assert held.past == FIRST
 
 
 def test_of_three_parts_the_last_has_both_before_it(tmp_path, signals):

@@ -18,7 +18,12 @@ from hystbench.record import Record
 
 @dataclass(frozen=True)
 class IdentifiedGpi(Model):
-    """A loop that was identified from a fit record, with the gap in it."""
+    """A hysteresis that was identified from a fit record, with the gap in it."""
+
+
+def is_another(first: Model, base: Model) -> bool:
+    """Tell whether a base was first identified as another hysteresis."""
+    return isinstance(first, IdentifiedGpi) and first.chain[0] not in base.chain
 
 
 ORDER = 20

@@ -112,7 +112,7 @@ def identified_linear(evidence: Evidence) -> Linear:
     """
     plain, unit = linear_of(evidence), evidence.output.unit
     best = plain
-    for effect, words, without, other in _with_an_effect(evidence, plain):
+    for effect, words, without, other in _found_beside(evidence, plain):
         found = linear_of(other)
         if found.fold_rms**2 < LOOSE * best.fold_rms**2:
             note = (
@@ -120,6 +120,8 @@ def identified_linear(evidence: Evidence) -> Linear:
                 "folds)"
             )
             model = replace(found.model, found_with=effect)
+            if effect == CURVE:
+                model = _of_mean_output(model, evidence)
             constant = plain.constant_rms
             best = found._replace(model=model, note=note, constant_rms=constant)
     fold, still = best.fold_rms, best.constant_rms
@@ -132,10 +134,22 @@ def identified_linear(evidence: Evidence) -> Linear:
     return best
 
 
-def _with_an_effect(
+def _of_mean_output(model: IdentifiedModel, evidence: Evidence) -> IdentifiedModel:
+    """Give a model the offset with which its mean is that of the fit records."""
+    held = model.with_hold(evidence.input_hold)
+    rest = np.concatenate(
+        [(x.y - held.begun_on(x).simulate(x.u, x.dt))[x.counted] for x in evidence.fit]
+    )
+    *others, last = model.chain
+    assert isinstance(last, Gain)  # noqa: S101  (for the type checker)
+    last = replace(last, offset=last.offset + float(np.mean(rest)))
+    return replace(model, chain=(*others, last))
+
+
+def _found_beside(
     evidence: Evidence, plain: Linear
 ) -> Iterator[tuple[str, str, str, Evidence]]:
-    """Give effects that no linear model shows, with records that are freed of each.
+    """Give what no linear model shows, with records that are freed of each.
 
     Beside the name stand words for a base of these records, and for one of the records
     as they were measured.

@@ -19,7 +19,7 @@ from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import fit_ratio
 from hystbench.gap.bases.sums import summed
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.thresholds import LOOSE, MOST
+from hystbench.gap.thresholds import LOOSE, MOST, NUMBER_PAYS
 from hystbench.record import FloatArray, Record
 
 KNOTS = 8
@@ -38,8 +38,8 @@ def behind_a_curve(
     """Give the fit records with what a static curve makes of their inputs.
 
     The curve is solved for with nothing behind it, and with a linear model; then that
-    model and the curve are found in turn. The curve's mean slope over the records is
-    one.
+    model and the curve are found in turn. The curve gives nothing for no input, and its
+    mean slope over the records is one.
 
     Parameters
     ----------
@@ -52,14 +52,21 @@ def behind_a_curve(
     Returns
     -------
     Evidence or None
-        None where no curve leaves less than a quarter of the power of that.
+        None where no curve leaves less than a quarter of the power of that, where a
+        line has no part in it, as in a square, or in windows of a mass that nothing
+        holds: what those forget of their start depends on the input.
     """
+    if any(record.decay_s is not None for record in evidence.fit):
+        return None
     every = np.concatenate([record.u for record in evidence.fit])
     knots = np.linspace(every.min(), every.max(), KNOTS + 2)[1:-1]
     orders = Orders(evidence)
     beginnings = (_solved(orders, knots, own) for own in ((), tuple(chain)))
     found = min((_in_turn(orders, knots, x, off) for x in beginnings), key=_left)
-    return found.evidence if found.left**2 < LOOSE * off**2 else None
+    bent = np.concatenate([record.u for record in found.evidence.fit])
+    if found.left**2 > LOOSE * off**2 or np.var(every) < NUMBER_PAYS * np.var(bent):
+        return None
+    return found.evidence
 
 
 @dataclass(frozen=True)
@@ -110,8 +117,10 @@ def _linear_behind(curve: _Curve) -> Block:
 
 
 def _bends(u: FloatArray, knots: FloatArray) -> FloatArray:
-    """Give the signals that a curve is a sum of, shape (n, 1 + knots)."""
-    return np.column_stack([u, np.maximum(u[:, None] - knots, 0.0)])
+    """Give the signals that a curve through zero is a sum of, shape (n, 1 + knots)."""
+    beyond = u[:, None] - knots
+    bent = np.where(knots > 0.0, np.maximum(beyond, 0.0), np.minimum(beyond, 0.0))
+    return np.column_stack([u, bent])
 
 
 def _sent(behind: Sequence[Block], record: Record, bent: FloatArray) -> FloatArray:
@@ -127,11 +136,10 @@ def _sent(behind: Sequence[Block], record: Record, bent: FloatArray) -> FloatArr
 def _of_mean_slope(
     records: Sequence[Record], curved: Sequence[FloatArray]
 ) -> tuple[Record, ...]:
-    """Give the records with a curve's outputs, near the inputs as a whole."""
+    """Give the records with a curve's outputs, of a mean slope of one."""
     u, z = (np.concatenate(x) for x in ([record.u for record in records], curved))
     slope = float(np.polyfit(u, z, 1)[0])
-    shift = float(np.mean(u) - np.mean(z) / slope)
     return tuple(
-        replace(record, u=own / slope + shift)
+        replace(record, u=own / slope)
         for record, own in zip(records, curved, strict=True)
     )

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.gap.bases.gpi import is_another
 from hystbench.gap.bases.lead import lead_warnings
 from hystbench.gap.bases.roughly_known import as_it_was
 from hystbench.gap.fitting.on_records import run_base
@@ -31,6 +32,7 @@ from hystbench.gap.records.nuisance import left_rms
 from hystbench.gap.thresholds import ABOVE_NOISE, AS_GOOD
 from hystbench.gap.vocabulary import Vocabulary, with_device
 from hystbench.metrics import rms
+from hystbench.model import Model
 from hystbench.units import sized
 
 
@@ -40,8 +42,12 @@ def show_on_hold_out(
     evidence: Evidence,
     vocabulary: Vocabulary,
     built_in: BuiltIn | None,
+    first: Model | None = None,
 ) -> Outcome:
     """Show a decision on the hold-out records; take back what is worse there.
+
+    It is worse where it leaves more than the base, or than the hysteresis that was
+    identified before any effect was known.
 
     Parameters
     ----------
@@ -53,8 +59,12 @@ def show_on_hold_out(
         What the user put in or left out, which is told.
     built_in : BuiltIn or None
         None where no effect was put in.
+    first : Model, optional
+        The base as it was given, or first identified.
     """
     shown = score_hold_out(fitted, evidence.hold_out)
+    other = first if first and is_another(first, fitted.base) else None
+    least = np.inf if other is None else _left(other, fitted, evidence)
     content = {
         **decided,
         "withdrawn": None,
@@ -69,11 +79,21 @@ def show_on_hold_out(
             *more_than_on_fit_records({**decided, **shown.content}),
         ],
     }
-    taken = withdrawal(content)
+    if other is not None:
+        content["reason"] += (
+            f"; as it was first identified it leaves {sized(least, content['unit'])} "
+            "rms of the hold-out records"
+        )
+    taken = withdrawal(content, least)
     if taken is not None:
         # The ladder and what runs away stay: they tell why.
-        first = fitted.rungs[0]
-        unchanged = replace(fitted, state=first.state, rungs=(first,))
+        rung = fitted.rungs[0]
+        if other is not None:
+            chain = other.with_hold(fitted.state.hold).chain
+            state = replace(rung.state, chain=chain, free=()).settled()
+            rung = rung._replace(state=state)
+            fitted = replace(fitted, base=other)
+        unchanged = replace(fitted, state=rung.state, rungs=(rung,))
         alone = score_hold_out(unchanged, evidence.hold_out)
         kept = {key: alone.content[key] for key in ("gap", "records", "black_box")}
         content = without_names({**content, **kept}, taken)
@@ -85,7 +105,8 @@ def show_on_hold_out(
     content["shortfall"] = shortfall(content)
     content = with_what_was_asked(content, vocabulary)
     if built_in is not None:
-        content = _with_built_in(content, built_in, _alone(built_in, fitted, evidence))
+        alone_rms = _left(built_in.alone, fitted, evidence)
+        content = _with_built_in(content, built_in, alone_rms)
     content = with_device(content, evidence.device_kind, evidence.quantities)
     return replace(shown, content=content)
 
@@ -134,10 +155,10 @@ def worse_than_a_constant(before: float, evidence: Evidence, floor: float) -> li
     ]
 
 
-def _alone(built_in: BuiltIn, fitted: FitResult, evidence: Evidence) -> float:
-    """RMS residual, on the hold-out records, of the simulator with nothing put in."""
+def _left(base: Model, fitted: FitResult, evidence: Evidence) -> float:
+    """RMS residual of another base on the hold-out records."""
     records = evidence.hold_out
-    outputs = run_base(built_in.alone, records, evidence.input_hold)
+    outputs = run_base(base, records, evidence.input_hold)
     mine = as_recorded(fitted.own, records, outputs, fitted.floor)
     size = left_rms(records, mine, nuisance_of(fitted.state, fitted.own))
     assert size is not None  # noqa: S101  (run_base refuses what has no bound)
@@ -165,13 +186,17 @@ def first_figure(content: Mapping[str, Any]) -> str:
     )
 
 
-def withdrawal(content: Mapping[str, Any]) -> dict[str, Any] | None:
+def withdrawal(
+    content: Mapping[str, Any], least: float = np.inf
+) -> dict[str, Any] | None:
     """Tell what the hold-out records take back, if the model is worse on them.
 
     Parameters
     ----------
     content : mapping
         What gap.json would hold if nothing were taken back.
+    least : float
+        RMS residual of another base that it must not be worse than either.
 
     Returns
     -------
@@ -182,7 +207,7 @@ def withdrawal(content: Mapping[str, Any]) -> dict[str, Any] | None:
         ``why``.
     """
     gap, unit = content["gap"], content["unit"]
-    before, after = gap["before"], gap["after"]
+    before, after = min(gap["before"], least), gap["after"]
     if after is not None and after**2 <= (1 + AS_GOOD) * before**2:
         return None
     names = [item["name"] for item in content["effects"]]

@@ -28,6 +28,7 @@ from hystbench.gap.inside.as_late import with_others_as_late
 from hystbench.gap.inside.choose import (
     as_rounds,
     chosen,
+    has_free_form,
     may_gain,
     not_taken,
     way_to,
@@ -283,11 +284,11 @@ def beats_chain(
 
     They have to lower the score on folds by as much as any effect; what either has to
     pay for each effect more than the other counts. Both models are refitted without
-    those records. Beside a law of many numbers it is enough that as many effects of few
-    numbers leave as little.
+    those records. Beside a law of many numbers no folds are asked: it is enough that no
+    more effects of few numbers leave as little.
     """
     state, chain = inside.named.state, named.state
-    if _in_fewer_numbers(state, named, floor_rms**2):
+    if _in_fewer_numbers(inside, named, floor_rms**2):
         say("inside: laws of few numbers leave as little as a chain of many")
         return True
     score = Score.plain(state.sample, floor_rms**2)
@@ -301,14 +302,17 @@ def beats_chain(
     return gain + FURTHER * more >= PAYS
 
 
-def _in_fewer_numbers(state: ModelState, named: Named, floor: float) -> bool:
+def _in_fewer_numbers(inside: Inside, named: Named, floor: float) -> bool:
     """Tell whether as few effects, none of many numbers, leave as little of the gap."""
-    own, others = state.added, named.state.added
-    some, every = (any(x.is_of_many_numbers for x in each) for each in (own, others))
-    if some or not every or len(own) > len(others):
+    state, chain = inside.named.state, named.state
+    here, there = (
+        any(x.is_of_many_numbers for x in own.added) for own in (state, chain)
+    )
+    few = len(state.added) + inside.counts <= len(chain.added)
+    if here or has_free_form(state) or not there or not few:
         return False
     gap = max(named.rounds[0].before.power(floor), floor)
-    return named.state.share(state, floor, gap) < AS_GOOD
+    return chain.share(state, floor, gap) < AS_GOOD
 
 
 def quantities_if_linear(base: Model, evidence: Evidence) -> Quantities | None:

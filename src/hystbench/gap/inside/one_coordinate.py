@@ -95,6 +95,8 @@ def _is_constant_pull(state: ModelState) -> bool:
     block = state.chain[0]
     if not isinstance(block, Mechanism) or block.stiffness == 0.0:
         return False
+    if block.start == "rest":
+        return False
     slowest = np.min(np.abs(np.roots([block.mass, block.damping, block.stiffness])))
     return bool(slowest * span_and_step(state.records)[0] < ROUNDED)
 

@@ -46,8 +46,8 @@ def freed_of_laws(
     Returns
     -------
     Evidence or None
-        None where the base is no loop that was identified, no law pays, or laws do no
-        more to the record than noise does.
+        None where the base is no loop that was identified, no law pays, or laws do to
+        the record no more than half of what noise does, in power.
     """
     laws = _laws(named) if isinstance(base, IdentifiedGpi) else None
     if laws is None:
@@ -59,7 +59,7 @@ def freed_of_laws(
     does = with_them - alone
     if np.var(does) <= ABOVE_NOISE * floor_rms**2:
         return None
-    freed = replace(slow, y=slow.y - does)
+    freed = replace(slow, y=slow.y - does).as_measured
     return replace(evidence, fit=_in_place(evidence.fit, place, freed))
 
 

@@ -6,57 +6,85 @@ the first part to know where the second begins.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from hystbench.dataset import Dataset
+from hystbench.gap.records.pasts import is_steady
 from hystbench.record import FloatArray, Mask, Record
 
-OF_A_PART = frozenset({"rows", "use", "name", "meant", "stands_still", "missing"})
+OF_A_PART = frozenset(
+    {"rows", "use", "name", "meant", "stands_still", "missing", "period_samples"}
+)
 """What dataset.yaml may say otherwise of another part of the same measurement."""
+HALF = 0.5
+"""Share of a sampling interval by which the clock may be off between two parts."""
 
 
 def continued(records: Sequence[Record], dataset: Dataset) -> list[Record]:
-    """Put the record of the rows just before in front of each that is held out.
+    """Put the records of the rows before in front of each that is held out.
 
-    Models run over it; scores leave it out. Records to fit stay as they are, so that
-    nothing of what is held out comes into them. So do records in a steady state, which
-    have a period of their own to begin with.
+    Models run over them; scores leave them out. The clock has to go on from one part to
+    the next, where there is one. Records to fit stay as they are, so that nothing of
+    what is held out comes into them. So do records in a steady state, whose own period
+    is put before them.
 
     Parameters
     ----------
     records : sequence of Record
         As they were read.
     dataset : Dataset
-        Tells the files and the rows.
+        Tells the files, the rows and the times.
     """
-    entries = [dataset.entry(record.name) for record in records]
-    ends = {
-        (_measurement(entry), entry["rows"][1]): record
-        for entry, record in zip(entries, records, strict=True)
-        if "rows" in entry
-    }
+    parts = [_Part.of(record, dataset) for record in records]
 
-    def with_past(record: Record, entry: Mapping[str, Any]) -> Record:
-        first = entry.get("rows", (1,))[0]
-        before = ends.get((_measurement(entry), first - 1))
-        alike = before is not None and np.isclose(before.dt, record.dt, rtol=1e-4)
-        if before is None or record.period_samples or not alike:
+    def with_past(part: _Part) -> Record:
+        record = part.record
+        if is_steady(record):
             return record
-        return _behind(with_past(before, dataset.entry(before.name)), record)
+        pasts = [with_past(x) for x in parts if part.follows(x)]
+        longest = max(pasts, key=len, default=None)
+        return record if longest is None else _behind(longest, record)
 
     return [
-        with_past(record, entry) if record.use == "hold-out" else record
-        for entry, record in zip(entries, records, strict=True)
+        with_past(part) if part.record.use == "hold-out" else part.record
+        for part in parts
     ]
 
 
-def _measurement(entry: Mapping[str, Any]) -> str:
-    """Tell one measurement from others by what the entries of its parts share."""
-    return repr(sorted((k, v) for k, v in entry.items() if k not in OF_A_PART))
+@dataclass(frozen=True)
+class _Part:
+    """A record, and where in a measurement it was."""
+
+    record: Record
+    measurement: str
+    first: int
+    """Row, counted from 1."""
+    last: int | None
+    """None where no rows are told: nothing follows."""
+    times: tuple[float, float] | None
+    """Of the first and the last row, in seconds from a clock's zero."""
+
+    @classmethod
+    def of(cls, record: Record, dataset: Dataset) -> _Part:
+        entry = dataset.entry(record.name)
+        own = sorted((k, v) for k, v in entry.items() if k not in OF_A_PART)
+        first, last = entry.get("rows", (1, None))
+        times = dataset.ends(record.name) if "rows" in entry else None
+        return cls(record, repr(own), first, last, times)
+
+    def follows(self, other: _Part) -> bool:
+        """Tell whether this part begins where another one ends, one sample later."""
+        dt = self.record.dt
+        if self.measurement != other.measurement or self.first - 1 != other.last:
+            return False
+        if not np.isclose(other.record.dt, dt, rtol=1e-4):
+            return False
+        if self.times is None or other.times is None:
+            return True
+        return abs(self.times[0] - other.times[1] - dt) <= HALF * dt
 
 
 def _behind(before: Record, record: Record) -> Record:
@@ -77,6 +105,7 @@ def _behind(before: Record, record: Record) -> Record:
         y=np.concatenate(y),
         simulated=simulated,
         interpolated=interpolated,
+        period_samples=None,
         lead=len(before),
         past=len(before),
     )
