@@ -135,22 +135,6 @@ class Dataset:
             lost if lost.any() else None,
         )
 
-    def ends(self, name: str) -> tuple[float, float] | None:
-        """Give the times of a record's first and last row in seconds, if it has any.
-
-        Raises
-        ------
-        InputError
-            If a column is missing, or there are no such rows.
-        """
-        _, columns, rows = self.columns(name)
-        if "time" not in columns:
-            return None
-        unit = seconds(f"{self.path}: time: unit", self.about["time"]["unit"])
-        times = columns["time"].values[rows]
-        first, last = float(times[0]) * unit, float(times[-1]) * unit
-        return first, last
-
     def columns(self, name: str) -> tuple[Table, dict[str, Column], slice]:
         """Read the columns of a record, as they stand in its file.
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import cache, partial
 
 from hystbench.gap.asked import USUAL, Asked
-from hystbench.gap.bases.gpi import identified_gpi, is_another
+from hystbench.gap.bases.gpi import again_words, identified_gpi, is_another
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import found_with, is_identified
 from hystbench.gap.bases.roughly_known import roughly_known
@@ -18,9 +18,7 @@ from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.own_values import NONE, OwnValues
-from hystbench.gap.fitting.re_tuning_gain import (
-    re_tuned_words,
-)
+from hystbench.gap.fitting.re_tuning_gain import re_tuned_words
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.choose import has_free_form, most_inside
@@ -113,8 +111,8 @@ def search(
         if stays(found, again, re_tuned=True):
             say("that explains no more: they stay as they are")
             if found.named.state.paths:  # beside other numbers it may be a law
-                by = again.named
-                found = _identified_again(found, by, evidence, sought, quantities)
+                own = again.named, evidence, sought, quantities
+                found = _identified_again(found, *own)
         else:
             found = again
     found = _apart(found, sought)
@@ -127,11 +125,7 @@ def search(
     )
     more = [told.content["reason"]]
     if anew:
-        more.append(
-            "the hysteresis of the base was identified again, from record "
-            f"{evidence.slowest.name} without what the effects do to it, and the gap "
-            "is counted from that"
-        )
+        more.append(again_words(evidence.slowest.name))
     if inside is not None:
         more.append(inside.sentence)
     if identified and (late := in_time_words(found.named.state)):
@@ -165,9 +159,7 @@ def _identified_again(
         if turn and stays(latest, again):
             break
         latest, named = again, again.named
-    if latest is found:
-        return found
-    if stays(found, latest):
+    if latest is not found and stays(found, latest):
         asked.say("that explains no more: the base stays")
         return found
     return latest

@@ -26,6 +26,14 @@ def is_another(first: Model, base: Model) -> bool:
     return isinstance(first, IdentifiedGpi) and first.chain[0] not in base.chain
 
 
+def again_words(record: str) -> str:
+    """Say from what a hysteresis was identified again."""
+    return (
+        f"the hysteresis of the base was identified again, from record {record} "
+        "without what the effects do to it, and the gap is counted from that"
+    )
+
+
 ORDER = 20
 """Order N of the base: so many operators and one more."""
 

@@ -14,6 +14,7 @@ import numpy as np
 from hystbench.dataset import Dataset
 from hystbench.gap.records.pasts import is_steady
 from hystbench.record import FloatArray, Mask, Record
+from hystbench.units import seconds
 
 OF_A_PART = frozenset(
     {"rows", "use", "name", "meant", "stands_still", "missing", "period_samples"}
@@ -72,7 +73,7 @@ class _Part:
         entry = dataset.entry(record.name)
         own = sorted((k, v) for k, v in entry.items() if k not in OF_A_PART)
         first, last = entry.get("rows", (1, None))
-        times = dataset.ends(record.name) if "rows" in entry else None
+        times = _times(record.name, dataset) if "rows" in entry else None
         return cls(record, repr(own), first, last, times)
 
     def follows(self, other: _Part) -> bool:
@@ -85,6 +86,16 @@ class _Part:
         if self.times is None or other.times is None:
             return True
         return abs(self.times[0] - other.times[1] - dt) <= HALF * dt
+
+
+def _times(name: str, dataset: Dataset) -> tuple[float, float] | None:
+    """Give the times of a record's first and last row in seconds, if it has any."""
+    _, columns, rows = dataset.columns(name)
+    if "time" not in columns:
+        return None
+    unit = seconds(f"{dataset.path}: time: unit", dataset.about["time"]["unit"])
+    times = columns["time"].values[rows]
+    return float(times[0]) * unit, float(times[-1]) * unit
 
 
 def _behind(before: Record, record: Record) -> Record:
