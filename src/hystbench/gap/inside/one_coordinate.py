@@ -76,14 +76,12 @@ def best_host(states: Iterable[ModelState], score: Score) -> Fitted | None:
 
 def likeliest(states: Iterable[ModelState], score: Score) -> Fitted | None:
     """Fit hosts a little, and the best two of them to the end; None without any."""
-
-    def moving(found: Iterable[Fitted]) -> list[Fitted]:
-        own = (item for item in found if not _is_constant_pull(item.state))
-        return sorted(own, key=lambda item: item.score)
-
-    quick = moving(fitted(state, score, QUICK) for state in states)
-    done = moving(fitted_to_the_end(item.state, score) for item in quick[:2])
-    return done[0] if done else None
+    quick = sorted(
+        (fitted(state, score, QUICK) for state in states), key=lambda item: item.score
+    )
+    done = (fitted_to_the_end(item.state, score) for item in quick)
+    moving = (item for item in done if not _is_constant_pull(item.state))
+    return min(itertools.islice(moving, 2), key=lambda item: item.score, default=None)
 
 
 def _is_constant_pull(state: ModelState) -> bool:
