@@ -38,6 +38,8 @@ LEAD = 0.1
 #: Steps of least squares on simulation: of all records, then of each fold.
 ROUNDS = 20
 FOLD_ROUNDS = 4
+#: Order and steps of a linear model in turn with which something else is found.
+ROUGH, ROUGH_ROUNDS = 3, 3
 
 
 @dataclass(frozen=True)
@@ -153,6 +155,14 @@ class Orders:
             held=int(self.decay_s is not None),
         )
         return self.judged(with_plainest_start(task, first), first)
+
+    def roughly(self, zeros: int) -> tuple[OutputError, Ratio]:
+        """Fit a mode and a lag by a few steps, where what is beside them is sought."""
+        first = fit_ratio(self.spectra, ROUGH, zeros)
+        evidence = self.evidence
+        task = OutputError(evidence.fit, evidence.input_hold, self.spectra.scale)
+        task = with_plainest_start(task, first)
+        return task, task.refined(first, self.whole, ROUGH_ROUNDS)
 
     def judged(self, task: OutputError, first: Ratio) -> Found:
         """Fit a ratio to all records, and from there to each fold's."""

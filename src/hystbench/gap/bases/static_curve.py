@@ -14,9 +14,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.starts import started
-from hystbench.gap.bases.orders import Orders, with_plainest_start
-from hystbench.gap.bases.output_error import OutputError
-from hystbench.gap.bases.spectral import fit_ratio
+from hystbench.gap.bases.orders import ROUGH, Orders
 from hystbench.gap.bases.sums import summed
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.thresholds import LOOSE, MOST, NUMBER_PAYS
@@ -24,12 +22,8 @@ from hystbench.record import FloatArray, Record
 
 KNOTS = 8
 """Where the curve bends, at equal distances over the range of the inputs."""
-ORDER = 3
-"""Order of the linear models that the curve is found in turn with: a mode and a lag."""
 TURNS = 4
 """Times that both are found anew, at most."""
-FEW = 3
-"""Rounds of a fit between two of them."""
 
 
 def behind_a_curve(
@@ -109,11 +103,8 @@ def _solved(orders: Orders, knots: FloatArray, behind: Sequence[Block]) -> _Curv
 
 def _linear_behind(curve: _Curve) -> Block:
     """Fit a ratio of one order to what comes out of a curve."""
-    orders = Orders(curve.evidence)
-    evidence, first = orders.evidence, fit_ratio(orders.spectra, ORDER, ORDER)
-    task = OutputError(evidence.fit, evidence.input_hold, orders.spectra.scale)
-    task = with_plainest_start(task, first)
-    return task.block(task.refined(first, orders.whole, FEW))
+    task, ratio = Orders(curve.evidence).roughly(ROUGH)
+    return task.block(ratio)
 
 
 def _bends(u: FloatArray, knots: FloatArray) -> FloatArray:

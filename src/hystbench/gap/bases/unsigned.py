@@ -14,18 +14,12 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.blocks.drive_lag import DriveLag
-from hystbench.gap.bases.orders import Orders, with_plainest_start
-from hystbench.gap.bases.output_error import OutputError
-from hystbench.gap.bases.spectral import fit_ratio
+from hystbench.gap.bases.orders import ROUGH, Orders
 from hystbench.gap.records.evidence import Evidence
 from hystbench.record import FloatArray
 
-ORDER = 3
-"""Order of the linear model that signs are found with: a mode and a lag."""
 TURNS = 8
 """Times that signs are found anew, at most."""
-FEW = 3
-"""Rounds of a fit between two of them."""
 LAGS = 4
 """Lengths of the lag, from a sample to a tenth of the shortest record."""
 BOTH = 0.02
@@ -92,10 +86,8 @@ def _beginnings(evidence: Evidence) -> Iterator[tuple[FloatArray, ...]]:
 
 def _simulated(orders: Orders) -> list[FloatArray]:
     """Fit a ratio of one order and simulate it, one output a record."""
-    evidence, first = orders.evidence, fit_ratio(orders.spectra, ORDER, ORDER - 1)
-    task = OutputError(evidence.fit, evidence.input_hold, orders.spectra.scale)
-    task = with_plainest_start(task, first)
-    return task.simulate(task.refined(first, orders.whole, FEW))
+    task, ratio = orders.roughly(ROUGH - 1)
+    return task.simulate(ratio)
 
 
 def _off(shown: list[FloatArray], orders: Orders) -> float:

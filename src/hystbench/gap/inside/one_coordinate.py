@@ -95,8 +95,8 @@ def _is_constant_pull(state: ModelState) -> bool:
         return False
     if block.start == "rest":
         return False
-    slowest = np.min(np.abs(np.roots([block.mass, block.damping, block.stiffness])))
-    return bool(slowest * span_and_step(state.records)[0] < ROUNDED)
+    slowest, _ = block.rates(0.0, 0.0)
+    return slowest * span_and_step(state.records)[0] < ROUNDED
 
 
 def with_a_zero(best: Fitted, score: Score) -> Fitted:

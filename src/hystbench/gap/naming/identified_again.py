@@ -8,7 +8,6 @@ can be identified again.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -53,14 +52,14 @@ def freed_of_laws(
     if laws is None:
         return None
     slow = evidence.slowest
-    place = [item is slow for item in evidence.fit].index(True)
     bare = without(laws, {item.effect for item in laws.added})
     with_them, alone = (_simulated(base, own, slow) for own in (laws, bare))
     does = with_them - alone
     if np.var(does) <= ABOVE_NOISE * floor_rms**2:
         return None
     freed = replace(slow, y=slow.y - does).as_measured
-    return replace(evidence, fit=_in_place(evidence.fit, place, freed))
+    fit = tuple(freed if record is slow else record for record in evidence.fit)
+    return replace(evidence, fit=fit)
 
 
 def _simulated(base: Model, state: ModelState, record: Record) -> FloatArray:
@@ -68,12 +67,6 @@ def _simulated(base: Model, state: ModelState, record: Record) -> FloatArray:
     chain = (*state.chain, *beside_blocks(state))
     model = Model(base.name, base.input, base.output, chain)
     return run_base(model, (record,), state.hold)[0]
-
-
-def _in_place(
-    records: Sequence[Record], place: int, record: Record
-) -> tuple[Record, ...]:
-    return (*records[:place], record, *records[place + 1 :])
 
 
 def _laws(named: Named) -> ModelState | None:

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hystbench.dataset import Dataset
-from hystbench.gap.records.pasts import is_steady
-from hystbench.record import FloatArray, Mask, Record
+from hystbench.gap.records.pasts import is_steady, put_before
+from hystbench.record import Record
 from hystbench.units import seconds
 
 OF_A_PART = frozenset(
@@ -47,7 +47,9 @@ def continued(records: Sequence[Record], dataset: Dataset) -> list[Record]:
             return record
         pasts = [with_past(x) for x in parts if part.follows(x)]
         longest = max(pasts, key=len, default=None)
-        return record if longest is None else _behind(longest, record)
+        if longest is None:
+            return record
+        return replace(put_before(longest, record), period_samples=None)
 
     return [
         with_past(part) if part.record.use == "hold-out" else part.record
@@ -65,16 +67,14 @@ class _Part:
     """Row, counted from 1."""
     last: int | None
     """None where no rows are told: nothing follows."""
-    times: tuple[float, float] | None
-    """Of the first and the last row, in seconds from a clock's zero."""
+    dataset: Dataset
 
     @classmethod
     def of(cls, record: Record, dataset: Dataset) -> _Part:
         entry = dataset.entry(record.name)
         own = sorted((k, v) for k, v in entry.items() if k not in OF_A_PART)
         first, last = entry.get("rows", (1, None))
-        times = _times(record.name, dataset) if "rows" in entry else None
-        return cls(record, repr(own), first, last, times)
+        return cls(record, repr(own), first, last, dataset)
 
     def follows(self, other: _Part) -> bool:
         """Tell whether this part begins where another one ends, one sample later."""
@@ -83,9 +83,10 @@ class _Part:
             return False
         if not np.isclose(other.record.dt, dt, rtol=1e-4):
             return False
-        if self.times is None or other.times is None:
+        times, before = (_times(x.record.name, x.dataset) for x in (self, other))
+        if times is None or before is None:
             return True
-        return abs(self.times[0] - other.times[1] - dt) <= HALF * dt
+        return abs(times[0] - before[1] - dt) <= HALF * dt
 
 
 def _times(name: str, dataset: Dataset) -> tuple[float, float] | None:
@@ -96,27 +97,3 @@ def _times(name: str, dataset: Dataset) -> tuple[float, float] | None:
     unit = seconds(f"{dataset.path}: time: unit", dataset.about["time"]["unit"])
     times = columns["time"].values[rows]
     return float(times[0]) * unit, float(times[-1]) * unit
-
-
-def _behind(before: Record, record: Record) -> Record:
-    u, y = ([before.u, record.u], [before.y, record.y])
-    simulated: FloatArray | None = None
-    if before.simulated is not None and record.simulated is not None:
-        simulated = np.concatenate([before.simulated, record.simulated])
-    interpolated: Mask | None = None
-    if before.interpolated is not None or record.interpolated is not None:
-        lost = [
-            np.zeros(len(x), dtype=bool) if x.interpolated is None else x.interpolated
-            for x in (before, record)
-        ]
-        interpolated = np.concatenate(lost)
-    return replace(
-        record,
-        u=np.concatenate(u),
-        y=np.concatenate(y),
-        simulated=simulated,
-        interpolated=interpolated,
-        period_samples=None,
-        lead=len(before),
-        past=len(before),
-    )

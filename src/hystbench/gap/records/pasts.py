@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -81,8 +82,19 @@ def _alike(periods: FloatArray) -> bool:
 
 
 def _with_past(record: Record) -> Record:
-    period = record.period_samples or 0
-    again = np.r_[:period, : len(record)]
-    signals = {name: getattr(record, name) for name in SIGNALS}
-    longer = {name: x[again] for name, x in signals.items() if x is not None}
-    return replace(record, **longer, lead=period, past=period)
+    return put_before(record.cut(slice(record.period_samples)), record)
+
+
+def put_before(before: Record, record: Record) -> Record:
+    """Put what came before in front of a record: models run over it, unscored."""
+    signals: dict[str, Any] = {}
+    for name in SIGNALS:
+        pair = [getattr(item, name) for item in (before, record)]
+        if any(x is not None for x in pair):
+            signals[name] = np.concatenate(
+                [
+                    np.zeros(len(item), dtype=bool) if x is None else x
+                    for item, x in zip((before, record), pair, strict=True)
+                ]
+            )
+    return replace(record, **signals, lead=len(before), past=len(before))
