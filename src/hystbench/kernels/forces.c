@@ -358,6 +358,21 @@ static double hb_sum_of_forces(int count, const double *forces, double q, double
     return sum;
 }
 
+/* How a slider without a gap goes along a way: held by its spring all along, 1, sliding
+ * all along, -1, or neither, 0. Most go so at most times, and their law is then short. */
+static inline int hb_goes(const double *f, double memory, double way)
+{
+    if ((int)f[0] != 7 || f[3] != 0) return 0;
+    if (fabs(memory) <= f[2] && fabs(memory + way) <= f[2]) return 1;
+    return fabs(memory) == f[2] && memory * way > 0 ? -1 : 0;
+}
+
+/* The mean force of a slider that goes so. */
+static inline double hb_mean_slider(const double *f, double memory, double way, int goes)
+{
+    return f[1] * (goes > 0 ? (memory + (memory + way)) / 2 : memory);
+}
+
 /* By how much a way from q is too long for the mean force over it: without forces it is
  * `alone`, and less by `gives` for each unit of force. A way that takes no time, h = 0,
  * is one to a place of rest: the force at its end counts. */
@@ -367,8 +382,10 @@ static double hb_miss(int count, const double *forces, const double *memory, dou
     double sum = 0;
     for (int i = 0; i < count; i++) {
         const double *f = forces + HB_ROW * i;
-        sum += h > 0 ? hb_mean_force(f, q, way, h, memory + i)
-                     : hb_force(f, q + way, 0, memory + i);
+        const int goes = h > 0 ? hb_goes(f, memory[i], way) : 0;
+        sum += goes    ? hb_mean_slider(f, memory[i], way, goes)
+               : h > 0 ? hb_mean_force(f, q, way, h, memory + i)
+                       : hb_force(f, q + way, 0, memory + i);
     }
     return way - alone + gives * sum;
 }

@@ -27,6 +27,8 @@ static int minds_memory(int law)
 /* A force: its mean over a way in a time h; without a time itself, at a velocity. */
 static double force_at(const double *f, double x, double way, double h, const double *memory)
 {
+    const int goes = h > 0 ? hb_goes(f, memory[0], way) : 0;
+    if (goes) return hb_mean_slider(f, memory[0], way, goes);
     return h > 0 ? hb_mean_force(f, x, way, h, memory) : hb_force(f, x, way, memory);
 }
 
@@ -67,6 +69,15 @@ static double near_forces(int count, const double *forces, const double *memory,
     for (int r = 0; r < count; r++) {
         const double *f = forces + HB_ROW * r;
         const int law = (int)f[0];
+        by_memory[r] = 0;
+        const int goes = h > 0 ? hb_goes(f, memory[r], way) : 0;
+        if (goes) { /* its derivatives are known */
+            each[r] = hb_mean_slider(f, memory[r], way, goes);
+            sum += each[r];
+            by_way += goes > 0 ? f[1] / 2 : 0;
+            by_memory[r] = goes > 0 ? f[1] : 0;
+            continue;
+        }
         /* A way is added to a place, or to what a force remembers of it. */
         const double to = minds_place(law) ? x0 : minds_memory(law) ? memory[r] : 0;
         const double bit = inwards(way, h > 0 ? to : 0);
@@ -77,7 +88,6 @@ static double near_forces(int count, const double *forces, const double *memory,
             const double along = inwards(x0, fabs(beside) + place_of(f));
             by_place += (force_at(f, x0 + along, way, h, memory + r) - each[r]) / along;
         }
-        by_memory[r] = 0;
         if (minds_memory(law)) {
             const double step = inwards(memory[r], beside), other = memory[r] + step;
             by_memory[r] = (force_at(f, x0, way, h, &other) - each[r]) / step;
@@ -119,13 +129,21 @@ static void near_memories(int count, const double *forces, double *memory, doubl
     for (int r = 0; r < count; r++) {
         const double *f = forces + HB_ROW * r, was = memory[r];
         if (!minds_memory((int)f[0])) continue;
+        double *its = all->memory + r * wide;
+        const int goes = hb_goes(f, was, way);
+        if (goes) {
+            EACH(k, all) {
+                const lanes on = load(its + k) + load(all->way + k);
+                store(its + k, goes > 0 ? on : (lanes){0} + was);
+            }
+            continue;
+        }
         const double step = inwards(was, way), bit = inwards(way, was), faster = inwards(v, v);
         const double is = hb_remembered(f, way, v, h, was);
         const double by_memory = (hb_remembered(f, way, v, h, was + step) - is) / step;
         const double by_way = (hb_remembered(f, way + bit, v, h, was) - is) / bit;
         const double by_v =
             (int)f[0] == 3 ? (hb_remembered(f, way, v + faster, h, was) - is) / faster : 0;
-        double *its = all->memory + r * wide;
         EACH(k, all)
             store(its + k, is + by_memory * (load(its + k) - was) +
                                by_way * (load(all->way + k) - way) +
