@@ -287,6 +287,14 @@ class TestHysteresis:
         _, note = identified_gpi(dataclasses.replace(evidence(made), noise_rms=1.0))
         assert "with a noise of 1 um: that is noise" in note
 
+    def test_a_record_that_never_turns_back_shows_no_loop(self):
+        """A pull and a hold, with the noise of a measured input."""
+        noise = 1e-3 * np.random.default_rng(0).standard_normal(1000)
+        u = np.minimum(np.linspace(0.0, 2.0, 1000), 1.5) + noise
+        with pytest.raises(InputError, match="pull: its input turns back by 0.00") as at:
+            identified_gpi(evidence(record(u, 3 * u, name="pull")))
+        assert "--model linear" in str(at.value)
+
     def test_an_offset_stands_behind_it(self):
         slow = self.slow(offset=40.0)
         model, _ = identified_gpi(evidence(slow))

@@ -48,7 +48,8 @@ def base(start):
 
 def named(base, records, *beside):
     curve = block("asymmetry", coefficient=0.3)
-    added = tuple(Added("drift", "sensor", "path", (), {}, 1) for _ in beside)
+    bent = Added("asymmetry", "material", "square", (0,), {}, 1)
+    added = (bent, *(Added("drift", "sensor", "path", (), {}, 1) for _ in beside))
     chain = (curve, *base.chain)
     return state_of(
         chain, records, hold="zero-order", added=added, beside=tuple(beside)
@@ -89,3 +90,10 @@ def test_without_a_path_of_each_record_nothing_is_asked(records):
     assert begun_as_named(base("settled"), found, records, NOISE) is None
     whole = replace(found, chain=base("settled").chain)
     assert begun_as_named(base("settled"), whole, records, NOISE) is None
+
+
+def test_a_path_alone_shows_no_start(records):
+    """Nothing else was named that could have hidden one."""
+    found = named(base("settled"), records, a_path(records))
+    alone = replace(found, added=found.added[1:])
+    assert begun_as_named(base("settled"), alone, records, NOISE) is None

@@ -9,11 +9,13 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
+from hystbench.errors import InputError
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.thresholds import ABOVE_NOISE
 from hystbench.metrics import rms
 from hystbench.model import Model
-from hystbench.record import Record
+from hystbench.record import FloatArray, Record
+from hystbench.units import sized
 
 
 @dataclass(frozen=True)
@@ -57,11 +59,18 @@ def identified_gpi(evidence: Evidence) -> tuple[IdentifiedGpi, str]:
     Raises
     ------
     InputError
-        If the record is too short.
+        If the record is too short, or its input never turns back.
     """
     from hystbench.identification import identify  # late: scipy
 
     slow = evidence.slowest
+    back = _way_back(slow.u)
+    if ORDER * back < np.ptp(slow.u):  # the least loop that so many operators tell
+        raise InputError(
+            f"record {slow.name}: its input turns back by {sized(back, slow.input.unit)} "
+            "at most, and so shows no loop; expected a record that goes up and down: "
+            "name another under 'identification' in dataset.yaml, or take --model linear"
+        )
     found = identify(slow.u, slow.y, ORDER)
     block = GeneralizedPrandtlIshlinskii(
         envelope=tuple(found.envelope.to_dict().values()),
@@ -80,6 +89,13 @@ def identified_gpi(evidence: Evidence) -> tuple[IdentifiedGpi, str]:
         left = rms(slow.y - found.simulate(slow.u))
         note += f". {_leaves(slow, left, evidence)}"
     return IdentifiedGpi("gpi", evidence.input, evidence.output, chain), note
+
+
+def _way_back(u: FloatArray) -> float:
+    """Give how far an input goes back at most: down after it rose, or up after."""
+    rises = np.max(u - np.minimum.accumulate(u))
+    falls = np.max(np.maximum.accumulate(u) - u)
+    return float(min(rises, falls))
 
 
 def _leaves(record: Record, left: float, evidence: Evidence) -> str:

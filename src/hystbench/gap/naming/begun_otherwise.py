@@ -39,10 +39,10 @@ def begun_as_named(
     Returns
     -------
     Model or None
-        None where no record was given a path, the base begins so already, or the other
-        effects alone score worse beside that start.
+        None where no record was given a path, no other effect shows a start, the base
+        begins so already, or the other effects alone score worse beside that start.
     """
-    if not found.paths:
+    if not found.paths or found.paths.issuperset(x.effect for x in found.added):
         return None
 
     def left(start: str) -> float:
