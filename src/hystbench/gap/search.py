@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import cache, partial
 
 from hystbench.gap.asked import USUAL, Asked
-from hystbench.gap.bases.gpi import again_words, identified_gpi, is_another
+from hystbench.gap.bases.gpi import again_words, is_another
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import found_with, is_identified
 from hystbench.gap.bases.roughly_known import roughly_known
@@ -21,6 +21,7 @@ from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.re_tuning_gain import re_tuned_words
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.identify_again import identified_again
 from hystbench.gap.inside.choose import has_free_form, most_inside
 from hystbench.gap.inside.named_inside import (
     Inside,
@@ -35,7 +36,6 @@ from hystbench.gap.judge_and_tell import Decision, judge_and_tell
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.naming.begun_otherwise import begun_as_named
 from hystbench.gap.naming.beside_forces import beside_forces
-from hystbench.gap.naming.identified_again import freed_of_laws
 from hystbench.gap.naming.poles_of_base import named_beside_them, with_poles_named
 from hystbench.gap.naming.with_own_values import (
     named_apart,
@@ -55,9 +55,6 @@ no curve over its place has a meaning."""
 OF_THE_PLACE = "asymmetry"
 """Closed as well where the base may hold a hysteresis: it then stands behind it. Before
 a linear base it bends what drives the mass, as a valve does that opens more one way."""
-
-TURNS = 3
-"""Times that a loop is identified anew; after each its effects are known better."""
 
 NOT_EXACT = "the base does not call its numbers exact, and was re-tuned"
 EXACT = "write 'free: []' in a model file that is exact"
@@ -92,6 +89,16 @@ def search(
     """
     limits = Limits.of(evidence.fit, asked.limits) if asked.limits else None
     sought, say = asked.sought, asked.say
+
+    def again_from(found: BesideBase, named: Named) -> BesideBase:
+        """Identify a hysteresis again, from its record without what effects do."""
+
+        def look(base: Model) -> BesideBase:
+            return _beside(base, evidence, sought, quantities, found.hosts)
+
+        creeps = "creep" in asked.vocabulary.offered
+        return identified_again(found, named, evidence, look, say, creeps=creeps)
+
     found = _beside(base, evidence, sought, quantities)
     identified = is_identified(base)
     shifted = _in_better_time(found) if identified else None
@@ -100,7 +107,7 @@ def search(
         again = _beside(shifted, evidence, sought, quantities, found.hosts)
         found = found if stays(found, again) else again
         say("it is" if found is again else "that explains no more: it is not")
-    found = _identified_again(found, found.named, evidence, sought, quantities)
+    found = again_from(found, found.named)
     if identified:
         found = _begun_otherwise(found, evidence, sought, quantities)
         found = _of_more_poles(found, evidence, sought)
@@ -111,8 +118,7 @@ def search(
         if stays(found, again, re_tuned=True):
             say("that explains no more: they stay as they are")
             if found.named.state.paths:  # beside other numbers it may be a law
-                own = again.named, evidence, sought, quantities
-                found = _identified_again(found, *own)
+                found = again_from(found, again.named)
         else:
             found = again
     found = _apart(found, sought)
@@ -135,34 +141,6 @@ def search(
         if inside is None:
             more[-1] += f": {re_tuned_words(start, found.named.state)}"
     return replace(told, content={**told.content, "reason": "; ".join(more)})
-
-
-def _identified_again(
-    found: BesideBase,
-    named: Named,
-    evidence: Evidence,
-    asked: Asked,
-    quantities: Quantities | None,
-) -> BesideBase:
-    """Name beside a loop identified from a record without what laws do to it.
-
-    The first of these loops still has a part of the law in it.
-    """
-    latest = found
-    for turn in range(TURNS):
-        freed = freed_of_laws(found.base, named, evidence, found.floor.rms)
-        if freed is None:
-            break
-        asked.say("the record of the base shows an effect: naming beside it without")
-        base, _ = identified_gpi(freed)
-        again = _beside(base, evidence, asked, quantities, found.hosts)
-        if turn and stays(latest, again):
-            break
-        latest, named = again, again.named
-    if latest is not found and stays(found, latest):
-        asked.say("that explains no more: the base stays")
-        return found
-    return latest
 
 
 def _begun_otherwise(

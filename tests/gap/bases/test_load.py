@@ -291,7 +291,8 @@ class TestHysteresis:
         """A pull and a hold, with the noise of a measured input."""
         noise = 1e-3 * np.random.default_rng(0).standard_normal(1000)
         u = np.minimum(np.linspace(0.0, 2.0, 1000), 1.5) + noise
-        with pytest.raises(InputError, match="pull: its input turns back by 0.00") as at:
+        wanted = r"pull: its input turns back by 0\.00"
+        with pytest.raises(InputError, match=wanted) as at:
             identified_gpi(evidence(record(u, 3 * u, name="pull")))
         assert "--model linear" in str(at.value)
 

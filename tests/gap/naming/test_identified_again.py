@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
+from hystbench.gap import identify_again
 from hystbench.gap import search as module
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.gpi import is_another
 from hystbench.gap.bases.load import load_base
-from hystbench.gap.naming.identified_again import freed_of_laws
+from hystbench.gap.naming.identified_again import freed_of_creep, freed_of_laws
 from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record
@@ -25,6 +26,35 @@ def warmed(u):
         path.append(warm)
         warm += (value**2 - warm) * -np.expm1(-DT / TAU_S)
     return HEAT_UM * np.array(path)
+
+
+def crept(z):
+    """What creep adds: 30 % by six lags of half a second to 80 s, a ramp in each."""
+    slow = np.zeros(6)
+    times = 0.5 * 160.0 ** (np.arange(6) / 5)
+    fades, path, last = np.exp(-DT / times), [], 0.0
+    for value in z.tolist():
+        slow = fades * slow + (1 - fades) * (last + value) / 2
+        last = value
+        path.append(0.3 * slow.mean())
+    return np.array(path)
+
+
+def stack():
+    """A loop of growing size that creeps, steps with holds, and a quick motion."""
+    random, t = np.random.default_rng(6), DT * np.arange(4000)
+    grows = np.interp(t, [0, 80], [1.0, 9.0])
+    held = np.repeat(random.uniform(-7, 7, 10), 400)
+    quick = 5.0 * np.sin(2 * np.pi * 0.9 * t) + 2.0 * np.sin(2 * np.pi * 2.3 * t)
+    inputs = {"slow": grows * np.sin(2 * np.pi * 0.05 * t)}
+    inputs |= {"held": held * np.interp(t, [0, 4], [0.0, 1.0]), "quick": quick}
+    loop = Model("loop", CURRENT, DISPLACEMENT, (hysteresis(),))
+    records = []
+    for name, u in inputs.items():
+        z = loop.simulate(u, DT)
+        y = z + crept(z) + NOISE * random.standard_normal(len(u))
+        records.append(record(u, y, name=name, dt=DT))
+    return Evidence("stack", tuple(records), (), "linear", NOISE, "slow"), loop
 
 
 def rod(heats):
@@ -60,7 +90,7 @@ def test_heat_that_the_loop_had_taken_for_its_own_is_named(heated, monkeypatch):
     effects, reason = named(evidence, base)
     assert effects == ["thermal-drift"]
     assert "identified again, from record slow without what the effects do" in reason
-    monkeypatch.setattr(module, "freed_of_laws", lambda *_: None)
+    monkeypatch.setattr(identify_again, "freed_of_laws", lambda *_: None)
     effects, reason = named(evidence, base)
     assert effects == ["drift"]
     assert "identified again" not in reason
@@ -105,3 +135,37 @@ def test_a_base_that_was_given_is_not_identified(heated):
     found = module._beside(given, evidence, Asked(vocabulary=LAWS), None)
     assert freed_of_laws(base, found.named, evidence, found.floor.rms) is not None
     assert freed_of_laws(given, found.named, evidence, found.floor.rms) is None
+
+
+def test_creep_that_hides_all_laws_is_named(monkeypatch):
+    evidence, _ = stack()
+    base, _ = load_base("gpi", evidence)
+    monkeypatch.setattr(identify_again, "freed_of_laws", lambda *_: None)
+    effects, reason = named(evidence, base)
+    assert effects == ["creep"]
+    assert "identified again, from record slow without what the effects do" in reason
+    monkeypatch.setattr(identify_again, "freed_of_creep", lambda *_: None)
+    assert named(evidence, base)[0] != ["creep"]
+
+
+def test_a_record_is_freed_of_its_creep():
+    evidence, loop = stack()
+    base, _ = load_base("gpi", evidence)
+    freed = freed_of_creep(base, evidence, NOISE)
+    slow = evidence.slowest
+    without = loop.simulate(slow.u, DT)
+    left = np.std(freed.slowest.y - without)
+    assert left < 0.4 * np.std(slow.y - without)
+    assert [x.name for x in freed.fit] == [x.name for x in evidence.fit]
+    assert freed.fit[1:] == evidence.fit[1:]
+
+
+def test_a_loop_that_fits_its_record_is_freed_of_nothing():
+    evidence = rod(0.0)
+    base, _ = load_base("gpi", evidence)
+    assert freed_of_creep(base, evidence, NOISE) is None
+    creeping, _ = stack()
+    base, _ = load_base("gpi", creeping)
+    given = Model(base.name, base.input, base.output, base.chain)
+    assert freed_of_creep(given, creeping, NOISE) is None
+    assert freed_of_creep(base, creeping, 10.0) is None

@@ -67,9 +67,10 @@ def identified_gpi(evidence: Evidence) -> tuple[IdentifiedGpi, str]:
     back = _way_back(slow.u)
     if ORDER * back < np.ptp(slow.u):  # the least loop that so many operators tell
         raise InputError(
-            f"record {slow.name}: its input turns back by {sized(back, slow.input.unit)} "
-            "at most, and so shows no loop; expected a record that goes up and down: "
-            "name another under 'identification' in dataset.yaml, or take --model linear"
+            f"record {slow.name}: its input turns back by "
+            f"{sized(back, slow.input.unit)} at most, and so shows no loop; expected a "
+            "record that goes up and down: name another under 'identification' in "
+            "dataset.yaml, or take --model linear"
         )
     found = identify(slow.u, slow.y, ORDER)
     block = GeneralizedPrandtlIshlinskii(

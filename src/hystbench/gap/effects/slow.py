@@ -13,6 +13,11 @@ from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.effects.variant import Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
+SLOW_SAMPLES = 500
+"""Samples of a record that shows anything slow, at least."""
+QUICKEST = 200
+"""A record holds so many of the shortest time constants that are slow beside it."""
+
 
 class Creep(Effect):
     """One slow element, three a decade and a half apart, or all over some decades.
@@ -31,9 +36,9 @@ class Creep(Effect):
         Time constants go from a two-hundredth to the whole of the longest record; a
         slower element is a ramp that one record cannot tell from drift.
         """
-        if simulation.span < 500 * simulation.step:
+        if simulation.span < SLOW_SAMPLES * simulation.step:
             raise Declined("records are too short for anything slow")
-        low, high = simulation.span / 200, simulation.span
+        low, high = simulation.span / QUICKEST, simulation.span
         for count in (1, 3):
             unit = {f"magnitude {k + 1}": 1e-3 for k in range(count)}
             spread = SPREAD ** np.arange(count)
@@ -127,7 +132,7 @@ class ThermalDrift(Effect):
         """
         end = simulation.behind_mechanics
         small = 1e-3 * simulation.largest(end) / simulation.largest(0) ** 2
-        low, high = simulation.span / 200, 3 * simulation.span
+        low, high = simulation.span / QUICKEST, 3 * simulation.span
         yield self.inserted(
             simulation,
             end,

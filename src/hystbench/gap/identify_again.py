@@ -1,0 +1,81 @@
+"""A hysteresis identified again, from its record without what an effect does to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from hystbench.gap.bases.gpi import identified_gpi
+from hystbench.gap.beside_base import BesideBase, stays
+from hystbench.gap.naming.add_effects import Named
+from hystbench.gap.naming.identified_again import freed_of_creep, freed_of_laws
+from hystbench.gap.progress import Say
+from hystbench.gap.records.evidence import Evidence
+from hystbench.model import Model
+
+TURNS = 3
+"""Times that a loop is identified anew; after each its effects are known better."""
+
+
+def identified_again(
+    found: BesideBase,
+    named: Named,
+    evidence: Evidence,
+    look: Callable[[Model], BesideBase],
+    say: Say,
+    *,
+    creeps: bool,
+) -> BesideBase:
+    """Name beside a loop that is identified again, where that explains more.
+
+    Its record is freed of what laws do to it. Where no such loop stands, it is freed of
+    as much creep as the record shows.
+
+    Parameters
+    ----------
+    found : BesideBase
+        What was named beside the loop as it was first identified.
+    named : Named
+        Effects beside it, or beside the same with other numbers.
+    evidence : Evidence
+    look : callable
+        Names beside a base.
+    say : callable
+    creeps : bool
+        Whether the record may creep.
+    """
+    floor = found.floor.rms
+    latest = _in_turns(
+        found, freed_of_laws(found.base, named, evidence, floor), evidence, look, say
+    )
+    if latest is found and creeps:
+        freed = freed_of_creep(found.base, evidence, floor)
+        latest = _in_turns(found, freed, evidence, look, say)
+    return latest
+
+
+def _in_turns(
+    found: BesideBase,
+    freed: Evidence | None,
+    evidence: Evidence,
+    look: Callable[[Model], BesideBase],
+    say: Say,
+) -> BesideBase:
+    """Name beside the loop of a freed record, and free it of what is named then.
+
+    The first of these loops still has a part of the law in it.
+    """
+    latest = found
+    for turn in range(TURNS):
+        if freed is None:
+            break
+        say("the record of the base shows an effect: naming beside it without")
+        base, _ = identified_gpi(freed)
+        again = look(base)
+        if turn and stays(latest, again):
+            break
+        latest = again
+        freed = freed_of_laws(found.base, again.named, evidence, found.floor.rms)
+    if latest is not found and stays(found, latest):
+        say("that explains no more: the base stays")
+        return found
+    return latest
