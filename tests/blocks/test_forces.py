@@ -97,6 +97,14 @@ LAWS = {
         {"amplitude": 2.0, "angle": 0.4, "unit": "deg"},
         lambda q, v: 2 * (np.sin(np.radians(q) + 0.4) - np.sin(0.4)),
     ),
+    "gravity that was linearized before": (
+        {"amplitude": 2.0, "angle": 0.4, "straight": 1.0},
+        lambda q, v: 2 * (np.sin(q + 0.4) - np.sin(0.4) - q * np.cos(0.4)),
+    ),
+    "gravity linearized over degrees": (
+        {"amplitude": 2.0, "straight": 1.0, "unit": "deg"},
+        lambda q, v: 2 * (np.sin(np.radians(q)) - np.radians(q)),
+    ),
     "gravity from a slack spring": (
         {"amplitude": 2.0, "angle": 0.4, "carried": 0.0},
         lambda q, v: 2 * np.sin(q + 0.4),

@@ -211,6 +211,10 @@ POTENTIALS = {
         lambda q: 80 * (q**2 / 2 - 0.1 * (np.hypot(0.1, q) - 0.1))),
     "weight": ("gravity", {"amplitude": 150.0, "angle": 0.5},
                lambda q: 150 * (np.cos(0.5) - np.cos(q + 0.5) - np.sin(0.5) * q)),
+    "weight beyond its line": (
+        "gravity", {"amplitude": 150.0, "angle": 0.5, "straight": 1.0},
+        lambda q: 150 * (np.cos(0.5) - np.cos(q + 0.5) - np.sin(0.5) * q
+                         - np.cos(0.5) * q**2 / 2)),
     "contact": ("stop", {"contact_stiffness": 2e3, "gap": 0.3, "centre": 0.1},
                 lambda q: 1e3 * np.maximum(np.abs(q - 0.1) - 0.3, 0) ** 2),
     "hard contact": ("stop", {"contact_stiffness": 2e8, "gap": 0.3},

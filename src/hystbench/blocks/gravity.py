@@ -12,10 +12,12 @@ RADIANS = {"rad": 1.0, "deg": math.pi / 180}
 class Gravity(Force, name="gravity", law="gravity"):
     """A pendulum's moment on an angle q.
 
-    ``F = amplitude (sin(q + angle) - carried sin(angle))``, q in rad; where the
-    coordinate is in degrees, ``unit: deg`` says so. The spring carries a share
-    of the moment that the weight has at ``q = 0``: all of it, if q is counted from
-    where the weight rests; none, if q is counted from where the spring is slack.
+    ``F = amplitude (sin(q + angle) - carried sin(angle) - straight q cos(angle))``, q
+    in rad; where the coordinate is in degrees, ``unit: deg`` says so. The spring carries
+    a share of the moment that the weight has at ``q = 0``: all of it, if q is counted
+    from where the weight rests; none, if q is counted from where the spring is slack.
+    Where the model of a pendulum was linearized, its spring has the slope of that
+    moment as well: then ``straight`` is one.
 
     References
     ----------
@@ -27,13 +29,18 @@ class Gravity(Force, name="gravity", law="gravity"):
     carried: float = number(
         "-", "share of its moment at q = 0 that the spring balances", 0.0, 1.0, 1.0
     )
+    straight: float = number(
+        "-", "share of its slope at q = 0 that the spring has", 0.0, 1.0, 0.0
+    )
     unit: str = choice("of the coordinate", tuple(RADIANS), "rad")
 
     def numbers(self) -> tuple[float, ...]:
-        """Give the numbers of the law; the last is a unit of q in rad."""
-        return (self.amplitude, self.angle, self.carried, RADIANS[self.unit])
+        """Give the numbers of the law; the fourth is a unit of q in rad."""
+        turns = RADIANS[self.unit]
+        return (self.amplitude, self.angle, self.carried, turns, self.straight)
 
     @property
     def slope(self) -> float:
         """A pendulum swings as fast as this says."""
-        return self.amplitude * RADIANS[self.unit] * math.cos(self.angle)
+        steep = (1.0 - self.straight) * math.cos(self.angle)
+        return self.amplitude * RADIANS[self.unit] * steep

@@ -90,6 +90,15 @@ def test_a_mode_stands_before_the_sensors_lag():
     assert Simulation((PLANT, lag), given, "linear").behind_linear == 0
 
 
+def test_a_mode_stands_behind_the_lag_of_an_amplifier_and_its_gain():
+    lag = SensorLag(time_constant_s=1e-2, hold="zero-order")
+    given = (Record("run", DT, np.ones(9), np.ones(9), COMMAND, POSITION, "measured"),)
+    gain, late = block("gain", value=2.0), block("input-delay", delay_s=1e-3)
+    assert Simulation((gain, lag), given, "zero-order").behind_linear == 2
+    assert Simulation((late, gain, lag), given, "zero-order").behind_linear == 3
+    assert Simulation((gain, lag), given, "linear").behind_linear == 0
+
+
 def test_a_creep_stands_behind_a_mass_with_the_forces_inside():
     """Before it, the half of a sample by which straight lines come late hid it."""
     mass = block("mechanism", mass=1.0, damping=2.0, stiffness=400.0, hold="zero-order")

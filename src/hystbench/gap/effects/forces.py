@@ -178,7 +178,7 @@ class Gravity(InsideEffect):
 
         The coordinate is an angle. It is counted from the vertical, or from any angle:
         from where the weight is at rest, or from where the spring is. Without a spring
-        the weight alone holds it.
+        the weight alone holds it. A known spring may have its straight line already.
         """
         both = ("amplitude", "angle")
         if not moved.turns or moved.anywhere:
@@ -196,6 +196,11 @@ class Gravity(InsideEffect):
             yield Law("tilted", block, both, stands_for=part)
             slack = replace(block, carried=0.0)
             yield Law("tilted, from a slack spring", slack, both, stands_for=part)
+        if moved.known and moved.stiffness > 0.0:
+            weight = 0.5 * moved.stiffness / RADIANS[moved.turns]
+            block = GravityBlock(amplitude=weight, straight=1.0, unit=moved.turns)
+            yield Law("linearized before", block, both[:1])
+            yield Law("linearized before, tilted", block, both)
 
 
 STEEPEST = 1.0

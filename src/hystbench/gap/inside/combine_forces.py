@@ -128,21 +128,22 @@ def _in_vain(every: Sequence[Fitted], pairs: Sequence[Fitted]) -> bool:
 
 
 def with_one_fewer(best: Fitted, found: Sequence[Fitted], score: Score) -> list[Fitted]:
-    """Take each effect of a hypothesis out, where the others together were not tried.
+    """Take each effect of a hypothesis out, where the other laws were not tried.
 
-    An effect that stood for another one before that came may be needless beside it. The
-    others have to come one after the other: one fewer of them was tried as well.
+    An effect that stood for another one before that came may be needless beside it, or
+    beside another law of the same. The others have to come one after the other: one
+    fewer of them was tried as well.
     """
     if len(best.effects) < 2:
         return []
-    tried = {frozenset(item.effects) for item in found}
+    effects = {frozenset(item.effects) for item in found}
+    laws = {_laws(item) for item in found}
     left = []
     for number in range(len(best.effects)):
-        others = tuple(x for k, x in enumerate(best.effects) if k != number)
-        ways = (frozenset(others) - {one} for one in others)
-        if frozenset(others) in tried or not any(way in tried for way in ways):
-            continue
-        left.append(Fitted(without_effect(best.state, number), np.inf))
+        others = Fitted(without_effect(best.state, number), np.inf)
+        ways = (frozenset(others.effects) - {one} for one in others.effects)
+        if _laws(others) not in laws and any(way in effects for way in ways):
+            left.append(others)
     return to_the_end(left, score)
 
 

@@ -15,6 +15,7 @@ from hystbench.blocks.curve import SHORT_STEPS, finer
 from hystbench.blocks.force import Driven, Dynamics
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import HeldBlock, Hold
+from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.starts import started
@@ -28,6 +29,8 @@ from hystbench.record import FloatArray, Record
 
 Signals = tuple[FloatArray, ...]
 """One signal a record."""
+COMMUTE = (LinearBlock, Dynamics, Gain, InputDelay)
+"""Blocks that commute with what is linear: without forces inside all of them do."""
 Steps = Literal["plain", "quick", "fine"]
 """Steps of time: those of the samples, or others.
 
@@ -243,7 +246,7 @@ class Simulation:
             inside = isinstance(block, AttachedBlock)
             if not inside and self.hold_at(k) != "zero-order":
                 break
-            if not (inside or isinstance(block, LinearBlock | Dynamics)):
+            if not (inside or isinstance(block, COMMUTE)):
                 break
             k = place + 1
         return k
