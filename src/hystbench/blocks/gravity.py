@@ -13,11 +13,11 @@ class Gravity(Force, name="gravity", law="gravity"):
     """A pendulum's moment on an angle q.
 
     ``F = amplitude (sin(q + angle) - carried sin(angle) - straight q cos(angle))``, q
-    in rad; where the coordinate is in degrees, ``unit: deg`` says so. The spring carries
-    a share of the moment that the weight has at ``q = 0``: all of it, if q is counted
-    from where the weight rests; none, if q is counted from where the spring is slack.
-    Where the model of a pendulum was linearized, its spring has the slope of that
-    moment as well: then ``straight`` is one.
+    in rad; where the coordinate is in degrees, ``unit: deg`` says so. The spring
+    carries a share of the moment that the weight has at ``q = 0``: all of it, if q is
+    counted from where the weight rests; none, if q is counted from where the spring is
+    slack. Where the model of a pendulum was linearized, its spring has the slope of
+    that moment as well: then ``straight`` is one.
 
     References
     ----------

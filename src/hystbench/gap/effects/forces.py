@@ -17,6 +17,7 @@ from hystbench.blocks.gravity import Gravity as GravityBlock
 from hystbench.blocks.hysteretic_force import HystereticForce as BoucWen
 from hystbench.blocks.iwan_force import LEAST_EXPONENT, IwanForce
 from hystbench.blocks.lugre_force import LuGreForce
+from hystbench.blocks.resonance import Resonance
 from hystbench.blocks.slider_with_gap import SliderWithGap as SliderBlock
 from hystbench.blocks.smooth_friction import SmoothFriction
 from hystbench.blocks.stop import SIDES
@@ -122,7 +123,10 @@ class Friction(Effect):
 
 
 class Backlash(Effect):
-    """A play operator behind the mechanics, or before what has no hysteresis."""
+    """A play operator behind the mechanics, or before what has no hysteresis.
+
+    Also before a mode: as of a gear, behind which the load swings.
+    """
 
     name = "backlash"
     shows = "branch"
@@ -130,9 +134,12 @@ class Backlash(Effect):
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer half-widths up to a third of the largest output, or input."""
-        places = {simulation.behind_mechanics: ""}
+        end = simulation.behind_mechanics
+        places = {end: ""}
         if simulation.loop is None and has_dynamics(simulation):
-            places[0] = "before"
+            chain = simulation.chain[:end]
+            modes = (k for k, x in enumerate(chain) if isinstance(x, Resonance))
+            places |= dict.fromkeys(modes, "before the load's mode") | {0: "before"}
         for place, form in places.items():
             largest = simulation.largest(place)
             grid = logarithmic(3e-4 * largest, largest / 3, 4)

@@ -34,7 +34,8 @@ def reconsidered(
     The first effect was named while the others were missing: one like it may have
     looked better for that, or another form of it. A rival has to do better than both.
     A hysteresis that has no loop any more gives way to the best of all others: it is a
-    curve.
+    curve. All others are rivals of an effect of many numbers as well: it does what they
+    do.
 
     Parameters
     ----------
@@ -64,7 +65,7 @@ def reconsidered(
         have = tuple(other.effect for other in short.added)
         near = rivals or _near(item.effect, rounds)
         is_itself = bool(rivals) or _is_itself(state, item, floor_rms)
-        if not is_itself:
+        if item.is_of_many_numbers or not is_itself:
             near = among(state.offered)
         known = list(among({item.effect, *near} - set(have)).values())
         ranking = rank(short, score, known, folds=False)
