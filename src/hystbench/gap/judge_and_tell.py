@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hystbench.blocks.calls import USED_UP, Calls, current
+from hystbench.blocks.calls import USED_UP, current
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.beside_base import BesideBase
 from hystbench.gap.experiment.candidates import Limits
@@ -131,7 +131,7 @@ def judge_and_tell(
     }
     if why_none:
         content["no_experiment"] = why_none
-    if used_up := _used_up(current()):
+    if used_up := _used_up():
         content["calls_used_up"] = {"bound": current().bound, "sentence": used_up}
     return Decision(
         base,
@@ -191,7 +191,7 @@ def _judged(
         at_ends(state),
         beside,
         _predicts_nothing(state),
-        _used_up(current()),
+        _used_up(),
     )
     trust = unnamed.trust(left.may_be_of_base)
     reason = "; ".join(part for part in parts if part)
@@ -241,8 +241,9 @@ def _untried(names: Sequence[str]) -> str:
     return f"not tried, as {why}: {', '.join(names)}"
 
 
-def _used_up(calls: Calls) -> str:
+def _used_up() -> str:
     """Tell that a bound on calls has ended the search, if so."""
+    calls = current()
     if not calls.refused():
         return ""
     return (

@@ -226,6 +226,11 @@ DECISION = "stages/decision.json"
 NAMED = "stages/named.json"
 DECIDED_FILES = ("curves.json", BASE, NAMED, DECISION)
 """What the first of the two writes."""
+IDENTIFIED: dict[str, type[IdentifiedModel | IdentifiedGpi]] = {
+    "identified": IdentifiedModel,
+    "hysteresis": IdentifiedGpi,
+}
+"""Kinds of bases that are kept as they were first, by key."""
 
 
 def decide_in(
@@ -243,8 +248,10 @@ def decide_in(
             {"name": item.name, "state": state_mapping(item.state)}
             for item in decision.rungs
         ],
-        "identified": base.to_mapping() if isinstance(base, IdentifiedModel) else None,
-        "hysteresis": base.to_mapping() if isinstance(base, IdentifiedGpi) else None,
+        **{
+            key: base.to_mapping() if isinstance(base, kind) else None
+            for key, kind in IDENTIFIED.items()
+        },
         "without": list(decided.vocabulary.without),
         "with": list(decided.vocabulary.fixed),
         "built_in": None if built_in is None else built_in.mapping(),
@@ -280,12 +287,9 @@ def _decided_in(folder: Path, evidence: Evidence, base: Model) -> Decided:
     kept, content = read_json(folder / NAMED), read_json(folder / DECISION)
     floor, own = Floor(**kept["floor"]), OwnValues.of_mapping(content["record_values"])
     first = base
-    if kept["identified"]:
-        named = f"{folder / NAMED}: identified"
-        first = IdentifiedModel.from_mapping(kept["identified"], named)
-    if kept["hysteresis"]:
-        named = f"{folder / NAMED}: hysteresis"
-        first = IdentifiedGpi.from_mapping(kept["hysteresis"], named)
+    for key, kind in IDENTIFIED.items():
+        if kept[key]:
+            first = kind.from_mapping(kept[key], f"{folder / NAMED}: {key}")
     leads = zip(begun_beside(first, evidence.fit), kept["leads"], strict=True)
     fit = tuple(replace(record, lead=lead) for record, lead in leads)
     fit = own.taken_off(fit, evidence.input_hold)

@@ -100,22 +100,19 @@ def with_optional(content: Mapping[str, Any]) -> dict[str, Any]:
 def headline(gap: dict[str, Any], hold_out: Sequence[HoldOut]) -> list[EmbeddedPicture]:
     """Draw the headline: a stretch of a hold-out record, and the sizes of the gap."""
     after = "with effects" if gap["effects"] else "re-tuned"
-    found = []
+    small: dict[str, Any] = {"height": 2.1, "width": COLUMN, "clear": True}
     same = gap["gap"]["after"] == gap["gap"]["before"]
-    for table in pictures.worst(hold_out, 1):
-        with_it = "" if same else f", and {after}"
-        found.append(
-            draw(
-                pictures.glimpse,
-                table,
-                None if same else after,
-                words=f"A stretch of the hold-out record {table.name}: measured, the "
-                f"simulator{with_it}",
-                height=2.1,
-                width=COLUMN,
-                clear=True,
-            )
+    found = [
+        draw(
+            pictures.glimpse,
+            table,
+            None if same else after,
+            words=f"A stretch of the hold-out record {table.name}: measured, the "
+            f"simulator{'' if same else f', and {after}'}",
+            **small,
         )
+        for table in pictures.worst(hold_out, 1)
+    ]
     rows = [("simulator", gap["gap"]["before"])]
     if not same:
         rows.append((after, gap["gap"]["after"]))
@@ -125,21 +122,19 @@ def headline(gap: dict[str, Any], hold_out: Sequence[HoldOut]) -> list[EmbeddedP
         f"{name} {'unbounded' if size is None else f'{size:.3g}'}"
         for name, size in rows
     )
-    unit = unit_text(gap["unit"])
-    found.append(
-        draw(
-            pictures.sizes,
-            rows,
-            gap["gap"]["noise_floor"],
-            gap["unit"],
-            words=f"RMS residual on all hold-out records, in {unit}: {said}; noise "
-            f"floor {gap['gap']['noise_floor']:.3g}",
-            height=2.1,
-            width=COLUMN,
-            clear=True,
-        )
+    words = (
+        f"RMS residual on all hold-out records, in {unit_text(gap['unit'])}: {said}; "
+        f"noise floor {gap['gap']['noise_floor']:.3g}"
     )
-    return found
+    return [*found, _sizes(gap, rows, words=words, **small)]
+
+
+def _sizes(
+    gap: dict[str, Any], rows: Sequence[tuple[str, float | None]], **look: Any
+) -> EmbeddedPicture:
+    """Draw sizes of the gap beside the noise floor."""
+    about = gap["gap"]["noise_floor"], gap["unit"]
+    return draw(pictures.sizes, rows, *about, **look)
 
 
 def _diagram(content: Content) -> EmbeddedPicture:
@@ -214,14 +209,8 @@ def _ladder(gap: dict[str, Any]) -> EmbeddedPicture:
         (f"+ {item['name']}" if k else item["name"], item["rms"])
         for k, item in enumerate(gap["ladder"])
     ]
-    return draw(
-        pictures.sizes,
-        rungs,
-        gap["gap"]["noise_floor"],
-        gap["unit"],
-        words="RMS residual on hold-out records after each effect was added",
-        height=0.8 + 0.35 * len(rungs),
-    )
+    words = "RMS residual on hold-out records after each effect was added"
+    return _sizes(gap, rungs, words=words, height=0.8 + 0.35 * len(rungs))
 
 
 def _series(hold_out: Sequence[HoldOut]) -> EmbeddedPicture | None:
