@@ -60,20 +60,15 @@ def rerun_commands(gap: dict[str, Any]) -> list[tuple[str, str]]:
     if gap["withdrawn"]:
         named = gap["withdrawn"]["names"]
     known = {*named, *asked["with"], *asked["without"]}
-    rivals = [
-        name
-        for effect in gap["effects"]
-        for name in effect["cannot_be_told_from"]
-        if name not in known
-    ]
-    rivals += [
+    likely = [x for effect in gap["effects"] for x in effect["cannot_be_told_from"]]
+    tried = [
         item["name"]
         for item in gap["ranking"]
-        if item["round"] == 1 and not item["look"]
-        if item["name"] not in known and "declined" not in item
+        if item["round"] == 1 and not item["look"] and "declined" not in item
     ]
+    rival = next((name for name in (*likely, *tried) if name not in known), None)
     found = [(f"it is not {name}", [name], "") for name in dict.fromkeys(named)]
-    for rival in rivals[:1]:
+    if rival is not None:
         found.append((f"it is {rival}", [], rival))
         if named:
             first = named[0]
