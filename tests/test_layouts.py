@@ -206,9 +206,9 @@ def searched():
             content=CONTENT | {"run": len(calls)},
         )
 
-    def show_on_hold_out(fitted, decided, evidence, *_):
+    def show_on_hold_out(decided, evidence):
         outputs = [(record.y, record.y) for record in evidence.hold_out]
-        return run_module.Outcome(fitted.base, decided, outputs)
+        return run_module.Outcome(decided.fitted.base, decided.content, outputs)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run_module, "search", find)

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from hystbench.periods import find_period, repeats
 
@@ -56,3 +58,30 @@ def test_what_does_not_repeat_itself_has_none(u):
 def test_nothing_contradicts_a_period_that_the_record_holds_once():
     assert repeats(ROUND, len(ROUND))
     assert repeats(np.tile(ROUND, 2)[:700], len(ROUND))
+
+
+@given(period=st.integers(4, 60), count=st.integers(2, 9), seed=st.integers(0, 99))
+def test_a_signal_that_is_repeated_has_the_period_it_was_made_of(period, count, seed):
+    # One of period's own lines is sure, so that no shorter period is hidden in it.
+    once = np.sin(2 * np.pi * np.arange(period) / period)
+    once += 0.1 * np.random.default_rng(seed).normal(size=period)
+
+    assert find_period(np.tile(once, count)) == period
+
+
+@pytest.mark.parametrize(
+    ("frequency_hz", "expected"), [(10.0, 100), (60.0, 50), (150.0, 20), (0.7, None)]
+)
+def test_of_sines_the_shortest_stretch_of_whole_samples_and_periods(
+    frequency_hz, expected
+):
+    time = np.arange(2000) / 1000
+    noise = 1e-4 * np.random.default_rng(0).normal(size=2000)
+
+    assert find_period(np.sin(2 * np.pi * frequency_hz * time) + noise) == expected
+
+
+def test_noise_of_the_measurement_hides_no_period_of_many_lines():
+    measured = np.tile(ROUND, 2)
+    measured += 0.01 * np.random.default_rng(5).standard_normal(len(measured))
+    assert find_period(measured) == len(ROUND)

@@ -13,6 +13,7 @@ from hystbench.copies import CommonPiece, Written, common_piece
 from hystbench.dataset import CHANNELS, Dataset
 from hystbench.errors import InputError
 from hystbench.record import FloatArray, Record
+from hystbench.spectra import fastest_hz
 from hystbench.units import named_otherwise, plain, prefixed, seconds
 
 SLOWEST_HZ = 0.02
@@ -171,11 +172,7 @@ def _absurd(record: Record, factor: float, slow: bool) -> str | None:
 
 
 def _fastest_hz(record: Record) -> float:
-    """Frequency up to which nearly all of the input's power lies."""
-    power = np.square(np.abs(np.fft.rfft(record.u - record.u.mean())))
-    total = np.cumsum(power)
-    line = int(np.searchsorted(total, IN_BAND * total[-1]))
-    return max(line, 1) / (len(record) * record.dt)
+    return fastest_hz(record.u, record.dt, IN_BAND)
 
 
 def _staircases(dataset: Dataset, records: Sequence[Record]) -> Iterator[str]:

@@ -3,12 +3,10 @@
 import numpy as np
 import pytest
 import yaml
-from hypothesis import given
-from hypothesis import strategies as st
 
 from hystbench.dataset import load_dataset
 from hystbench.gap.bases.load import load_base
-from hystbench.gap.example import whole_period, write_example
+from hystbench.gap.example import write_example
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.identification.algorithm import identify_slow_loop
 from hystbench.model import load_model
@@ -20,27 +18,6 @@ from tests.conftest import shorten
 from tests.gap.searched import search
 
 CURRENT, LENGTH = Channel("current", "A"), Channel("displacement", "um")
-
-
-@given(period=st.integers(4, 60), count=st.integers(2, 9), seed=st.integers(0, 99))
-def test_a_signal_that_is_repeated_has_the_period_it_was_made_of(period, count, seed):
-    # One of period's own lines is sure, so that no shorter period is hidden in it.
-    once = np.sin(2 * np.pi * np.arange(period) / period)
-    once += 0.1 * np.random.default_rng(seed).normal(size=period)
-
-    assert whole_period(np.tile(once, count)) == period
-
-
-@pytest.mark.parametrize(
-    ("frequency_hz", "expected"), [(10.0, 100), (60.0, 50), (150.0, 20), (0.7, None)]
-)
-def test_of_sines_the_shortest_stretch_of_whole_samples_and_periods(
-    frequency_hz, expected
-):
-    time = np.arange(2000) / 1000
-    noise = 1e-4 * np.random.default_rng(0).normal(size=2000)
-
-    assert whole_period(np.sin(2 * np.pi * frequency_hz * time) + noise) == expected
 
 
 def test_the_dataset_names_the_period_of_records_that_have_one(tmp_path):

@@ -9,6 +9,7 @@ from hystbench.blocks.curve import finer
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.errors import InputError
 from hystbench.gap import search as search_module
+from hystbench.gap.beside_base import BesideBase
 from hystbench.gap.effects import effects
 from hystbench.gap.experiment import tell_apart
 from hystbench.gap.experiment.candidates import Limits
@@ -18,12 +19,13 @@ from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.on_records import start_state
+from hystbench.gap.fitting.own_values import NONE
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.choose import most_inside
+from hystbench.gap.judge_and_tell import judge_and_tell
 from hystbench.gap.judging.leftover import Leftover
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
-from hystbench.gap.search import judge_and_tell
 from hystbench.gap.thresholds import FURTHER, PAYS
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
@@ -102,11 +104,15 @@ def rounds_of(start, found, *names):
     return Named(found[names[0]], (Round(start, 0.0, ranking, True),))
 
 
+def in_a_chain(base, start, floor, named):
+    return BesideBase(base, start, floor, named, None, NONE)
+
+
 def decided(alike, *names, base=None, limits=None):
     plain, start, floor, found = alike
     named = rounds_of(start, found, *names)
     base = plain if base is None else base
-    return judge_and_tell("made", base, start, floor, named, limits=limits)
+    return judge_and_tell("made", in_a_chain(base, start, floor, named), limits=limits)
 
 
 def test_the_next_experiment_keeps_within_the_limits_that_were_asked(alike):
@@ -191,7 +197,7 @@ def test_rivals_beside_what_is_new_in_every_record_are_told_apart_without_it(ali
         for name in ("drive-lag", "sensor-lag")
     }
     named = rounds_of(start, lags, "drive-lag", "sensor-lag")
-    beside = judge_and_tell("made", base, start, floor, named).experiment
+    beside = judge_and_tell("made", in_a_chain(base, start, floor, named)).experiment
     plain = decided(alike, "drive-lag", "sensor-lag").experiment
     assert beside.left_out == ()
     assert beside.excitation.words == plain.excitation.words
@@ -244,7 +250,8 @@ def test_what_the_simulation_misses_by_its_steps_is_measured():
     chain = (hysteresis(),)
     base = Model("rig", CURRENT, DISPLACEMENT, chain)
     start, floor = start_state(measured(chain, 0.02), base, "band-limited", 0.02)
-    found = judge_and_tell("made", base, start, floor, Named(start)).content["fit"]
+    beside = in_a_chain(base, start, floor, Named(start))
+    found = judge_and_tell("made", beside).content["fit"]
     missed = []
     for one in start.records:
         fine = finer(one.u, 64)
@@ -255,7 +262,8 @@ def test_what_the_simulation_misses_by_its_steps_is_measured():
     gain = (block("gain", value=12.0),)
     base = Model("rig", CURRENT, DISPLACEMENT, gain)
     start, floor = start_state(measured(gain, 0.02), base, "band-limited", 0.02)
-    found = judge_and_tell("made", base, start, floor, Named(start)).content["fit"]
+    beside = in_a_chain(base, start, floor, Named(start))
+    found = judge_and_tell("made", beside).content["fit"]
     assert found["step_error"] == pytest.approx(0.0, abs=1e-9)
 
 

@@ -7,7 +7,6 @@ measured data, and no blind test: twin and effects share their blocks.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -19,14 +18,13 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.files import write_csv, write_text
 from hystbench.model import Model
-from hystbench.record import Channel, FloatArray, Record, column_name
+from hystbench.periods import find_period
+from hystbench.record import Channel, Record, column_name
 from hystbench.yaml_files import yaml_text
 
 NAME = "twin"
 WRITTEN = ("base.yaml", "dataset/dataset.yaml", "dataset/*.csv")
 """Files of the example, as names or patterns."""
-EXCITED = 1e-3
-"""Share of the largest line: a smaller one is the noise of the input's measurement."""
 
 
 def write_example(
@@ -58,7 +56,7 @@ def write_example(
             table = np.column_stack([record.time, record.u, record.y])
             rows = ([repr(value) for value in row] for row in table.tolist())
             write_csv(folder / "dataset" / file, columns, rows)
-            period = whole_period(record.u)
+            period = find_period(record.u)
             repeated = {} if period is None else {"period_samples": period}
             entries.append({"file": file, "use": use, **repeated})
     about = {
@@ -71,27 +69,6 @@ def write_example(
     }
     write_text(folder / "dataset" / "dataset.yaml", yaml_text(about))
     slow_loop_model(identified, first.input, first.output).save(folder / "base.yaml")
-
-
-def whole_period(u: FloatArray) -> int | None:
-    """Find after how many samples an input repeats, if its record holds whole periods.
-
-    Only lines that are multiples of ``g`` are excited where the record holds ``g``
-    periods; the largest such ``g`` that divides the record's samples gives the period.
-
-    Parameters
-    ----------
-    u : ndarray, shape (n,)
-
-    Returns
-    -------
-    int or None
-        Samples; None where the record holds no two whole periods.
-    """
-    size = np.abs(np.fft.rfft(u))
-    lines = np.flatnonzero(size > EXCITED * size.max())
-    periods = math.gcd(len(u), *lines.tolist())
-    return len(u) // periods if periods > 1 else None
 
 
 def slow_loop_model(

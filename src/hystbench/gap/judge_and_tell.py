@@ -8,14 +8,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hystbench.blocks.calls import USED_UP, Calls, current
+from hystbench.blocks.calls import USED_UP, current
 from hystbench.gap.asked import USUAL, Asked
+from hystbench.gap.beside_base import BesideBase
 from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.experiment.tell_apart import Experiment, tell_apart
 from hystbench.gap.fitting.augmented_model import augmented, blocks_of
 from hystbench.gap.fitting.model_score import floor_with_steps, make_score, step_error
 from hystbench.gap.fitting.on_records import compared_records
-from hystbench.gap.fitting.own_values import NONE, OwnValues
+from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.parameters import at_ends, base_parameters
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.uncertainty import (
@@ -65,13 +66,9 @@ class Decision(FitResult):
 
 def judge_and_tell(
     dataset: str,
-    base: Model,
-    start: ModelState,
-    floor: Floor,
-    named: Named,
+    found: BesideBase,
     asked: Asked = USUAL,
     limits: Limits | None = None,
-    own: OwnValues = NONE,
 ) -> Decision:
     """Locate the gap, and give the verdict on what was named.
 
@@ -79,18 +76,14 @@ def judge_and_tell(
     ----------
     dataset : str
         Its name.
-    base : Model
-    start : ModelState
-        The base on the fit records.
-    floor : Floor
-    named : Named
+    found : BesideBase
     asked : Asked
     limits : Limits, optional
         Of the next experiment; those of the records where none are given.
-    own : OwnValues
-        What was taken off the records of ``start``, as it is their own.
     """
     say, share = asked.say, asked.unnamed_share
+    host = found.inside or found  # what the effects are in
+    base, start, floor, named = host.base, host.start, found.floor, found.named
     left = what_is_left(start, named.state, floor.rms)
     if named.state.added and left.little_named:
         say(f"{LITTLE}: none named")
@@ -103,50 +96,50 @@ def judge_and_tell(
         lone=lone_share([item.residual[item.record.counted] for item in after]),
         unrepeated=unrepeated(after, floor.rms),
     )
-    found = _judged(start, named, left, floor, before, own, share)
-    effects = _effects(named, model, left, floor, found.trust)
-    if found.verdict == "named" and (doubt := likelier_wrong(effects)):
-        found = found._replace(verdict="unnamed", reason=f"{doubt}; {found.reason}")
+    judged = _judged(start, named, left, floor, before, found.own, share)
+    effects = _effects(named, model, left, floor, judged.trust)
+    if judged.verdict == "named" and (doubt := likelier_wrong(effects)):
+        judged = judged._replace(verdict="unnamed", reason=f"{doubt}; {judged.reason}")
     ladder = rungs(start, named)
-    contributed = contributions(ladder) if found.verdict == "named" else ()
+    contributed = contributions(ladder) if judged.verdict == "named" else ()
     where = locate(before, floor, contributed)
     if where[0].share_of_gap_power >= LEAST_SHARE:
         say(where[0].sentence)
     moved = beside_level(where, [(item.effect, item.place) for item in state.added])
-    moved = "" if found.verdict == "no-gap" else moved
-    reason = "; ".join(part for part in (found.reason, moved) if part)
+    moved = "" if judged.verdict == "no-gap" else moved
+    reason = "; ".join(part for part in (judged.reason, moved) if part)
     experiment, why_none = tell_apart(base, named, start.records, floor.rms, limits)
     unit = start.records[0].output.unit
     content: dict[str, Any] = {
         "dataset": dataset,
         "model": base.name,
         "unit": unit,
-        "verdict": found.verdict,
+        "verdict": judged.verdict,
         "reason": reason,
         "effects": effects,
         "fit": _fit(start, state, floor, left),
-        "unnamed": found.unnamed.mapping(),
+        "unnamed": judged.unnamed.mapping(),
         "where": [view.to_mapping() for view in where],
         "ranking": ranking_rows(named),
-        "record_values": own.mapping(unit),
+        "record_values": found.own.mapping(unit),
         "not_tried": not_tried(named),
         "taken_out": [item._asdict() for item in named.gone],
         "next_experiment": None if experiment is None else experiment.mapping(),
         "base_parameters": base_parameters(base, state),
         "simulator": simulator_mapping(model, start.records),
-        "black_box": {"explained_on_folds": found.box.explained_on_folds},
+        "black_box": {"explained_on_folds": judged.box.explained_on_folds},
     }
     if why_none:
         content["no_experiment"] = why_none
-    if used_up := _used_up(current()):
+    if used_up := _used_up():
         content["calls_used_up"] = {"bound": current().bound, "sentence": used_up}
     return Decision(
         base,
         state,
         floor,
-        found.box,
+        judged.box,
         ladder,
-        own,
+        found.own,
         model=model,
         content=content,
         curves=curves(where),
@@ -198,7 +191,7 @@ def _judged(
         at_ends(state),
         beside,
         _predicts_nothing(state),
-        _used_up(current()),
+        _used_up(),
     )
     trust = unnamed.trust(left.may_be_of_base)
     reason = "; ".join(part for part in parts if part)
@@ -248,8 +241,9 @@ def _untried(names: Sequence[str]) -> str:
     return f"not tried, as {why}: {', '.join(names)}"
 
 
-def _used_up(calls: Calls) -> str:
+def _used_up() -> str:
     """Tell that a bound on calls has ended the search, if so."""
+    calls = current()
     if not calls.refused():
         return ""
     return (

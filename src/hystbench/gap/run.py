@@ -5,10 +5,8 @@ In one process, or as two jobs of which the first has no hold-out file among its
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -24,7 +22,7 @@ from hystbench.gap.fitting.own_steps import too_long_steps
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import state_mapping, state_of
 from hystbench.gap.holdout.scored import Outcome
-from hystbench.gap.holdout.withdraw import show_on_hold_out
+from hystbench.gap.holdout.withdraw import Decided, show_on_hold_out
 from hystbench.gap.inside.named_inside import quantities_if_linear
 from hystbench.gap.judge_and_tell import Decision
 from hystbench.gap.naming.built_in import BuiltIn, build_in
@@ -46,20 +44,6 @@ SHOWN = (*DECISIVE, "holdout/*.csv")
 FILES = (*DECISIVE, "curves.json", "report.html")
 RESULT = (*FILES, "holdout/*.csv")
 """Files of a folder, as names or patterns, that a later result replaces."""
-
-
-@dataclass(frozen=True)
-class Decided:
-    """What goes from the fit records to those that are held out."""
-
-    base: Model
-    """The base as it was given, or identified. It is kept to find the leads of hold-out
-    records: it forgets its start, while a host in its place, as a store, may not."""
-    fitted: FitResult
-    content: Mapping[str, Any]
-    """What gap.json holds, but for what the hold-out records show."""
-    vocabulary: Vocabulary
-    built_in: BuiltIn | None
 
 
 @dataclass(frozen=True)
@@ -170,18 +154,9 @@ def show(
         without what was put before others.
     outcome : Outcome
     """
-    fitted, vocabulary = decided.fitted, decided.vocabulary
-    evidence = hold_out_begun_like_fit(
-        evidence, decided.base, fitted, say_in_words(say)
-    )
-    outcome = show_on_hold_out(
-        fitted,
-        decided.content,
-        evidence,
-        vocabulary,
-        decided.built_in,
-        decided.base,
-    )
+    own = say_in_words(say)
+    evidence = hold_out_begun_like_fit(evidence, decided.first, decided.fitted, own)
+    outcome = show_on_hold_out(decided, evidence)
     measured = tuple(record.as_measured for record in evidence.hold_out)
     return replace(evidence, hold_out=measured), outcome
 
@@ -251,6 +226,11 @@ DECISION = "stages/decision.json"
 NAMED = "stages/named.json"
 DECIDED_FILES = ("curves.json", BASE, NAMED, DECISION)
 """What the first of the two writes."""
+IDENTIFIED: dict[str, type[IdentifiedModel | IdentifiedGpi]] = {
+    "identified": IdentifiedModel,
+    "hysteresis": IdentifiedGpi,
+}
+"""Kinds of bases that are kept as they were first, by key."""
 
 
 def decide_in(
@@ -268,8 +248,10 @@ def decide_in(
             {"name": item.name, "state": state_mapping(item.state)}
             for item in decision.rungs
         ],
-        "identified": base.to_mapping() if isinstance(base, IdentifiedModel) else None,
-        "hysteresis": base.to_mapping() if isinstance(base, IdentifiedGpi) else None,
+        **{
+            key: base.to_mapping() if isinstance(base, kind) else None
+            for key, kind in IDENTIFIED.items()
+        },
         "without": list(decided.vocabulary.without),
         "with": list(decided.vocabulary.fixed),
         "built_in": None if built_in is None else built_in.mapping(),
@@ -305,12 +287,9 @@ def _decided_in(folder: Path, evidence: Evidence, base: Model) -> Decided:
     kept, content = read_json(folder / NAMED), read_json(folder / DECISION)
     floor, own = Floor(**kept["floor"]), OwnValues.of_mapping(content["record_values"])
     first = base
-    if kept["identified"]:
-        named = f"{folder / NAMED}: identified"
-        first = IdentifiedModel.from_mapping(kept["identified"], named)
-    if kept["hysteresis"]:
-        named = f"{folder / NAMED}: hysteresis"
-        first = IdentifiedGpi.from_mapping(kept["hysteresis"], named)
+    for key, kind in IDENTIFIED.items():
+        if kept[key]:
+            first = kind.from_mapping(kept[key], f"{folder / NAMED}: {key}")
     leads = zip(begun_beside(first, evidence.fit), kept["leads"], strict=True)
     fit = tuple(replace(record, lead=lead) for record, lead in leads)
     fit = own.taken_off(fit, evidence.input_hold)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache, partial
 
 from hystbench.gap.asked import USUAL, Asked
@@ -42,11 +42,12 @@ from hystbench.gap.naming.with_own_values import (
     offsets_for_paths,
     on_records,
 )
-from hystbench.gap.records.evidence import Evidence, own_offsets
+from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import LOOSE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
+from hystbench.record import Record
 
 NOT_IN_WINDOWS = ("drift", "sensor-nonlinearity", "saturation")
 """Effects that windows of a free mass cannot tell. An integrator makes a path of its
@@ -88,102 +89,238 @@ def search(
         If the base does not run on the records, or no excitation fits the limits.
     """
     limits = Limits.of(evidence.fit, asked.limits) if asked.limits else None
-    sought, say = asked.sought, asked.say
-
-    def again_from(found: BesideBase, named: Named) -> BesideBase:
-        """Identify a hysteresis again, from its record without what effects do."""
-
-        def look(base: Model) -> BesideBase:
-            return _beside(base, evidence, sought, quantities, found.hosts)
-
-        creeps = "creep" in asked.vocabulary.offered
-        return identified_again(found, named, evidence, look, say, creeps=creeps)
-
-    found = _beside(base, evidence, sought, quantities)
+    look, say = Search(evidence, asked.sought, quantities), asked.say
+    found = look.beside(base)
     identified = is_identified(base)
     shifted = _in_better_time(found) if identified else None
     if shifted is not None:
         say("the input may be taken at another time: naming beside that")
-        again = _beside(shifted, evidence, sought, quantities, found.hosts)
+        again = look.beside(shifted, found.hosts)
         found = found if stays(found, again) else again
         say("it is" if found is again else "that explains no more: it is not")
-    found = again_from(found, found.named)
+    found = look.identified_again(found, found.named)
     if identified:
-        found = _begun_otherwise(found, evidence, sought, quantities)
-        found = _of_more_poles(found, evidence, sought)
+        found = look.of_more_poles(look.begun_otherwise(found))
     about = None if identified else roughly_known(found.base, evidence.fit)
     if about is not None and found.may_be_simpler():
         say("the base's numbers or timing may be off: naming beside that")
-        again = _beside(about, evidence, sought, quantities, found.hosts)
+        again = look.beside(about, found.hosts)
         if stays(found, again, re_tuned=True):
             say("that explains no more: they stay as they are")
             if found.named.state.paths:  # beside other numbers it may be a law
-                found = again_from(found, again.named)
+                found = look.identified_again(found, again.named)
         else:
             found = again
-    found = _apart(found, sought)
-    anew = is_another(base, found.base)
-    base, start, inside = found.base, found.start, found.inside
-    if inside is not None:
-        base, start = inside.base, inside.start
-    told = judge_and_tell(
-        evidence.name, base, start, found.floor, found.named, asked, limits, found.own
-    )
+    found = _apart(found, look.asked)
+    told = judge_and_tell(evidence.name, found, asked, limits)
     more = [told.content["reason"]]
-    if anew:
+    if is_another(base, found.base):
         more.append(again_words(evidence.slowest.name))
-    if inside is not None:
-        more.append(inside.sentence)
+    if found.inside is not None:
+        more.append(found.inside.sentence)
     if identified and (late := in_time_words(found.named.state)):
         more.append(late)
     if found.base is about:
         more.append(f"{NOT_EXACT} ({EXACT})")
-        if inside is None:
-            more[-1] += f": {re_tuned_words(start, found.named.state)}"
+        if found.inside is None:
+            more[-1] += f": {re_tuned_words(found.start, found.named.state)}"
     return replace(told, content={**told.content, "reason": "; ".join(more)})
 
 
-def _begun_otherwise(
-    found: BesideBase, evidence: Evidence, asked: Asked, quantities: Quantities | None
-) -> BesideBase:
-    """Name beside another start of the base, if that may stand for records' paths.
+@dataclass(frozen=True)
+class Search:
+    """How fit records are searched, beside one base or another."""
 
-    It does if the other effects are then named, and nothing else.
-    """
-    state = found.named.state
-    about = state, evidence.fit, found.floor.rms
-    begun = begun_as_named(found.base, *about)
-    if begun is None:
-        return found
-    asked.say("the records may begin otherwise: naming beside that")
-    again = _beside(begun, evidence, asked, quantities, found.hosts)
-    others = {item.effect for item in state.added} - state.paths
-    stands = {item.effect for item in again.named.state.added} == others
-    asked.say("they do" if stands else "that explains something else: they do not")
-    return again if stands else found
+    evidence: Evidence
+    asked: Asked
+    quantities: Quantities | None
+    """None where no forces are to be tried inside the dynamics."""
 
+    @property
+    def offered(self) -> tuple[str, ...]:
+        """Effects that these records may show, of those that may be named."""
+        offered = self.asked.vocabulary.offered
+        if not self.evidence.in_windows:
+            return offered
+        closed = (*NOT_IN_WINDOWS, *(() if self.quantities else (OF_THE_PLACE,)))
+        return tuple(name for name in offered if name not in closed)
 
-def _of_more_poles(found: BesideBase, evidence: Evidence, asked: Asked) -> BesideBase:
-    """Give poles that were named beside an identified base to the base.
+    def started(
+        self, records: tuple[Record, ...], base: Model
+    ) -> tuple[ModelState, Floor]:
+        """Give a base on records, and their floor."""
+        evidence = self.evidence
+        about = evidence.input_hold, evidence.noise_rms, self.offered
+        return start_state(records, base, *about)
 
-    Its numbers are those that leave least without any effect.
-    """
-    if found.inside is not None or found.own.records:
-        return found
-    base = with_poles_named(found.base, found.named.state)
-    if base is None:
-        return found
-    records, offered = found.start.records, found.start.offered
-    about = evidence.input_hold, evidence.noise_rms, offered
-    start, floor = start_state(records, base, *about)
-    alone, _ = finished(start, make_score(start, floor.rms))
-    base = replace(base, chain=alone.chain)
-    start, floor = start_state(records, base, *about)
-    chain = named_beside_them(found.named, start, floor.rms, asked.say)
-    if chain is None:
-        return found
-    asked.say("the base may have the poles that were named: they are no effect")
-    return replace(found, base=base, start=start, floor=floor, chain=chain)
+    def without_leads(
+        self, records: tuple[Record, ...], base: Model, beside: Model
+    ) -> tuple[Record, ...]:
+        """Leave out the leads that a model shows which was found beside a base."""
+        about = self.evidence.input_hold, self.evidence.quantities, self.asked.say
+        return without_leads(records, base, *about, beside)
+
+    def identified_again(self, found: BesideBase, named: Named) -> BesideBase:
+        """Name beside a hysteresis that is identified again, where that is better."""
+        look = partial(self.beside, kinds=found.hosts)
+        about = found, named, self.evidence, look, self.asked.say
+        return identified_again(*about, creeps="creep" in self.offered)
+
+    def begun_otherwise(self, found: BesideBase) -> BesideBase:
+        """Name beside another start of the base, if that may stand for records' paths.
+
+        It does if the other effects are then named, and nothing else.
+        """
+        state, say = found.named.state, self.asked.say
+        about = state, self.evidence.fit, found.floor.rms
+        begun = begun_as_named(found.base, *about)
+        if begun is None:
+            return found
+        say("the records may begin otherwise: naming beside that")
+        again = self.beside(begun, found.hosts)
+        others = {item.effect for item in state.added} - state.paths
+        stands = {item.effect for item in again.named.state.added} == others
+        say("they do" if stands else "that explains something else: they do not")
+        return again if stands else found
+
+    def of_more_poles(self, found: BesideBase) -> BesideBase:
+        """Give poles that were named beside an identified base to the base.
+
+        Its numbers are those that leave least without any effect.
+        """
+        if found.inside is not None or found.own.records:
+            return found
+        base = with_poles_named(found.base, found.named.state)
+        if base is None:
+            return found
+        records, say = found.start.records, self.asked.say
+        start, floor = self.started(records, base)
+        alone, _ = finished(start, make_score(start, floor.rms))
+        base = replace(base, chain=alone.chain)
+        start, floor = self.started(records, base)
+        chain = named_beside_them(found.named, start, floor.rms, say)
+        if chain is None:
+            return found
+        say("the base may have the poles that were named: they are no effect")
+        return replace(found, base=base, start=start, floor=floor, chain=chain)
+
+    def beside(self, base: Model, kinds: tuple[Kind, ...] = ()) -> BesideBase:
+        """Name in a chain and inside the dynamics, on the records as they are.
+
+        Forces are tried in hosts of some kinds; in all by default.
+        """
+        quantities = self.quantities
+        say, share = self.asked.say, self.asked.unnamed_share
+        start, floor = self.started(self.evidence.fit, base)
+        inside, own = None, NONE
+        identified = is_identified(base)
+
+        @cache
+        def in_a_chain(start: ModelState, floor: Floor) -> Named:
+            return add_effects(start, floor.rms, self.asked)
+
+        def begun_as(chain: Named) -> tuple[ModelState, Floor]:
+            """Begin without the leads that what was named in a chain shows."""
+            model = augmented(base, chain.state)
+            shorter = self.without_leads(start.records, base, model)
+            if shorter is start.records:
+                return start, floor
+            return self.started(shorter, base)
+
+        known = bool(places_between_halves(start.simulation) or found_with(base))
+        if known:  # what that effect hides of a start is no reason to try forces
+            start, floor = begun_as(in_a_chain(start, floor))
+        # A base of two filters tells that a curve lies between them. One that was found
+        # beside an effect tells that there is this effect. So the chain is tried first.
+        # So it is beside a given base: forces must beat that.
+        if known or (quantities is not None and not identified):
+            chain = in_a_chain(start, floor)
+            enough = known and _why_enough(start, chain.state, floor, share)
+            if quantities and (enough or most_inside(chain, floor.rms) < 1):
+                say("no force could gain what matters, so none is tried inside")
+                quantities = None
+        if quantities is not None:
+            whole = start, floor
+            about = base, *whole, quantities, partial(in_a_chain, *whole), kinds
+            start, floor, inside, own = self.with_forces(*about)
+            if inside is not None and not beats_base(inside, start, floor.rms):
+                say("inside: what stands for the base leaves more than the base does")
+                (start, floor), inside, own = whole, None, NONE
+        if inside is not None:
+            beside = beside_forces(inside.named, inside.start, floor.rms, share, say)
+            inside = replace(inside, named=beside)
+            apart = bool(own.records) or not self.evidence.own_offsets
+            if beside.state.paths and not apart:
+                start, named, own = offsets_for_paths(start, beside, floor.rms, say)
+                alone = on_records(inside.start, start.records)
+                inside = replace(inside, start=alone, named=named)
+        # A base that was given is re-tuned where it is a host: that may stand for a
+        # chain. So may a free form beside forces.
+        if inside is not None and identified and not has_free_form(inside.named.state):
+            enough = _why_enough(inside.start, inside.named.state, floor, share)
+            if enough:
+                say(f"inside: {enough}, so no chain of effects is tried")
+                return BesideBase(base, start, floor, None, inside, own, inside)
+        chain = in_a_chain(start, floor)
+        if inside is None and chain.state.added:
+            start, floor = begun_as(chain)
+            chain = in_a_chain(start, floor)
+        tried = inside
+        if inside is not None and not beats_chain(inside, chain, floor.rms, say):
+            inside = None
+        return BesideBase(base, start, floor, chain, inside, own, tried)
+
+    def with_forces(
+        self,
+        base: Model,
+        start: ModelState,
+        floor: Floor,
+        quantities: Quantities,
+        in_a_chain: Callable[[], Named],
+        kinds: tuple[Kind, ...],
+    ) -> tuple[ModelState, Floor, Inside | None, OwnValues]:
+        """Look for forces inside the dynamics, beside what is a record's own.
+
+        What is given back first is the base on the records without what was found to be
+        their own. After the first look only such hosts are tried as it has found best.
+        Records get offsets of their own only where a chain leaves much as well. Wrong
+        forces leave much, and an offset would take some of it.
+        """
+        identified, say = is_identified(base), self.asked.say
+        shorter, whole, own = start.records, (start, floor), NONE
+
+        @cache
+        def most() -> float:
+            return most_inside(in_a_chain(), whole[1].rms)
+
+        def again(found: Model) -> bool:
+            nonlocal shorter
+            shorter = self.without_leads(start.records, base, found)
+            return shorter is not start.records
+
+        def look(start: ModelState, *more: Callable[[Model], bool]) -> Inside | None:
+            nonlocal kinds
+            about = base, start, floor.rms, quantities, identified, self.asked, most
+            found = named_inside(*about, *more, kinds=kinds)
+            kinds = kinds if found is None else (found.host,)
+            return found
+
+        while True:  # each time fewer records are whole
+            inside = look(start, again)
+            if inside is not None:
+                again(augmented(inside.base, inside.named.state))
+            if shorter is start.records:
+                break
+            start, floor = self.started(shorter, base)
+        if inside is None:  # no force shows where a motion begins
+            start, floor = whole
+        if (
+            not _leaves_little(inside, floor)
+            and self.evidence.own_offsets
+            and _leaves_much(in_a_chain().state, *whole)
+        ):
+            start, inside, own = apart_inside(start, inside, floor.rms, look, say)
+        return start, floor, inside, own
 
 
 def _in_better_time(found: BesideBase) -> Model | None:
@@ -191,88 +328,6 @@ def _in_better_time(found: BesideBase) -> Model | None:
     tried = found.tried
     better = tried and better_timed(found.base, tried.named.state, found.floor.rms)
     return better or timed_as_named(found.base, found.named.state)
-
-
-def _beside(
-    base: Model,
-    evidence: Evidence,
-    asked: Asked,
-    quantities: Quantities | None,
-    kinds: tuple[Kind, ...] = (),
-) -> BesideBase:
-    """Name in a chain and inside the dynamics, on the records as they are.
-
-    Forces are tried in hosts of some kinds; in all by default.
-    """
-    records, hold, declared = evidence.fit, evidence.input_hold, evidence.noise_rms
-    offered, say, share = asked.vocabulary.offered, asked.say, asked.unnamed_share
-    if any(record.decay_s is not None for record in records):
-        closed = (*NOT_IN_WINDOWS, *(() if quantities else (OF_THE_PLACE,)))
-        offered = tuple(name for name in offered if name not in closed)
-    start, floor = start_state(records, base, hold, declared, offered)
-    first, inside, own = start, None, NONE
-    identified = is_identified(base)
-    in_a_chain = cache(partial(add_effects, start, floor.rms, asked))
-
-    def begun_as(chain: Named) -> tuple[ModelState, Floor]:
-        """Begin without the leads that what was named in a chain shows."""
-        about = base, hold, evidence.quantities, say, augmented(base, chain.state)
-        shorter = without_leads(start.records, *about)
-        if shorter is start.records:
-            return start, floor
-        return start_state(shorter, base, hold, declared, offered)
-
-    known = bool(places_between_halves(start.simulation) or found_with(base))
-    if known:  # what that effect hides of a start is no reason to try forces
-        start, floor = begun_as(in_a_chain())
-        if start is not first:
-            in_a_chain = cache(partial(add_effects, start, floor.rms, asked))
-            first = start
-    # A base of two filters tells that a curve lies between them. One that was found
-    # beside an effect tells that there is this effect. So the chain is tried first. So
-    # it is beside a given base: forces must beat that.
-    if known or (quantities is not None and not identified):
-        chain_leaves_little = known and _why_enough(
-            start, in_a_chain().state, floor, share
-        )
-        if quantities and (
-            chain_leaves_little or most_inside(in_a_chain(), floor.rms) < 1
-        ):
-            say("no force could gain what matters, so none is tried inside")
-            quantities = None
-    if quantities is not None:
-        whole = start, floor
-        start, floor, inside, own = _with_forces(
-            base, start, floor, quantities, declared, asked, in_a_chain, kinds
-        )
-        if inside is not None and not beats_base(inside, start, floor.rms):
-            say("inside: what stands for the base leaves more than the base does")
-            (start, floor), inside, own = whole, None, NONE
-    if inside is not None:
-        beside = beside_forces(inside.named, inside.start, floor.rms, share, say)
-        inside = replace(inside, named=beside)
-        apart = bool(own.records) or not own_offsets(start.records, evidence.quantities)
-        if beside.state.paths and not apart:
-            start, named, own = offsets_for_paths(start, beside, floor.rms, say)
-            alone = on_records(inside.start, start.records)
-            inside = replace(inside, start=alone, named=named)
-    # A base that was given is re-tuned where it is a host: that may stand for a chain.
-    # So may a free form beside forces.
-    if inside is not None and identified and not has_free_form(inside.named.state):
-        enough = _why_enough(inside.start, inside.named.state, floor, share)
-        if enough:
-            say(f"inside: {enough}, so no chain of effects is tried")
-            return BesideBase(base, start, floor, None, inside, own, inside)
-    chain = in_a_chain() if start is first else add_effects(start, floor.rms, asked)
-    if inside is None and chain.state.added:
-        before = start
-        start, floor = begun_as(chain)
-        if start is not before:
-            chain = add_effects(start, floor.rms, asked)
-    tried = inside
-    if inside is not None and not beats_chain(inside, chain, floor.rms, say):
-        inside = None
-    return BesideBase(base, start, floor, chain, inside, own, tried)
 
 
 def _apart(found: BesideBase, asked: Asked) -> BesideBase:
@@ -291,60 +346,6 @@ def _apart(found: BesideBase, asked: Asked) -> BesideBase:
         inside = None
     own = found.own if inside is not None else own
     return replace(found, start=start, chain=chain, inside=inside, own=own)
-
-
-def _with_forces(
-    base: Model,
-    start: ModelState,
-    floor: Floor,
-    quantities: Quantities,
-    declared: float | None,
-    asked: Asked,
-    in_a_chain: Callable[[], Named],
-    kinds: tuple[Kind, ...],
-) -> tuple[ModelState, Floor, Inside | None, OwnValues]:
-    """Look for forces inside the dynamics, beside what is a record's own.
-
-    What is given back first is the base on the records without what was found to be
-    their own. After the first look only such hosts are tried as it has found best.
-    Records get offsets of their own only where a chain leaves much as well. Wrong
-    forces leave much, and an offset would take some of it.
-    """
-    identified, records, hold = is_identified(base), start.records, start.hold
-    say, shorter, whole, own = asked.say, records, (start, floor), NONE
-
-    @cache
-    def most() -> float:
-        return most_inside(in_a_chain(), whole[1].rms)
-
-    def again(found: Model) -> bool:
-        nonlocal shorter
-        shorter = without_leads(start.records, base, hold, quantities, say, found)
-        return shorter is not start.records
-
-    def look(start: ModelState, *more: Callable[[Model], bool]) -> Inside | None:
-        nonlocal kinds
-        about = base, start, floor.rms, quantities, identified, asked, most
-        found = named_inside(*about, *more, kinds=kinds)
-        kinds = kinds if found is None else (found.host,)
-        return found
-
-    while True:  # each time fewer records are whole
-        inside = look(start, again)
-        if inside is not None:
-            again(augmented(inside.base, inside.named.state))
-        if shorter is start.records:
-            break
-        start, floor = start_state(shorter, base, hold, declared, start.offered)
-    if inside is None:  # no force shows where a motion begins
-        start, floor = whole
-    if (
-        not _leaves_little(inside, floor)
-        and own_offsets(records, quantities)
-        and _leaves_much(in_a_chain().state, *whole)
-    ):
-        start, inside, own = apart_inside(start, inside, floor.rms, look, say)
-    return start, floor, inside, own
 
 
 def _leaves_much(state: ModelState, start: ModelState, floor: Floor) -> bool:

@@ -17,6 +17,7 @@ import numpy as np
 from hystbench.gap.thresholds import MOST
 from hystbench.periods import differences
 from hystbench.record import FloatArray
+from hystbench.spectra import line_below
 from hystbench.turns import turning_places
 
 InputKind = Literal["sine", "sum of sines", "sweep", "steps", "ramps", "broadband"]
@@ -206,6 +207,5 @@ def _sweeps(about: FloatArray) -> bool:
 def _without_noise(about: FloatArray) -> FloatArray:
     """Take off what lies above the frequencies that hold nearly all of the power."""
     spectrum = np.fft.rfft(about)
-    power = np.cumsum(np.abs(spectrum) ** 2)
-    spectrum[np.searchsorted(power, LOUD_SHARE * power[-1]) + 1 :] = 0.0
+    spectrum[line_below(np.abs(spectrum) ** 2, LOUD_SHARE) + 1 :] = 0.0
     return np.fft.irfft(spectrum, len(about))

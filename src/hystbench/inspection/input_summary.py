@@ -7,6 +7,7 @@ import numpy as np
 from hystbench.inspection.input_kind import InputKind, kind_of_input
 from hystbench.metrics import rms
 from hystbench.record import FloatArray, Mask
+from hystbench.spectra import line_below
 
 SMALL_SWING = 0.1
 """Share of the range: a way that is shorter may be noise."""
@@ -51,9 +52,10 @@ def summary_of(u: FloatArray, dt: float) -> InputSummary:
         Sampling interval in seconds.
     """
     power = np.square(np.abs(np.fft.rfft((u - u.mean()) * np.hanning(len(u)))))
-    total = np.cumsum(power)
-    edges = ((1 - POWER_SHARE) / 2 * total[-1], (1 + POWER_SHARE) / 2 * total[-1])
-    low, high = np.searchsorted(total, edges) / (len(u) * dt)
+    low, high = (
+        line_below(power, share) / (len(u) * dt)
+        for share in ((1 - POWER_SHARE) / 2, (1 + POWER_SHARE) / 2)
+    )
     return InputSummary(
         kind_of_input(u),
         max(float(low), 1 / (len(u) * dt)),

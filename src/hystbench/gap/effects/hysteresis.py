@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
 from functools import partial
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -17,7 +17,6 @@ from hystbench.gap.effects.effect import Declined, Effect
 from hystbench.gap.effects.places import has_dynamics, only_lags
 from hystbench.gap.effects.variant import Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
-from hystbench.record import FloatArray
 
 OPERATORS = 8
 BEND = 0.5
@@ -214,16 +213,34 @@ class RateDependentHysteresis(Effect):
         """
         if simulation.hysteresis is None:
             raise Declined("the chain has no hysteresis that could widen")
-        for law in _rate_laws(simulation):
-            yield self.inserted(
-                simulation,
-                simulation.hysteresis + 1,
-                law.build,
-                form=law.form,
-                grids={"coefficient": law.coefficients},
-                free=("coefficient", law.other),
-                zero={"coefficient": 0.0},
-                charge=2.0,
+        offer = partial(
+            self.inserted,
+            simulation,
+            simulation.hysteresis + 1,
+            zero={"coefficient": 0.0},
+            charge=2.0,
+        )
+        fastest = simulation.fastest()
+        grown = np.geomspace(0.03, 20, 5)
+        field = np.geomspace(2e-3, 0.5, 5) * simulation.largest(simulation.hysteresis)
+        grows = can_grow(simulation)
+        for form, exponents in EXPONENTS.items():
+            threshold = form == "growing-thresholds"
+            coefficients = grown if threshold else field
+            for exponent in exponents if grows or not threshold else ():
+                yield offer(
+                    partial(_widened, form, exponent),
+                    form=f"{form}, {exponent:g}",
+                    grids={"coefficient": coefficients / fastest**exponent},
+                    free=("coefficient", "exponent"),
+                )
+        for share in KNEES if grows else ():
+            knee = share * fastest
+            yield offer(
+                partial(_bent, knee),
+                form=f"growing-thresholds, logarithm from {share:g}",
+                grids={"coefficient": grown / (knee * np.arcsinh(1 / share))},
+                free=("coefficient", "knee"),
             )
 
 
@@ -236,34 +253,6 @@ EXPONENTS = {
     "acting-field": (0.5,),
 }
 """Exponents at which the search for each law starts; the refit moves them."""
-
-
-class _RateLaw(NamedTuple):
-    form: str
-    build: Callable[[Values], dict[str, Any]]
-    coefficients: FloatArray
-    """Those that are tried."""
-    other: str
-    """Name of the number that is free beside the coefficient."""
-
-
-def _rate_laws(simulation: Simulation) -> Iterator[_RateLaw]:
-    """Give the laws by which a hysteresis may depend on the rate."""
-    assert simulation.hysteresis is not None  # noqa: S101  (the caller has looked)
-    fastest, amplitude = simulation.fastest(), simulation.largest(simulation.hysteresis)
-    grown, field = np.geomspace(0.03, 20, 5), np.geomspace(2e-3, 0.5, 5) * amplitude
-    grows = can_grow(simulation)
-    for form, exponents in EXPONENTS.items():
-        threshold = form == "growing-thresholds"
-        for exponent in exponents if grows or not threshold else ():
-            coefficients = (grown if threshold else field) / fastest**exponent
-            build = partial(_widened, form, exponent)
-            yield _RateLaw(f"{form}, {exponent:g}", build, coefficients, "exponent")
-    for share in KNEES if grows else ():
-        knee = share * fastest
-        coefficients = grown / (knee * np.arcsinh(1 / share))
-        form = f"growing-thresholds, logarithm from {share:g}"
-        yield _RateLaw(form, partial(_bent, knee), coefficients, "knee")
 
 
 def _widened(form: str, exponent: float, given: Values) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from hystbench.errors import InputError
 from hystbench.files import write_columns
 from hystbench.record import Channel, FloatArray, Record, column_name
 from hystbench.signals import Signal
+from hystbench.spectra import fastest_hz
 from hystbench.waveforms.chirp import Chirp
 
 #: Part of the input's power below its bandwidth.
@@ -75,8 +76,8 @@ class Limits:
         own = {
             "low": min(float(record.u.min()) for record in records),
             "high": max(float(record.u.max()) for record in records),
-            "rate": max(float(np.abs(np.diff(x.u)).max()) / x.dt for x in records),
-            "bandwidth_hz": max(_bandwidth(record) for record in records),
+            "rate": max(record.fastest for record in records),
+            "bandwidth_hz": max(fastest_hz(x.u, x.dt, POWER_SHARE) for x in records),
             "dt": min(record.dt for record in records),
             "duration_s": max(len(record) * record.dt for record in records),
         }
@@ -268,11 +269,3 @@ def _through(levels: FloatArray, limits: Limits, part: float = 1.0) -> FloatArra
         values += [at, at + move]
         at += move
     return np.asarray(np.interp(np.arange(count), corners, values))
-
-
-def _bandwidth(record: Record) -> float:
-    """Frequency below which nearly all of the input's power lies."""
-    power = np.square(np.abs(np.fft.rfft(record.u - record.u.mean())))
-    total = np.cumsum(power)
-    line = int(np.searchsorted(total, POWER_SHARE * total[-1])) if total[-1] > 0 else 1
-    return max(line, 1) / (len(record) * record.dt)

@@ -9,7 +9,7 @@ gap.json holds, in every function.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -36,49 +36,41 @@ from hystbench.model import Model
 from hystbench.units import sized
 
 
-def show_on_hold_out(
-    fitted: FitResult,
-    decided: Mapping[str, Any],
-    evidence: Evidence,
-    vocabulary: Vocabulary,
-    built_in: BuiltIn | None,
-    first: Model | None = None,
-) -> Outcome:
+@dataclass(frozen=True)
+class Decided:
+    """What goes from the fit records to those that are held out."""
+
+    first: Model
+    """The base as it was given, or first identified. It is kept to find the leads of
+    hold-out records: it forgets its start, while a host in its place, as a store, may
+    not."""
+    fitted: FitResult
+    content: Mapping[str, Any]
+    """What gap.json holds, but for what the hold-out records show."""
+    vocabulary: Vocabulary
+    """What the user put in or left out, which is told."""
+    built_in: BuiltIn | None
+    """None where no effect was put in."""
+
+
+def show_on_hold_out(decided: Decided, evidence: Evidence) -> Outcome:
     """Show a decision on the hold-out records; take back what is worse there.
 
     It is worse where it leaves more than the base, or than the hysteresis that was
     identified before any effect was known.
-
-    Parameters
-    ----------
-    fitted : FitResult
-    decided : mapping
-        What gap.json holds, but for what the hold-out records show.
-    evidence : Evidence
-    vocabulary : Vocabulary
-        What the user put in or left out, which is told.
-    built_in : BuiltIn or None
-        None where no effect was put in.
-    first : Model, optional
-        The base as it was given, or first identified.
     """
+    first, fitted, built_in = decided.first, decided.fitted, decided.built_in
     shown = score_hold_out(fitted, evidence.hold_out)
-    other = first if first and is_another(first, fitted.base) else None
+    other = first if is_another(first, fitted.base) else None
     least = np.inf if other is None else _left(other, fitted, evidence)
-    content = {
-        **decided,
-        "withdrawn": None,
-        **shown.content,
-        "warnings": [
-            *evidence.warnings,
-            *decided.get("warnings", ()),
-            *lead_warnings((*fitted.state.records, *evidence.hold_out)),
-            *worse_than_a_constant(
-                shown.content["gap"]["before"], evidence, fitted.floor.rms
-            ),
-            *more_than_on_fit_records({**decided, **shown.content}),
-        ],
-    }
+    content = {**decided.content, "withdrawn": None, **shown.content}
+    content["warnings"] = [
+        *evidence.warnings,
+        *decided.content.get("warnings", ()),
+        *lead_warnings((*fitted.state.records, *evidence.hold_out)),
+        *worse_than_a_constant(content["gap"]["before"], evidence, fitted.floor.rms),
+        *more_than_on_fit_records(content),
+    ]
     if other is not None:
         content["reason"] += (
             f"; as it was first identified it leaves {sized(least, content['unit'])} "
@@ -103,7 +95,7 @@ def show_on_hold_out(
         content["effects"] = no_surer_than_even(content)
         content["reason"] = f"{first_figure(content)}; {content['reason']}"
     content["shortfall"] = shortfall(content)
-    content = with_what_was_asked(content, vocabulary)
+    content = with_what_was_asked(content, decided.vocabulary)
     if built_in is not None:
         alone_rms = _left(built_in.alone, fitted, evidence)
         content = _with_built_in(content, built_in, alone_rms)

@@ -8,7 +8,6 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from scipy import fft
 
 from hystbench.gap.locate.distortion import take_distortion
@@ -22,10 +21,10 @@ from hystbench.gap.locate.picture import (
     thinned,
 )
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.records.floor import periodogram
 from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import ComplexArray, FloatArray, Mask
 from hystbench.sentences import percent, shortly
+from hystbench.spectra import averaged_powers, hann, periodogram
 
 BANDS = 12
 """Bands that have a gain and a phase of their own."""
@@ -235,35 +234,3 @@ def _lines(item: Compared) -> tuple[FloatArray, ComplexArray]:
     matrix = averaged_powers(centred, window, step)
     frequency = np.arange(matrix.shape[-1]) / (size * record.dt)
     return frequency[1:], matrix.reshape(9, -1)[:, 1:]
-
-
-def hann(size: int) -> FloatArray:
-    """Give Hann's window of so many samples."""
-    return 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(size) / size)
-
-
-def averaged_powers(signals: FloatArray, window: FloatArray, step: int) -> ComplexArray:
-    """Average the powers of signals over segments, by Welch's method.
-
-    As ``scipy.signal.csd``, which takes a fifth of a search's time to load.
-
-    Parameters
-    ----------
-    signals : ndarray, shape (k, n)
-    window : ndarray, shape (size,)
-        Of a segment.
-    step : int
-        Samples from segment to segment.
-
-    Returns
-    -------
-    ndarray, shape (k, k, size // 2 + 1)
-        Of each line, the constant first: a signal's times the conjugate of another's.
-    """
-    size = len(window)
-    parts = sliding_window_view(signals, size, axis=1)[:, ::step]
-    lines = fft.rfft(parts * window)
-    matrix = np.einsum("akm,bkm->abm", lines, lines.conj()) / parts.shape[1]
-    # In lines of both signs there is the same power; the highest may be its own.
-    matrix[..., 1 : (size + 1) // 2] *= 2
-    return np.asarray(matrix / (size * np.sum(window**2)))

@@ -8,10 +8,10 @@ import numpy as np
 
 from hystbench.gap.locate.forms import View, fit_form, named_or, narrowest
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.records.floor import periodogram
 from hystbench.gap.records.nuisance import shows_a_path
 from hystbench.record import FloatArray, Mask
 from hystbench.sentences import shortly
+from hystbench.spectra import line_below, periodogram
 
 DRIFT, LINE = "a drift", "a lone line"
 DRIFT_ORDERS = 4
@@ -79,8 +79,7 @@ def _drift_columns(samples: ViewSamples) -> list[FloatArray]:
     duration, halves = np.empty_like(samples.time), np.empty_like(samples.time)
     for item, seconds, part in ends:
         power, frequency = periodogram(item.record.u, item.record.dt)
-        total = np.cumsum(power[1:])
-        slowest = frequency[1:][np.searchsorted(total, 0.01 * total[-1])]
+        slowest = frequency[1:][line_below(power[1:], 0.01)]
         duration[part], halves[part] = seconds, max(seconds * slowest, 1.0)
         halves[part] *= shows_a_path(item.record)
     return [

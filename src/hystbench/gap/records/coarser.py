@@ -17,6 +17,7 @@ import numpy as np
 from hystbench.blocks.held import Hold
 from hystbench.gap.records.scored_samples import SAMPLES
 from hystbench.record import FloatArray, Record
+from hystbench.spectra import periodogram
 
 POWER_BEYOND = 1e-4
 """Share of the input's power that may lie beyond what the coarse samples tell: a
@@ -62,10 +63,10 @@ def sparing(records: Sequence[Record], hold: Hold) -> int:
 
 def _fastest(x: FloatArray) -> float:
     """Give the frequency, per sample, beyond which hardly any power lies."""
-    power = np.abs(np.fft.rfft((x - x.mean()) * np.hanning(len(x)))) ** 2
+    power, frequency = periodogram(x, 1.0)
     beyond = np.cumsum(power[::-1])[::-1]
     inside = beyond > POWER_BEYOND * beyond[0]
-    return float(np.fft.rfftfreq(len(x))[inside][-1]) if inside.any() else 0.0
+    return float(frequency[inside][-1]) if inside.any() else 0.0
 
 
 def _every(record: Record, factor: int) -> Record:

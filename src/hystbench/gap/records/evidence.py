@@ -63,8 +63,18 @@ class Evidence:
 
     @property
     def own_offsets(self) -> bool:
-        """Whether each fit record may have an offset of its own."""
-        return own_offsets(self.fit, self.quantities)
+        """Whether the zero of the output may be another one in each fit record.
+
+        Not where it is physical: a store is empty at zero, and a window of a free mass
+        begins there.
+        """
+        physical = self.quantities.causality == "storage" or self.in_windows
+        return len(self.fit) > 1 and not physical
+
+    @property
+    def in_windows(self) -> bool:
+        """Whether fit records are windows of a free mass."""
+        return any(record.decay_s is not None for record in self.fit)
 
     @property
     def slowest(self) -> Record:
@@ -145,16 +155,6 @@ def evidence_of(
         dataset.quantities,
         dataset.device_kind,
     )
-
-
-def own_offsets(records: Sequence[Record], quantities: Quantities) -> bool:
-    """Tell whether the zero of the output may be another one in each record.
-
-    Not where it is physical: a store is empty at zero, and a window of a free mass
-    begins there.
-    """
-    windows = any(record.decay_s is not None for record in records)
-    return len(records) > 1 and quantities.causality != "storage" and not windows
 
 
 CUT = (

@@ -16,12 +16,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy import fft
 
 from hystbench.gap.records.black_box import black_box
 from hystbench.gap.records.folds import SHORTEST
 from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import FloatArray, Record
+from hystbench.spectra import line_below, periodogram
 
 Method = Literal["repeats", "declared", "upper-bound"]
 
@@ -108,27 +108,11 @@ def _from_residual(item: Compared) -> float:
     edge = 0.0
     for cause in (record.u, item.simulated):
         caused, _ = periodogram(cause - np.mean(cause), record.dt)
-        total = np.cumsum(caused)
-        edge = max(edge, float(frequency[np.searchsorted(total, 0.999 * total[-1])]))
+        edge = max(edge, float(frequency[line_below(caused, 0.999)]))
     # Harmonics reach above the input's own band, but a quarter of the spectrum is kept.
     start = min(5 * edge, 0.75 * frequency[-1])
     high = power[(frequency >= start) & (frequency <= 0.98 * frequency[-1])]
     return _at_least(record.y, np.sqrt(_median_level(high)))
-
-
-def periodogram(values: FloatArray, dt: float) -> tuple[FloatArray, FloatArray]:
-    """Give the Hann-windowed power of each bin, white noise of variance s^2 being s^2.
-
-    Returns
-    -------
-    power, frequency : ndarray, shape (n // 2 + 1,)
-        In the square of the values' unit, and in Hz.
-    """
-    n = len(values)
-    window = np.hanning(n)
-    spectrum = fft.rfft((values - np.mean(values)) * window)
-    power = np.abs(spectrum) ** 2 / max(float(np.sum(window**2)), 1e-300)
-    return power, fft.rfftfreq(n, dt)
 
 
 def _median_level(power: FloatArray) -> float:

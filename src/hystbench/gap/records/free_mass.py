@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,20 +83,17 @@ def windows(record: Record, decay_s: float | None = None) -> tuple[Record, ...]:
         One, of the whole record, where it does not turn.
     """
     starts = _starts(record)
-    ends, mask = [*starts[1:], len(record)], record.interpolated
     return tuple(
         replace(
-            record,
+            window,
             name=f"{record.name}-{k + 1}",
-            u=record.u[a:b].copy(),
-            y=record.y[a:b] - record.y[a],
-            period_samples=None,
+            y=window.y - window.y[0],
             simulated=None,
-            interpolated=None if mask is None else mask[a:b].copy(),
             decay_s=decay_s,
         )
-        for k, (a, b) in enumerate(zip(starts, ends, strict=True))
-        if b - a >= LEAST_WINDOW or len(starts) == 1
+        for k, ends in enumerate(pairwise([*starts, len(record)]))
+        for window in [record.cut(slice(*ends))]
+        if len(window) >= LEAST_WINDOW or len(starts) == 1
     )
 
 

@@ -18,7 +18,7 @@ from hystbench.gap.thresholds import BY_CHANCE
 from hystbench.gap.vocabulary import for_readers
 from hystbench.record import column_name
 from hystbench.report.markup import one_micro
-from hystbench.sentences import listed
+from hystbench.sentences import either, listed
 
 TEMPLATE = "report.html.j2"
 #: Functions of ``words`` that the template uses.
@@ -62,21 +62,17 @@ def page(content: Content) -> str:
 
     environment = page_environment("hystbench.gap.report")
     environment.filters |= {name: getattr(words, name) for name in FILTERS}
-    environment.filters["listed"] = listed
+    environment.filters |= {"listed": listed, "either": either}
     named = with_optional(content.gap)  # as the vocabulary has it
     gap = with_optional(for_readers(content.gap))
     drawn, missing = pictures_of(content.curves)
     page = environment.get_template(TEMPLATE).render(
         gap=gap,
         sentence=words.verdict_sentence(named),
-        floor_words=words.FLOORS[gap["gap"]["floor_method"]],
         y=unit_text(gap["unit"]),
-        named=[effect["name"] for effect in gap["effects"]],
         glance=headline(gap, content.hold_out),
         diagram=_diagram(content),
-        advice=words.advice(gap),
         reruns=words.rerun_commands(named),
-        causes=words.causes(gap),
         input_column=_input_column(gap),
         where_pictures=drawn,
         missing=missing,
@@ -104,22 +100,19 @@ def with_optional(content: Mapping[str, Any]) -> dict[str, Any]:
 def headline(gap: dict[str, Any], hold_out: Sequence[HoldOut]) -> list[EmbeddedPicture]:
     """Draw the headline: a stretch of a hold-out record, and the sizes of the gap."""
     after = "with effects" if gap["effects"] else "re-tuned"
-    found = []
+    small: dict[str, Any] = {"height": 2.1, "width": COLUMN, "clear": True}
     same = gap["gap"]["after"] == gap["gap"]["before"]
-    for table in pictures.worst(hold_out, 1):
-        with_it = "" if same else f", and {after}"
-        found.append(
-            draw(
-                pictures.glimpse,
-                table,
-                None if same else after,
-                words=f"A stretch of the hold-out record {table.name}: measured, the "
-                f"simulator{with_it}",
-                height=2.1,
-                width=COLUMN,
-                clear=True,
-            )
+    found = [
+        draw(
+            pictures.glimpse,
+            table,
+            None if same else after,
+            words=f"A stretch of the hold-out record {table.name}: measured, the "
+            f"simulator{'' if same else f', and {after}'}",
+            **small,
         )
+        for table in pictures.worst(hold_out, 1)
+    ]
     rows = [("simulator", gap["gap"]["before"])]
     if not same:
         rows.append((after, gap["gap"]["after"]))
@@ -129,21 +122,19 @@ def headline(gap: dict[str, Any], hold_out: Sequence[HoldOut]) -> list[EmbeddedP
         f"{name} {'unbounded' if size is None else f'{size:.3g}'}"
         for name, size in rows
     )
-    unit = unit_text(gap["unit"])
-    found.append(
-        draw(
-            pictures.sizes,
-            rows,
-            gap["gap"]["noise_floor"],
-            gap["unit"],
-            words=f"RMS residual on all hold-out records, in {unit}: {said}; noise "
-            f"floor {gap['gap']['noise_floor']:.3g}",
-            height=2.1,
-            width=COLUMN,
-            clear=True,
-        )
+    words = (
+        f"RMS residual on all hold-out records, in {unit_text(gap['unit'])}: {said}; "
+        f"noise floor {gap['gap']['noise_floor']:.3g}"
     )
-    return found
+    return [*found, _sizes(gap, rows, words=words, **small)]
+
+
+def _sizes(
+    gap: dict[str, Any], rows: Sequence[tuple[str, float | None]], **look: Any
+) -> EmbeddedPicture:
+    """Draw sizes of the gap beside the noise floor."""
+    about = gap["gap"]["noise_floor"], gap["unit"]
+    return draw(pictures.sizes, rows, *about, **look)
 
 
 def _diagram(content: Content) -> EmbeddedPicture:
@@ -185,30 +176,21 @@ def _ranked(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _looks(gap: dict[str, Any]) -> list[dict[str, Any]]:
-    """Give the second looks, each with what came of it and its rows."""
+    """Give the second looks, each with who was tried, who was taken, and its rows."""
     found = []
     seconds = (item for item in gap["ranking"] if item["look"])
     for _, group in groupby(seconds, key=lambda item: (item["round"], item["look"])):
         rows = list(group)
-        taken = [item["name"] for item in rows if item["taken"]]
-        gone, beside = rows[0]["instead_of"], listed(rows[0]["beside"])
-        own = next(item for item in rows if item["name"] == gone)
-        if not taken:
-            why = own.get("declined", "it was not refitted there")
-            came = f"could not be judged again ({why}) and stays"
-        elif taken == [gone]:
-            came = "stays"
-        else:
-            came = f"gives way to {taken[0]}"
-        rivals = {1: "no rival", 2: "one rival"}.get(
-            len(rows), f"{len(rows) - 1} rivals"
+        gone = rows[0]["instead_of"]
+        found.append(
+            {
+                **{key: rows[0][key] for key in ("round", "instead_of", "beside")},
+                "own": next(item for item in rows if item["name"] == gone),
+                "taken": [item["name"] for item in rows if item["taken"]],
+                "rivals": len(rows) - 1,
+                "rows": _ranked(rows),
+            }
         )
-        sentence = (
-            f"{gone} was tried again beside {beside}, with {rivals} in its place: it "
-            f"{came}."
-        )
-        about = {"round": rows[0]["round"], "sentence": sentence}
-        found.append(about | {"rows": _ranked(rows)})
     return found
 
 
@@ -227,14 +209,8 @@ def _ladder(gap: dict[str, Any]) -> EmbeddedPicture:
         (f"+ {item['name']}" if k else item["name"], item["rms"])
         for k, item in enumerate(gap["ladder"])
     ]
-    return draw(
-        pictures.sizes,
-        rungs,
-        gap["gap"]["noise_floor"],
-        gap["unit"],
-        words="RMS residual on hold-out records after each effect was added",
-        height=0.8 + 0.35 * len(rungs),
-    )
+    words = "RMS residual on hold-out records after each effect was added"
+    return _sizes(gap, rungs, words=words, height=0.8 + 0.35 * len(rungs))
 
 
 def _series(hold_out: Sequence[HoldOut]) -> EmbeddedPicture | None:

@@ -25,9 +25,9 @@ from hystbench.figures.style import (
     thin,
     unit_text,
 )
-from hystbench.gap.locate.frequency import averaged_powers, hann
 from hystbench.gap.report.read import HoldOut
 from hystbench.report.picture import svg_source
+from hystbench.spectra import averaged_powers, hann
 
 #: Bars of a picture: more of them are not read.
 BARS = 20

@@ -8,6 +8,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from hystbench.blocks.base import Block
 from hystbench.blocks.force import Dynamics
 from hystbench.blocks.parameter import SETTINGS
 from hystbench.blocks.store import Store
@@ -46,16 +47,9 @@ def write_adds(model: Model, path: Path) -> None:
     Beside what was named on the model's records it shows which of it was found.
     """
     rows = [
-        [
-            label,
-            name,
-            _any(about.plain(getattr(block, name))),
-            unit_at(about.unit, model.chain, k, model.input.unit, model.output.unit),
-        ]
-        for k, (label, block) in enumerate(model.labelled())
-        if not block.hysteretic
-        for name, about in block.parameters().items()
-        if name not in SETTINGS and name in block.to_mapping()
+        [label, name, _any(block.parameters()[name].plain(getattr(block, name))), unit]
+        for label, block, name, unit in _numbers(model)
+        if not block.hysteretic and name not in SETTINGS and name in block.to_mapping()
     ]
     write_csv(path, ("block", "parameter", "value", "unit"), rows)
 
@@ -71,19 +65,23 @@ def write_host(model: Model, told: Told, path: Path) -> None:
         What gap.json holds. Its numbers of the base are those without the effects.
     path : Path
     """
-    rows: list[Row] = []
-    numbers = told.get("base_parameters", {})
-    for k, (label, block) in enumerate(model.labelled()):
-        for name, about in block.parameters().items():
-            known = numbers.get(f"{label}.{name}")
-            if isinstance(block, Dynamics | Store) and known is not None:
-                values = (known["after"], known["before"])
-                unit = unit_at(
-                    about.unit, model.chain, k, model.input.unit, model.output.unit
-                )
-                rows.append([label, name, *map(_any, values), unit])
+    known = told.get("base_parameters", {})
+    rows = [
+        [label, name, _any(numbers["after"]), _any(numbers["before"]), unit]
+        for label, block, name, unit in _numbers(model)
+        if isinstance(block, Dynamics | Store)
+        if (numbers := known.get(f"{label}.{name}")) is not None
+    ]
     columns = ("block", "parameter", "fitted", "without the effects", "unit")
     write_csv(path, columns, rows)
+
+
+def _numbers(model: Model) -> Iterator[tuple[str, Block, str, str]]:
+    """Give each number of a model: its block's label, the block, its name and unit."""
+    ends = model.input.unit, model.output.unit
+    for k, (label, block) in enumerate(model.labelled()):
+        for name, about in block.parameters().items():
+            yield label, block, name, unit_at(about.unit, model.chain, k, *ends)
 
 
 def _summary(told: Told) -> Iterator[Row]:

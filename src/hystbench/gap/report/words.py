@@ -12,42 +12,30 @@ from hystbench.device_kinds import DeviceKind
 from hystbench.figures.style import unit_text
 from hystbench.gap.thresholds import LOOSE
 from hystbench.gap.vocabulary import called_in, in_words
-from hystbench.sentences import either, listed, shortly
+from hystbench.sentences import shortly
+from hystbench.templates import paragraphs
 
 #: A narrow space that does not break.
 NARROW = "\u202f"
 
-VERDICTS = {
-    "named": "The simulator lacks {effects}.",
-    "parameters": "The simulator lacks no effect: other values of its parameters, "
-    "within their tolerances, close the gap.",
-    "no-gap": "There is no gap: {reason}.",
-}
-ADVICE = {
-    "named": "A record outside the range of these, in amplitude or rate, is what would "
-    "put the names to the test.",
-    "parameters": "Take over the values of model.yaml, and measure a record outside "
-    "the range of these to see whether they hold there.",
-    "no-gap": "A smaller gap than this would show only in records with a lower noise "
-    "floor, or where the actuator is driven harder than here.",
-}
-NO_NAME = "No effect of the vocabulary accounts for what differs."
-
-FLOORS = {
-    "repeats": "measured from repeated periods",
-    "declared": "declared by the dataset",
-    "upper-bound": "only an upper bound, by the residual's spectrum and a black box",
-}
-
 
 def verdict_sentence(gap: dict[str, Any]) -> str:
-    """Say the verdict in plain words, what the user put in first."""
-    put_in = (gap.get("asked") or {"with": []})["with"]
-    if not put_in:
-        return _verdict(gap)
-    names = listed([_called(name, gap) for name in put_in])
-    said = _verdict(gap)
-    return f"With {names}, which you put in, {said[:1].lower()}{said[1:]}"
+    """Say the verdict in plain words (``verdict.txt.j2``), what the user put in first.
+
+    Effects are called as they are called in such a device.
+    """
+    kind: DeviceKind | None = (gap.get("device") or {"kind": None})["kind"]
+    names = {
+        "names": [effect["name"] for effect in gap["effects"]],
+        "taken": (gap["withdrawn"] or {"names": ()})["names"],
+        "put_in": (gap.get("asked") or {"with": ()})["with"],
+    }
+    called = {
+        whose: [called_in(name, kind) for name in each] for whose, each in names.items()
+    }
+    about = {"gap": gap, "loose": LOOSE, **called}
+    (said,) = paragraphs(__package__, "verdict.txt.j2", **about)
+    return said
 
 
 def verdict_text(gap: dict[str, Any]) -> str:
@@ -72,20 +60,15 @@ def rerun_commands(gap: dict[str, Any]) -> list[tuple[str, str]]:
     if gap["withdrawn"]:
         named = gap["withdrawn"]["names"]
     known = {*named, *asked["with"], *asked["without"]}
-    rivals = [
-        name
-        for effect in gap["effects"]
-        for name in effect["cannot_be_told_from"]
-        if name not in known
-    ]
-    rivals += [
+    likely = [x for effect in gap["effects"] for x in effect["cannot_be_told_from"]]
+    tried = [
         item["name"]
         for item in gap["ranking"]
-        if item["round"] == 1 and not item["look"]
-        if item["name"] not in known and "declined" not in item
+        if item["round"] == 1 and not item["look"] and "declined" not in item
     ]
+    rival = next((name for name in (*likely, *tried) if name not in known), None)
     found = [(f"it is not {name}", [name], "") for name in dict.fromkeys(named)]
-    for rival in rivals[:1]:
+    if rival is not None:
         found.append((f"it is {rival}", [], rival))
         if named:
             first = named[0]
@@ -110,86 +93,6 @@ def _command(
     for name in fixed:
         words += ["--with", name]
     return shlex.join(words)
-
-
-def _verdict(gap: dict[str, Any]) -> str:
-    if gap["withdrawn"] and gap["verdict"] == "unnamed":
-        return _withdrawn_sentence(gap)
-    names = [_called(effect["name"], gap) for effect in gap["effects"]]
-    if gap["verdict"] == "unnamed":
-        return _unnamed(names, gap["unnamed"] or {"sentence": None})
-    return VERDICTS[gap["verdict"]].format(
-        effects=listed(names), reason=gap["reason"].rstrip(".")
-    )
-
-
-def _unnamed(names: list[str], unnamed: dict[str, Any]) -> str:
-    """Say what a gap without a right name is like, and what is against the names."""
-    stays = unnamed["sentence"]
-    if not names:
-        return NO_NAME + (f" On the fit records {stays}." if stays else "")
-    like = f"The simulator lacks something like {listed(names)}, but not only that"
-    if not stays:
-        return f"{like}: too much of the gap stays."
-    share = unnamed["unrelated" if unnamed["sort"] == "unrelated" else "structured"]
-    if share > LOOSE:
-        like = f"{NO_NAME} Nearest comes {listed(names)}"
-    return f"{like}: {100 * share:.2g} % of the gap's power stays, and {stays}."
-
-
-def causes(gap: dict[str, Any]) -> list[str]:
-    """Say of each effect that was found what usually causes it, a sentence each."""
-    kind = _kind(gap)
-    where = f"in a device that is {kind}" if kind else "usually"
-    return [
-        f"{effect['behaviour'][:1].upper()}{effect['behaviour'][1:]}: {where} "
-        f"{either(effect['causes'])}."
-        for effect in gap["effects"]
-        if effect.get("causes")
-    ]
-
-
-def _kind(gap: dict[str, Any]) -> DeviceKind | None:
-    """Tell the kind of the device, where the dataset says it."""
-    kind: DeviceKind | None = (gap.get("device") or {"kind": None})["kind"]
-    return kind
-
-
-def _called(name: str, gap: dict[str, Any]) -> str:
-    """Call an effect as it is called in such a device."""
-    return called_in(name, _kind(gap))
-
-
-def advice(gap: dict[str, Any]) -> str:
-    """Say where to go on, where no experiment was computed; by the verdict."""
-    if gap["verdict"] in ADVICE:
-        return ADVICE[gap["verdict"]]
-    first = next(iter(gap["where"]), None)
-    if first is None:
-        return ""
-    return (
-        "What is missing has no name yet; where it shows most is where to measure "
-        f"again: {first['sentence']}"
-    )
-
-
-def _withdrawn_sentence(gap: dict[str, Any]) -> str:
-    """Say that names were withdrawn, and why."""
-    taken = gap["withdrawn"]
-    names = listed([_called(name, gap) for name in taken["names"]])
-    what = f"{names[:1].upper()}{names[1:]}" if names else "The re-tuning of the base"
-    first = "No name stands" if names else "No name was found"
-    were = "were" if len(taken["names"]) > 1 else "was"
-    they = "they make" if len(taken["names"]) > 1 else "it makes"
-    if taken["after"] is None:
-        return (
-            f"{first}. {what} {were} withdrawn: with that, the model cannot be run to "
-            "the end of the hold-out records."
-        )
-    return (
-        f"{first}. {what} {were} withdrawn: {they} the gap on the hold-out records "
-        "wider."
-    )
 
 
 def number(value: float | None, digits: int = 3) -> Markup:
