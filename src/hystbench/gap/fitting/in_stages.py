@@ -60,10 +60,11 @@ def fitted_in_stages(
     return min(best, _in_stages(begun, gentle, score, best), key=_score)
 
 
-def led_out(found: Fitted, score: Score) -> Fitted:
+def led_out(found: Fitted, score: Score, least: float = np.inf) -> Fitted:
     """Fit a model that leaves much again, from fits without its worst record and to it.
 
-    That is repeated while the score falls by what matters.
+    That is repeated while the score falls by what matters. What is behind another model
+    has to come nearer by what an effect has to gain: some creep on for long.
 
     Parameters
     ----------
@@ -71,6 +72,8 @@ def led_out(found: Fitted, score: Score) -> Fitted:
         A fit to all records.
     score : Score
         Of all records.
+    least : float
+        The best model's score.
 
     Returns
     -------
@@ -84,9 +87,12 @@ def led_out(found: Fitted, score: Score) -> Fitted:
         best = found
         for some in (others, (worst,)):
             best = min(best, _in_stages(found.state, some, score, best), key=_score)
-        if best.score > found.score - SCALE:
+        gained = found.score - best.score
+        if gained < SCALE:
             break
         found = best
+        if gained < min(best.score - least, PAYS):
+            break
     return found
 
 

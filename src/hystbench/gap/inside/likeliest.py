@@ -82,8 +82,9 @@ def fitted_likely(
         nearest += [_on_the_whole(rest, score, FEW)] if rest else []
         done += to_the_end(nearest, score, gentle)
         done = best_of_each(done)
-    if gentle:
-        done = [_led_out(item, score) for item in done]
+    if gentle and done:
+        least = min(item.score for item in done)
+        done = [_led_out(item, score, least) for item in done]
     return sorted(done, key=lambda item: item.score)
 
 
@@ -141,9 +142,9 @@ def to_the_end(
     return sorted(_that_are_themselves(done, score), key=lambda item: item.score)
 
 
-def _led_out(item: Fitted, score: Score) -> Fitted:
+def _led_out(item: Fitted, score: Score, least: float) -> Fitted:
     """Lead a fit out of where it stopped; not to where it is another effect."""
-    led = led_out(item, score)
+    led = led_out(item, score, least)
     return next(_that_are_themselves([led], score), item) if led is not item else item
 
 
