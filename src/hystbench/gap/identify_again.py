@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.beside_base import BesideBase, stays
 from hystbench.gap.naming.add_effects import Named
-from hystbench.gap.naming.identified_again import freed_of_creep, freed_of_laws
+from hystbench.gap.naming.identified_again import freed_of_laws, freed_of_slow_law
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model
@@ -23,12 +23,12 @@ def identified_again(
     look: Callable[[Model], BesideBase],
     say: Say,
     *,
-    creeps: bool,
+    offered: Collection[str],
 ) -> BesideBase:
     """Name beside a loop that is identified again, where that explains more.
 
     Its record is freed of what laws do to it. Where no such loop stands, it is freed of
-    as much creep as the record shows.
+    as much creep or heat as the record itself shows.
 
     Parameters
     ----------
@@ -40,15 +40,15 @@ def identified_again(
     look : callable
         Names beside a base.
     say : callable
-    creeps : bool
-        Whether the record may creep.
+    offered : collection of str
+        Effects that the device may have.
     """
     floor = found.floor.rms
     latest = _in_turns(
         found, freed_of_laws(found.base, named, evidence, floor), evidence, look, say
     )
-    if latest is found and creeps:
-        freed = freed_of_creep(found.base, evidence, floor)
+    if latest is found:
+        freed = freed_of_slow_law(found.base, evidence, floor, offered)
         latest = _in_turns(found, freed, evidence, look, say)
     return latest
 

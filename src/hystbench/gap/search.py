@@ -164,7 +164,7 @@ class Search:
         """Name beside a hysteresis that is identified again, where that is better."""
         look = partial(self.beside, kinds=found.hosts)
         about = found, named, self.evidence, look, self.asked.say
-        return identified_again(*about, creeps="creep" in self.offered)
+        return identified_again(*about, offered=self.offered)
 
     def begun_otherwise(self, found: BesideBase) -> BesideBase:
         """Name beside another start of the base, if that may stand for records' paths.

@@ -8,7 +8,7 @@ from hystbench.gap import search as module
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.gpi import is_another
 from hystbench.gap.bases.load import load_base
-from hystbench.gap.naming.identified_again import freed_of_creep, freed_of_laws
+from hystbench.gap.naming.identified_again import freed_of_laws, freed_of_slow_law
 from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record
@@ -91,6 +91,7 @@ def test_heat_that_the_loop_had_taken_for_its_own_is_named(heated, monkeypatch):
     assert effects == ["thermal-drift"]
     assert "identified again, from record slow without what the effects do" in reason
     monkeypatch.setattr(identify_again, "freed_of_laws", lambda *_: None)
+    monkeypatch.setattr(identify_again, "freed_of_slow_law", lambda *_: None)
     effects, reason = named(evidence, base)
     assert effects == ["drift"]
     assert "identified again" not in reason
@@ -144,14 +145,14 @@ def test_creep_that_hides_all_laws_is_named(monkeypatch):
     effects, reason = named(evidence, base)
     assert effects == ["creep"]
     assert "identified again, from record slow without what the effects do" in reason
-    monkeypatch.setattr(identify_again, "freed_of_creep", lambda *_: None)
+    monkeypatch.setattr(identify_again, "freed_of_slow_law", lambda *_: None)
     assert named(evidence, base)[0] != ["creep"]
 
 
 def test_a_record_is_freed_of_its_creep():
     evidence, loop = stack()
     base, _ = load_base("gpi", evidence)
-    freed = freed_of_creep(base, evidence, NOISE)
+    freed = freed_of_slow_law(base, evidence, NOISE, LAWS.offered)
     slow = evidence.slowest
     without = loop.simulate(slow.u, DT)
     left = np.std(freed.slowest.y - without)
@@ -163,9 +164,16 @@ def test_a_record_is_freed_of_its_creep():
 def test_a_loop_that_fits_its_record_is_freed_of_nothing():
     evidence = rod(0.0)
     base, _ = load_base("gpi", evidence)
-    assert freed_of_creep(base, evidence, NOISE) is None
+    assert freed_of_slow_law(base, evidence, NOISE, LAWS.offered) is None
     creeping, _ = stack()
     base, _ = load_base("gpi", creeping)
     given = Model(base.name, base.input, base.output, base.chain)
-    assert freed_of_creep(given, creeping, NOISE) is None
-    assert freed_of_creep(base, creeping, 10.0) is None
+    assert freed_of_slow_law(given, creeping, NOISE, LAWS.offered) is None
+    assert freed_of_slow_law(base, creeping, 10.0, LAWS.offered) is None
+    assert freed_of_slow_law(base, creeping, NOISE, ("drift",)) is None
+
+
+def test_heat_that_hides_all_laws_is_named(heated, monkeypatch):
+    evidence, base = heated
+    monkeypatch.setattr(identify_again, "freed_of_laws", lambda *_: None)
+    assert named(evidence, base)[0] == ["thermal-drift"]

@@ -3,17 +3,22 @@
 A base of plays is identified from a slow record, in which heat and creep show as well:
 the loop takes a part of them, and what is left of the record then looks like a slow
 path. Beside the law that does most the record is freed of what it does, and the loop
-can be identified again. So much creep may be in the record that no law pays beside the
-loop: then the record itself tells how much.
+can be identified again. So much of them may be in the record that no law pays beside
+the loop: then the record itself tells how much.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
+from hystbench.blocks.base import Block
 from hystbench.blocks.logarithmic_creep import LogarithmicCreep
+from hystbench.blocks.thermal_drift import ThermalDrift
 from hystbench.gap.bases.gpi import ORDER, IdentifiedGpi
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.slow import QUICKEST, SLOW_SAMPLES
@@ -24,14 +29,14 @@ from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.naming.with_own_values import without
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.thresholds import ABOVE_NOISE, LOOSE, PAYS, SHAPE
+from hystbench.gap.thresholds import ABOVE_NOISE, LOOSE, PAYS
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 
 MOST_CREEP = 0.9
 """Magnitude at most: creep beyond that is more than the motion that creeps."""
-CLOSE = 0.05
-"""How near the magnitude is found: what is named beside the loop finds it better."""
+HEATS = (60.0, 20.0, 7.0)
+"""The record holds so many of the time constants of heat."""
 ROUNDS = 50
 """In how many rounds creep is taken off: each leaves its magnitude of what is wrong."""
 
@@ -45,9 +50,9 @@ def freed_of_laws(
     ----------
     base : Model
     named : Named
-        What was named beside it, or beside the same with other numbers. Paths and a
-        wrong shape are no laws; where there is nothing else, the first law that paid in
-        a round is taken.
+        What was named beside it, or beside the same with other numbers. Paths are no
+        laws, and curves and loops are the loop's own; where there is nothing else, the
+        first law that paid in a round is taken.
     evidence : Evidence
         With the fit records.
     floor_rms : float
@@ -70,13 +75,13 @@ def freed_of_laws(
     return _with(evidence, replace(slow, y=slow.y - does).as_measured)
 
 
-def freed_of_creep(
-    base: Model, evidence: Evidence, floor_rms: float
+def freed_of_slow_law(
+    base: Model, evidence: Evidence, floor_rms: float, offered: Collection[str]
 ) -> Evidence | None:
-    """Take creep off the record that a loop was identified from, if a loop then fits.
+    """Take creep or heat off the record that a loop was identified from.
 
-    The time constants are all that creep is looked for with, and its magnitude is the
-    one with which the loop leaves least of its record.
+    A law is tried by its size: by the one with which the loop leaves least of its
+    record. Creep has all time constants that it is looked for with, heat one of some.
 
     Parameters
     ----------
@@ -84,16 +89,18 @@ def freed_of_creep(
     evidence : Evidence
         With the fit records.
     floor_rms : float
+    offered : collection of str
+        Effects that the device may have.
 
     Returns
     -------
     Evidence or None
-        None where the base is no loop that was identified, or leaves no more of its
-        record than noise; where the loop leaves most of that without creep as well; or
-        where creep does no more than noise does.
+        With the law that leaves least. None where the base is no loop that was
+        identified, or leaves no more of its record than noise; where the loop leaves
+        most of that beside each law as well; or where the best does no more to the
+        record than noise does.
     """
     slow = evidence.slowest
-    span = slow.dt * len(slow)
     if not isinstance(base, IdentifiedGpi) or len(slow) < SLOW_SAMPLES:
         return None
     left = float(np.var(slow.y - run_base(base, (slow,), evidence.input_hold)[0]))
@@ -105,29 +112,49 @@ def freed_of_creep(
 
     from hystbench.identification import identify
 
-    def without_creep(magnitude: float) -> Record:
-        creep = LogarithmicCreep(
-            magnitude=magnitude, first_time_s=span / QUICKEST, last_time_s=span
-        )
-        y = slow.y
-        for _ in range(ROUNDS):
-            y = slow.y - (creep.simulate(y, slow.u, slow.dt) - y)
-        return replace(slow, y=y).as_measured
+    def stays(size: float, law: Callable[[float], Block]) -> float:
+        y = _without(law(size), slow)
+        loop = identify(slow.u, y, ORDER, starts=1)
+        return float(np.var(y - loop.simulate(slow.u)))
 
-    def stays(magnitude: float) -> float:
-        freed = without_creep(magnitude)
-        return float(
-            np.var(freed.y - identify(freed.u, freed.y, ORDER).simulate(freed.u))
-        )
-
-    best = minimize_scalar(stays, bounds=(0, MOST_CREEP), options={"xatol": CLOSE})
-    freed = without_creep(best.x)
-    if (
-        best.fun > LOOSE * left
-        or np.var(slow.y - freed.y) <= ABOVE_NOISE * floor_rms**2
-    ):
+    least, freed = LOOSE * left, slow
+    for law, bounds in _slow_laws(slow, offered):
+        best = minimize_scalar(stays, args=(law,), bounds=bounds, method="bounded")
+        if best.fun < least:
+            least, freed = best.fun, replace(slow, y=_without(law(best.x), slow))
+    if np.var(slow.y - freed.y) <= ABOVE_NOISE * noise:
         return None
-    return _with(evidence, freed)
+    return _with(evidence, freed.as_measured)
+
+
+def _slow_laws(
+    record: Record, offered: Collection[str]
+) -> Iterator[tuple[Callable[[float], Block], tuple[float, float]]]:
+    """Give laws by their size: creep, and heat by some time constants, with bounds."""
+    span = record.dt * len(record)
+    if "creep" in offered:
+        creep = partial(
+            LogarithmicCreep, first_time_s=span / QUICKEST, last_time_s=span
+        )
+        yield (lambda size: creep(magnitude=size)), (0.0, MOST_CREEP)
+    if "thermal-drift" in offered:
+        # Of the output's range, where the input's square stays at its largest.
+        one = float(np.ptp(record.y) / np.max(record.u**2))
+        for part in HEATS:
+            heats = partial(_heat, span / part, one)
+            yield heats, (-1.0, 1.0)
+
+
+def _heat(time_constant_s: float, one: float, size: float) -> Block:
+    return ThermalDrift(coefficient=size * one, time_constant_s=time_constant_s)
+
+
+def _without(law: Any, record: Record) -> FloatArray:
+    """Take what a law does off a record's output."""
+    y = record.y
+    for _ in range(ROUNDS):
+        y = record.y - (law.simulate(y, record.u, record.dt) - y)
+    return y
 
 
 def _with(evidence: Evidence, freed: Record) -> Evidence:
@@ -149,16 +176,22 @@ def _laws(named: Named) -> ModelState | None:
 
     A path that was named first may have taken what a law does: beside it the law pays.
     """
-    laws = _without_paths(named.state)
+    laws = _of_time(named.state)
     if laws.added:
         return laws
     tried = (item for one in named.rounds for item in one.ranking)
     states = (x.state for x in tried if _is_law(x))
-    return next((_without_paths(x) for x in states if x is not None), None)
+    return next((_of_time(x) for x in states if x is not None), None)
 
 
-def _without_paths(state: ModelState) -> ModelState:
-    return without(state, {*state.paths, SHAPE})
+def _of_time(state: ModelState) -> ModelState:
+    """Leave out paths, and what a loop with envelopes does itself: it stays in it."""
+    own = {
+        item.effect
+        for item in state.added
+        if effects()[item.effect].shows in ("amplitude", "branch")
+    }
+    return without(state, {*state.paths, *own})
 
 
 def _is_law(item: Candidate) -> bool:
