@@ -75,9 +75,12 @@ def _loosened(state: ModelState) -> ModelState:
     """Free the numbers that a base states beside effects, and its timing."""
     known = {(free.block, free.parameter) for free in state.free}
     numbers: list[Free] = []
+    # An effect may be other numbers of a base's block: the rest may be off too.
+    changed = {key for item in state.added for key in item.old_numbers}
+    own = state.places_added - {place for place, _ in changed}
     for place, block in enumerate(state.chain):
-        for name in () if place in state.places_added else stated(block):
-            if (place, name) not in known:
+        for name in () if place in own else stated(block):
+            if (place, name) not in known | changed:
                 numbers += free_within(place, name, getattr(block, name), ABOUT)
     state = replace(state, free=(*state.free, *numbers))
     most = LATE * min(record.dt for record in state.records)
@@ -92,9 +95,17 @@ def repeats_the_base(state: ModelState) -> bool:
     """Tell whether an effect is of a kind that the base has, as far as it is known.
 
     A mode is of the base's own kind where the base has one about there. Any other
-    block, such as a spring, is where the base holds such a block. A force that relaxes
-    is a damper to slow motions and a spring to fast ones, which all mechanisms have.
+    block, such as a spring, is where the base holds such a block; other numbers of a
+    block, where they are about what they were. A force that relaxes is a damper to slow
+    motions and a spring to fast ones, which all mechanisms have.
     """
+    for item in state.added:
+        moves = [
+            abs(getattr(state.chain[place], name) - old) / max(abs(old), 1e-300)
+            for (place, name), old in item.old_numbers.items()
+        ]
+        if moves and max(moves) < ABOUT:
+            return True
     own = state.places_added
     added = [state.chain[k] for k in own]
     base = [x for place, x in enumerate(state.chain) if place not in own]

@@ -62,6 +62,12 @@ class Added(NamedTuple):
     """Those of the numbers it changed in other blocks that were free before."""
 
     @property
+    def old_numbers(self) -> dict[tuple[int, str], float]:
+        """What it changed in blocks of the base, by place and parameter, as it was."""
+        parts = ((key.partition("."), old) for key, old in self.values.items())
+        return {(int(k), name): old for (k, dot, name), old in parts if dot}
+
+    @property
     def is_of_many_numbers(self) -> bool:
         """Tell whether it is a law of so many numbers that it does what others do."""
         return bool(self.blocks) and self.charge > MANY_NUMBERS
