@@ -30,7 +30,7 @@ def run(tmp_path, monkeypatch):
         closed=SimpleNamespace(decision=decision),
         effects=(),
         verdict="named",
-        content={"reason": "the gap is closed"},
+        content={"reason": "the gap is closed", "withdrawn": None},
         save=lambda out, report: None,
     )
 
@@ -40,7 +40,8 @@ def run(tmp_path, monkeypatch):
 
     monkeypatch.setattr(module, "find_gap", find)
 
-    def invoke(*more):
+    def invoke(*more, withdrawn=None):
+        found.content["withdrawn"] = withdrawn
         words = [str(data), "--model", str(base), "--out", str(tmp_path / "out"), *more]
         result = CliRunner().invoke(module.gap, words)
         assert result.exit_code == 0, result.output
@@ -69,6 +70,14 @@ def test_why_no_experiment_was_written_is_said(run, tmp_path):
     _, said = run("--write-experiment", str(tmp_path / "next.csv"))
     assert "not written: no way" in said
     assert not (tmp_path / "next.csv").exists()
+
+
+def test_the_last_line_tells_what_was_taken_back(run):
+    _, said = run(withdrawn={"names": ["drive-lag", "creep"]})
+    last = said.splitlines()[-1]
+    assert last.endswith("named (the hold-out records took drive-lag, creep back)")
+    _, said = run(withdrawn={"names": []})
+    assert said.splitlines()[-1].endswith(": named")
 
 
 LIMITS = {"low": -0.15, "high": 0.35, "rate": 12.0}

@@ -16,6 +16,8 @@ from hystbench.inspection.names import choose, is_time, split_unit
         ("Zeit in s", "Zeit", "s"),
         ("stroke, um", "stroke", "um"),
         ("coil_current_A", "coil current", "A"),
+        ("plate_degC", "plate", "degC"),
+        ("shaft_rpm", "shaft", "rpm"),
         ("run_two", "run two", None),
         ("flow [furlongs per blink]", "flow [furlongs per blink]", None),
         ("y", "y", None),

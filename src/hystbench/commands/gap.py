@@ -79,5 +79,9 @@ def gap(
     effects = [in_words(effect.name) for effect in found.effects]
     like = "nearest " if found.verdict == "unnamed" else ""
     named = f": {like}{', '.join(effects)}" if effects else ""
+    taken = found.content["withdrawn"]
+    if taken is not None and taken["names"]:
+        gone = ", ".join(map(in_words, taken["names"]))
+        named += f" (the hold-out records took {gone} back)"
     put_in = f" (you put in {', '.join(asked.with_)})" if asked.with_ else ""
     click.echo(f"{out / 'gap.json'}: {found.verdict}{named}{put_in}")

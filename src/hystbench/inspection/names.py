@@ -13,6 +13,8 @@ KNOWN: Mapping[str, Sequence[str]] = table_of(__file__)
 _BRACKET = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 _SLASH = re.compile(r"^(?P<name>.*?)\s+(?:/|in)\s+(?P<unit>\S+)\s*$")
 _COMMA = re.compile(r"^(?P<name>.*?),\s*(?P<unit>\S+)\s*$")
+ENDS = ("cm", "deg", "degC", "degF", "rpm", "bar", "psi")
+"""Units without a prefix that end a name: no word of a name is one of them."""
 _SUFFIX = re.compile(r"^(?P<name>.*[^_])_(?P<unit>[^\W_]+)$")
 
 
@@ -32,8 +34,9 @@ def split_unit(name: str) -> tuple[str, str | None]:
         if found and is_known(found["unit"]):
             return found["name"].strip(), plain(found["unit"])
     found = _SUFFIX.match(name)
-    # Nothing else than letters with a prefix ends a name so.
-    if found and SIMPLE.fullmatch(plain(found["unit"])):
+    # Nothing else than letters with a prefix, or such a word, ends a name so.
+    unit = found["unit"] if found else ""
+    if found and (unit in ENDS or SIMPLE.fullmatch(plain(unit))):
         return found["name"].replace("_", " ").strip(), plain(found["unit"])
     return name.replace("_", " ").strip(), None
 
