@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.bases import linear as module
 from hystbench.gap.bases.linear import (
     CURVE,
     found_with,
@@ -12,7 +13,7 @@ from hystbench.gap.bases.linear import (
 )
 from hystbench.gap.bases.static_curve import behind_a_curve
 from hystbench.gap.records.evidence import Evidence
-from tests.gap.made import record
+from tests.gap.made import CURRENT, DISPLACEMENT, record
 from tests.gap.small import block
 
 DT, ZONE, NOISE = 1.0, 8.0, 0.2
@@ -118,3 +119,22 @@ def test_a_linear_device_has_no_curve():
     made = evidence(noises(), lambda u: lag.simulate(u, u, 1.0))
     plain = linear_of(made)
     assert behind_a_curve(made, plain.model.chain, plain.fit_rms) is None
+
+
+@pytest.mark.parametrize(
+    ("split", "taken"), [(np.inf, True), (0.03, True), (0.01, False)]
+)
+def test_a_curve_between_two_filters_is_no_curve_before_them(split, taken, monkeypatch):
+    """Before them it leaves .04 where the one between leaves .01: it stands between."""
+    model = module.IdentifiedModel(
+        "linear", CURRENT, DISPLACEMENT, (block("gain", value=1.0),)
+    )
+    plain = module.Linear(model, "plain", 0.14, 0.2, 1.0, split)
+    curved = module.Linear(model, "curved", 0.04, 0.04, 1.0)
+    answers = iter([plain, curved])
+    monkeypatch.setattr(module, "linear_of", lambda evidence: next(answers))
+    beside = [("slew-limit", "behind a curve", "without", None)]
+    monkeypatch.setattr(module, "_found_beside", lambda *_: beside)
+    evidence = Evidence("rig", (record(np.zeros(9)),), ())
+    found = module.identified_linear(evidence)
+    assert found.note.startswith("curved" if taken else "plain")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -90,6 +91,8 @@ class Linear(NamedTuple):
     of the output, both after the first tenth of each record."""
     constant_rms: float
     """Error of a constant on these folds."""
+    split_rms: float = math.inf
+    """Error on the fit records of two in series with a static curve between them."""
 
 
 def identified_linear(evidence: Evidence) -> Linear:
@@ -98,7 +101,7 @@ def identified_linear(evidence: Evidence) -> Linear:
     The model is of input and output. One of an output with a sign is tried too if the
     output is never below zero, one behind a drive that goes no faster than a rate, and
     one behind a static curve. Any is taken if it leaves less than a quarter of the
-    power on folds.
+    power on folds, and a static curve inside does not leave less than a quarter of its.
 
     Parameters
     ----------
@@ -114,7 +117,8 @@ def identified_linear(evidence: Evidence) -> Linear:
     best = plain
     for effect, words, without, other in _found_beside(evidence, plain):
         found = linear_of(other)
-        if found.fold_rms**2 < LOOSE * best.fold_rms**2:
+        between = plain.split_rms**2 < LOOSE * found.fit_rms**2
+        if found.fold_rms**2 < LOOSE * best.fold_rms**2 and not between:
             note = (
                 f"{found.note}, {words} ({without} {plain.fold_rms:.4g} {unit} on "
                 "folds)"
@@ -223,11 +227,11 @@ def linear_of(evidence: Evidence) -> Linear:
     # A free mass adds up what drives it: it is no filter with a curve in the middle.
     free_mass = any(item.decay_s is not None for item in evidence.fit)
     split = not free_mass and not isinstance(chain[0], Impedance)
-    ratios = [item.ratio for item in found]
+    ratios, between = [item.ratio for item in found], math.inf
     if split and is_bent(_errors(orders, found), ratios):
         halves = _halves(everything, found)
         if halves is not None:
-            chain, fit, more = halves
+            chain, fit, between, more = halves
             note += more
     if orders.late:
         half = "half " if abs(orders.late) < 1 else ""
@@ -236,7 +240,7 @@ def linear_of(evidence: Evidence) -> Linear:
         delay = InputDelay.by(orders.late * evidence.fit[0].dt, evidence.input_hold)
         chain = (delay, *chain)
     model = IdentifiedModel(LINEAR, evidence.input, evidence.output, chain)
-    return Linear(model, note, fit, fold, best.constant)
+    return Linear(model, note, fit, fold, best.constant, between)
 
 
 def _coarse(evidence: Evidence) -> Evidence:
@@ -270,10 +274,11 @@ def _errors(orders: Orders, found: Sequence[Found]) -> HalvesError:
 
 def _halves(
     everything: Orders, found: Sequence[Found]
-) -> tuple[tuple[Block, ...], float, str] | None:
+) -> tuple[tuple[Block, ...], float, float, str] | None:
     """Write the base as two in series, where a static curve between explains much.
 
-    Returns the chain, its own error on the fit records, and a few words.
+    Returns the chain, its error on the fit records without the curve and with it, and a
+    few words.
     """
     if found[-1].orders is not everything:  # those were found on fewer samples
         found = [_on_all_samples(item, everything) for item in found]
@@ -295,9 +300,10 @@ def _halves(
     if ENOUGH * error > min(item.ratio.cost for item in found):
         return None
     unit = everything.evidence.output.unit
+    between = float(np.sqrt(halves.cost / count))
     words = (
         f"; written as two in series, of order {len(halves.front.a)} and "
         f"{len(halves.back.a)}, since a static curve between them leaves "
-        f"{np.sqrt(halves.cost / count):.4g} {unit}"
+        f"{between:.4g} {unit}"
     )
-    return chain, float(np.sqrt(error / count)), words
+    return chain, float(np.sqrt(error / count)), between, words
