@@ -27,6 +27,7 @@ from hystbench.gap.inside.average_force import evened
 from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.choose import chosen
 from hystbench.gap.inside.combine_forces import (
+    _laws,
     starts,
     with_one_fewer,
 )
@@ -628,6 +629,15 @@ def test_an_effect_that_stood_for_another_goes_when_that_comes():
     apart = [known[2], known[1], known[0]]  # no single of input-delay and drag
     (only,) = with_one_fewer(known[2], apart, score)
     assert only.effects == ("friction", "drag")
+    # Of two effects each was tried alone: one of them by another law.
+    pair, offered = known[1], laws_for(host)
+    other = next(x for x in offered["friction"] if (x.form,) != known[0].forms)
+    late = with_law(host.state, "input-delay", offered["input-delay"][0])
+    delay = Fitted(late, 0.0)
+    tried = [Fitted(with_law(host.state, "friction", other), 0.0), delay, pair]
+    assert with_one_fewer(pair, tried, score) == []
+    (again,) = with_one_fewer(pair, tried, score, _laws)
+    assert (again.effects, again.forms) == (("friction",), known[0].forms)
 
 
 def test_a_curve_before_a_mass_leaves_what_drives_all_as_strong():

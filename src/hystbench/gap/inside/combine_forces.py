@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -99,7 +99,7 @@ def together(
     if not of_stores(best):
         every += with_one_fewer(best, every, score)
         paying = best_that_pays(every)
-        every += with_one_fewer(paying, every, score)
+        every += with_one_fewer(paying, every, score, _laws)
         every += _with_another(paying, went_on, offer, score, alone, say)
     return with_a_way(best_of_each(every))
 
@@ -127,22 +127,28 @@ def _in_vain(every: Sequence[Fitted], pairs: Sequence[Fitted]) -> bool:
     return two > one.score - FURTHER
 
 
-def with_one_fewer(best: Fitted, found: Sequence[Fitted], score: Score) -> list[Fitted]:
-    """Take each effect of a hypothesis out, where the other laws were not tried.
+def with_one_fewer(
+    best: Fitted,
+    found: Sequence[Fitted],
+    score: Score,
+    told_by: Callable[[Fitted], Collection[object]] = lambda item: {*item.effects},
+) -> list[Fitted]:
+    """Take each effect of a hypothesis out, where the others together were not tried.
 
-    An effect that stood for another one before that came may be needless beside it, or
-    beside another law of the same. The others have to come one after the other: one
-    fewer of them was tried as well.
+    An effect that stood for another one before that came may be needless beside it. The
+    others have to come one after the other: one fewer of them was tried as well. Of
+    what is to be named others are also tried that were by other laws alone: beside
+    another law of an effect one may be needless too.
     """
     if len(best.effects) < 2:
         return []
-    effects = {frozenset(item.effects) for item in found}
-    laws = {_laws(item) for item in found}
+    effects = [{*item.effects} for item in found]
+    tried = [told_by(item) for item in found]
     left = []
     for number in range(len(best.effects)):
         others = Fitted(without_effect(best.state, number), np.inf)
-        ways = (frozenset(others.effects) - {one} for one in others.effects)
-        if _laws(others) not in laws and any(way in effects for way in ways):
+        ways = ({*others.effects} - {one} for one in others.effects)
+        if told_by(others) not in tried and any(way in effects for way in ways):
             left.append(others)
     return to_the_end(left, score)
 
