@@ -634,7 +634,8 @@ def test_an_effect_that_stood_for_another_goes_when_that_comes():
     other = next(x for x in offered["friction"] if (x.form,) != known[0].forms)
     late = with_law(host.state, "input-delay", offered["input-delay"][0])
     delay = Fitted(late, 0.0)
-    tried = [Fitted(with_law(host.state, "friction", other), 0.0), delay, pair]
+    dry = Fitted(with_law(host.state, "friction", other), 0.0)
+    tried = [host, dry, delay, pair]
     assert with_one_fewer(pair, tried, score) == []
     (again,) = with_one_fewer(pair, tried, score, _laws)
     assert (again.effects, again.forms) == (("friction",), known[0].forms)
