@@ -173,7 +173,12 @@ def content(root: Path) -> dict[str, str]:
     return found
 
 
-CONTENT = {"verdict": "no-gap", "reason": "none is there", "effects": []}
+CONTENT = {
+    "verdict": "no-gap",
+    "reason": "none is there",
+    "effects": [],
+    "withdrawn": None,
+}
 
 
 @dataclass(frozen=True)

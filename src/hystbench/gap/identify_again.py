@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection
 from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.beside_base import BesideBase, stays
 from hystbench.gap.naming.add_effects import Named
-from hystbench.gap.naming.identified_again import freed_of_laws, freed_of_slow_law
+from hystbench.gap.naming.freed_record import freed_of_laws, freed_of_slow_law
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model

@@ -8,7 +8,7 @@ from hystbench.gap import search as module
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.gpi import is_another
 from hystbench.gap.bases.load import load_base
-from hystbench.gap.naming.identified_again import freed_of_laws, freed_of_slow_law
+from hystbench.gap.naming.freed_record import freed_of_laws, freed_of_slow_law
 from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record
