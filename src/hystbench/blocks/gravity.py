@@ -35,9 +35,10 @@ class Gravity(Force, name="gravity", law="gravity"):
     unit: str = choice("of the coordinate", tuple(RADIANS), "rad")
 
     def numbers(self) -> tuple[float, ...]:
-        """Give the numbers of the law; the fourth is a unit of q in rad."""
+        """Give the numbers of the law: a unit of q in rad, and a slope, come last."""
+        slope = self.straight * math.cos(self.angle)
         turns = RADIANS[self.unit]
-        return (self.amplitude, self.angle, self.carried, turns, self.straight)
+        return (self.amplitude, self.angle, self.carried, turns, slope)
 
     @property
     def slope(self) -> float:

@@ -89,7 +89,7 @@ def search(
         If the base does not run on the records, or no excitation fits the limits.
     """
     limits = Limits.of(evidence.fit, asked.limits) if asked.limits else None
-    look, say = Search(evidence, asked.sought, quantities), asked.say
+    look, say = GapSearch(evidence, asked.sought, quantities), asked.say
     found = look.beside(base)
     identified = is_identified(base)
     shifted = _in_better_time(found) if identified else None
@@ -128,7 +128,7 @@ def search(
 
 
 @dataclass(frozen=True)
-class Search:
+class GapSearch:
     """How fit records are searched, beside one base or another."""
 
     evidence: Evidence

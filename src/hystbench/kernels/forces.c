@@ -256,7 +256,7 @@ static double hb_force(const double *f, double q, double v, const double *memori
     case 5: /* hysteretic */
         return f[1] * memory;
     case 6: /* gravity */
-        return f[1] * (sin(f[4] * q + f[2]) - f[3] * sin(f[2]) - f[5] * f[4] * q * cos(f[2]));
+        return f[1] * (sin(f[4] * q + f[2]) - f[3] * sin(f[2]) - f[5] * f[4] * q);
     case 13: /* saturating */
         return f[1] * q / hb_longer(q / f[2]);
     case 7: /* slider */
@@ -318,7 +318,7 @@ static double hb_mean_force(const double *f, double q, double way, double h,
     case 6: { /* gravity */
         const double by = f[4] * half;
         return f[1] * (sin(f[4] * middle + f[2]) * (by == 0 ? 1 : sin(by) / by) -
-                       f[3] * sin(f[2]) - f[5] * f[4] * middle * cos(f[2]));
+                       f[3] * sin(f[2]) - f[5] * f[4] * middle);
     }
     case 13: /* saturating */
         return f[1] * 2 * middle / (hb_longer(q / f[2]) + hb_longer(to / f[2]));

@@ -116,7 +116,7 @@ def test_the_base_that_is_re_tuned_is_the_one_that_was_identified_again(
 
 def test_a_law_that_does_less_than_noise_to_the_record_leaves_it(heated):
     evidence, base = heated
-    found = module.Search(evidence, Asked(vocabulary=LAWS), None).beside(base)
+    found = module.GapSearch(evidence, Asked(vocabulary=LAWS), None).beside(base)
     about = base, found.named, evidence
     assert freed_of_laws(*about, found.floor.rms) is not None
     assert freed_of_laws(*about, 100.0 * found.floor.rms) is None
@@ -125,7 +125,7 @@ def test_a_law_that_does_less_than_noise_to_the_record_leaves_it(heated):
 def test_a_record_of_the_loop_alone_is_left_as_it_is():
     evidence = rod(0.0)
     base, _ = load_base("gpi", evidence)
-    found = module.Search(evidence, Asked(vocabulary=LAWS), None).beside(base)
+    found = module.GapSearch(evidence, Asked(vocabulary=LAWS), None).beside(base)
     about = found.named, evidence, found.floor.rms
     assert freed_of_laws(base, *about) is None
 
@@ -133,7 +133,7 @@ def test_a_record_of_the_loop_alone_is_left_as_it_is():
 def test_a_base_that_was_given_is_not_identified(heated):
     evidence, base = heated
     given = Model(base.name, base.input, base.output, base.chain)
-    found = module.Search(evidence, Asked(vocabulary=LAWS), None).beside(given)
+    found = module.GapSearch(evidence, Asked(vocabulary=LAWS), None).beside(given)
     assert freed_of_laws(base, found.named, evidence, found.floor.rms) is not None
     assert freed_of_laws(given, found.named, evidence, found.floor.rms) is None
 
