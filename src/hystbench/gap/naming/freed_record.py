@@ -37,6 +37,8 @@ MOST_CREEP = 0.9
 """Magnitude at most: creep beyond that is more than the motion that creeps."""
 HEATS = (60.0, 20.0, 7.0)
 """The record holds so many of the time constants of heat."""
+CLOSE = 0.01
+"""How near a size is found: what is named beside the loop finds it better."""
 ROUNDS = 50
 """In how many rounds creep is taken off: each leaves its magnitude of what is wrong."""
 
@@ -119,7 +121,9 @@ def freed_of_slow_law(
 
     least, freed = LOOSE * left, slow
     for law, bounds in _slow_laws(slow, offered):
-        best = minimize_scalar(stays, args=(law,), bounds=bounds, method="bounded")
+        best = minimize_scalar(
+            stays, args=(law,), bounds=bounds, options={"xatol": CLOSE}
+        )
         if best.fun < least:
             least, freed = best.fun, replace(slow, y=_without(law(best.x), slow))
     if np.var(slow.y - freed.y) <= ABOVE_NOISE * noise:
