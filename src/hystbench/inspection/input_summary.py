@@ -7,7 +7,7 @@ import numpy as np
 from hystbench.inspection.input_kind import InputKind, kind_of_input
 from hystbench.metrics import rms
 from hystbench.record import FloatArray, Mask
-from hystbench.spectra import line_below
+from hystbench.spectra import line_below, periodogram
 
 SMALL_SWING = 0.1
 """Share of the range: a way that is shorter may be noise."""
@@ -51,15 +51,15 @@ def summary_of(u: FloatArray, dt: float) -> InputSummary:
     dt : float
         Sampling interval in seconds.
     """
-    power = np.square(np.abs(np.fft.rfft((u - u.mean()) * np.hanning(len(u)))))
+    power, frequency = periodogram(u, dt)
     low, high = (
-        line_below(power, share) / (len(u) * dt)
+        float(frequency[line_below(power, share)])
         for share in ((1 - POWER_SHARE) / 2, (1 + POWER_SHARE) / 2)
     )
     return InputSummary(
         kind_of_input(u),
-        max(float(low), 1 / (len(u) * dt)),
-        max(float(high), 1 / (len(u) * dt)),
+        max(low, 1 / (len(u) * dt)),
+        max(high, 1 / (len(u) * dt)),
         float(u.min()),
         float(u.max()),
         rms(np.diff(u) / dt),

@@ -373,6 +373,15 @@ static inline double hb_mean_slider(const double *f, double memory, double way, 
     return f[1] * (goes > 0 ? (memory + (memory + way)) / 2 : memory);
 }
 
+/* A force's mean over a way, as hb_mean_force: the short law where a slider has it. */
+static inline double hb_mean(const double *f, double q, double way, double h,
+                             const double *memories)
+{
+    const int goes = hb_goes(f, memories[0], way);
+    return goes ? hb_mean_slider(f, memories[0], way, goes)
+                : hb_mean_force(f, q, way, h, memories);
+}
+
 /* By how much a way from q is too long for the mean force over it: without forces it is
  * `alone`, and less by `gives` for each unit of force. A way that takes no time, h = 0,
  * is one to a place of rest: the force at its end counts. */
@@ -382,10 +391,8 @@ static double hb_miss(int count, const double *forces, const double *memory, dou
     double sum = 0;
     for (int i = 0; i < count; i++) {
         const double *f = forces + HB_ROW * i;
-        const int goes = h > 0 ? hb_goes(f, memory[i], way) : 0;
-        sum += goes    ? hb_mean_slider(f, memory[i], way, goes)
-               : h > 0 ? hb_mean_force(f, q, way, h, memory + i)
-                       : hb_force(f, q + way, 0, memory + i);
+        sum += h > 0 ? hb_mean(f, q, way, h, memory + i)
+                     : hb_force(f, q + way, 0, memory + i);
     }
     return way - alone + gives * sum;
 }

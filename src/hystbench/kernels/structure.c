@@ -27,9 +27,7 @@ static int minds_memory(int law)
 /* A force: its mean over a way in a time h; without a time itself, at a velocity. */
 static double force_at(const double *f, double x, double way, double h, const double *memory)
 {
-    const int goes = h > 0 ? hb_goes(f, memory[0], way) : 0;
-    if (goes) return hb_mean_slider(f, memory[0], way, goes);
-    return h > 0 ? hb_mean_force(f, x, way, h, memory) : hb_force(f, x, way, memory);
+    return h > 0 ? hb_mean(f, x, way, h, memory) : hb_force(f, x, way, memory);
 }
 
 /* How far a law's place is from where it has none, beside zero. */

@@ -225,8 +225,7 @@ def linear_of(evidence: Evidence) -> Linear:
         f"{fold:.4g} {unit} on folds of them"
     )
     # A free mass adds up what drives it: it is no filter with a curve in the middle.
-    free_mass = any(item.decay_s is not None for item in evidence.fit)
-    split = not free_mass and not isinstance(chain[0], Impedance)
+    split = not evidence.in_windows and not isinstance(chain[0], Impedance)
     ratios, between = [item.ratio for item in found], math.inf
     if split and is_bent(_errors(orders, found), ratios):
         halves = _halves(everything, found)

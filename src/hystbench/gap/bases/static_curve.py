@@ -50,7 +50,7 @@ def behind_a_curve(
         line has no part in it, as in a square, or in windows of a mass that nothing
         holds: what those forget of their start depends on the input.
     """
-    if any(record.decay_s is not None for record in evidence.fit):
+    if evidence.in_windows:
         return None
     every = np.concatenate([record.u for record in evidence.fit])
     knots = np.linspace(every.min(), every.max(), KNOTS + 2)[1:-1]

@@ -105,12 +105,10 @@ def _with_old_numbers(
     state: ModelState, gone: Added, rest: tuple[Added, ...]
 ) -> ModelState:
     """Give blocks the numbers back that an effect changed, free as they were before."""
-    chain, changed = list(state.chain), set()
-    for key, value in gone.values.items():
-        place, _, parameter = key.partition(".")
-        k, own = int(place), {parameter: value}
-        chain[k] = replace(chain[k], **own)
-        changed.add((k, parameter))
+    chain, changed = list(state.chain), gone.old_numbers
+    for (place, name), value in changed.items():
+        own = {name: value}
+        chain[place] = replace(chain[place], **own)
     stays = (item for item in state.free if (item.block, item.parameter) not in changed)
     free = (*stays, *gone.was_free)
     return replace(state, chain=tuple(chain), free=free, added=rest)

@@ -12,12 +12,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import ceil
 
-import numpy as np
-
 from hystbench.blocks.held import Hold
 from hystbench.gap.records.scored_samples import SAMPLES
 from hystbench.record import FloatArray, Record
-from hystbench.spectra import periodogram
+from hystbench.spectra import line_below, periodogram
 
 POWER_BEYOND = 1e-4
 """Share of the input's power that may lie beyond what the coarse samples tell: a
@@ -64,9 +62,7 @@ def sparing(records: Sequence[Record], hold: Hold) -> int:
 def _fastest(x: FloatArray) -> float:
     """Give the frequency, per sample, beyond which hardly any power lies."""
     power, frequency = periodogram(x, 1.0)
-    beyond = np.cumsum(power[::-1])[::-1]
-    inside = beyond > POWER_BEYOND * beyond[0]
-    return float(frequency[inside][-1]) if inside.any() else 0.0
+    return float(frequency[line_below(power, 1 - POWER_BEYOND)])
 
 
 def _every(record: Record, factor: int) -> Record:
