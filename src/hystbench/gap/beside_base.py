@@ -14,8 +14,8 @@ from hystbench.gap.fitting.re_tuning_gain import (
 )
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.host import Kind
 from hystbench.gap.inside.named_inside import Inside
-from hystbench.gap.inside.one_coordinate import Kind
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import FURTHER, PAYS

@@ -23,6 +23,7 @@ from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.identify_again import identified_again
 from hystbench.gap.inside.choose import has_free_form, most_inside
+from hystbench.gap.inside.host import Kind
 from hystbench.gap.inside.named_inside import (
     Inside,
     apart_inside,
@@ -30,7 +31,6 @@ from hystbench.gap.inside.named_inside import (
     beats_chain,
     named_inside,
 )
-from hystbench.gap.inside.one_coordinate import Kind
 from hystbench.gap.inside.timing import better_timed, in_time_words, timed_as_named
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
 from hystbench.gap.naming.add_effects import Named, add_effects

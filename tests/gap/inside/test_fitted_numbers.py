@@ -9,7 +9,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.fitted_numbers import more_for_numbers
-from hystbench.gap.inside.one_coordinate import Host
+from hystbench.gap.inside.host import Host
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import CERTAIN, FURTHER
 from tests.gap.made import record

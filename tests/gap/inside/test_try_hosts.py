@@ -7,7 +7,12 @@ import pytest
 
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.inside import try_hosts
-from hystbench.gap.inside.try_hosts import HostTrial, Tried, in_each_host
+from hystbench.gap.inside.try_hosts import (
+    HostTrial,
+    Tried,
+    best_with_several,
+    in_each_host,
+)
 from hystbench.gap.progress import silent
 
 LEAST = -1000.0
@@ -20,7 +25,7 @@ def hypothesis(score, left, *effects):
 
 
 def host(counts=0, kind="coordinate"):
-    about = {"words": "", "fitted": None, "other": None, "charge": 0.0}
+    about = {"words": "", "fitted": None, "other": None, "charge": 0.0, "carry": None}
     return SimpleNamespace(counts=counts, kind=kind, **about)
 
 
@@ -108,3 +113,69 @@ def test_no_host_of_many_modes_is_tried_where_little_is_left(
     hosts = [host(), host(kind="structure"), host()]
     found, _ = tried_in(trial, monkeypatch, [left, 0.3, 0.3], 7, hosts)
     assert found[0] == tried
+
+
+def test_in_a_host_with_a_timing_the_best_force_is_tried_and_others_are_fitted_on(
+    trial, monkeypatch
+):
+    asked = []
+
+    def singles(host, offer, *_):
+        asked.append(set(offer(host)))
+        return [host, hypothesis(-800.0, 0.2, *offer(host))]
+
+    def to_the_end(begun, *_):
+        return [Fitted(item.state, item.score - 10.0) for item in begun]
+
+    monkeypatch.setattr(try_hosts, "singles", singles)
+    monkeypatch.setattr(try_hosts, "to_the_end", to_the_end)
+    monkeypatch.setattr(try_hosts, "gentlest", lambda state: ())
+    monkeypatch.setattr(try_hosts, "chosen", lambda found, *_: found[-1])
+    late = SimpleNamespace(**vars(host()) | {"fitted": hypothesis(-1.0, 1.0)})
+    late.carry = lambda state: state
+    forces = {"friction": [], "drag": [], "gravity": []}
+    offering = replace(trial, offer=lambda _: forces)
+    found = [
+        hypothesis(score, 0.2, *names)
+        for score, *names in ((0.0,), (-600.0, "drag"), (-700.0, "friction"))
+    ]
+    before = Tried(host(), found, found[-1])
+    tried = offering.with_one(late, before)
+    assert asked == [{"friction"}]
+    effects = {item.effects: item.score for item in tried.found}
+    assert effects == {(): -1.0, ("friction",): -800.0, ("drag",): -610.0}
+    assert tried.before is before
+    offering.with_one(late)  # nothing was found before it
+    assert asked[-1] == set(forces)
+
+
+@pytest.mark.parametrize(("left", "wanted"), [(0.005, 0), (0.3, 2)])
+def test_beside_a_timing_the_host_without_it_is_tried_with_lags_alone(
+    trial, monkeypatch, left, wanted
+):
+    asked = []
+
+    def together(found, offer, *_):
+        asked.append(set(offer(found[-1])))
+        return found
+
+    monkeypatch.setattr(try_hosts, "together", together)
+    monkeypatch.setattr(try_hosts, "chosen", lambda found, *_: found[-1])
+    monkeypatch.setattr(try_hosts, "charged", lambda item, *_: item.score)
+    monkeypatch.setattr(try_hosts, "more_for_numbers", lambda *_: 0.0)
+
+    def tried(score, numbers, before=None):
+        own = hypothesis(score, left, "friction")
+        own.state.free = [None] * numbers
+        one = host()
+        one.fitted = own
+        return Tried(one, [own], own, before)
+
+    first = tried(-500.0, 2)
+    late = tried(-600.0, 3, first)
+    forces = {"friction": [], "drive-lag": [], "drag": []}
+    best = best_with_several(
+        replace(trial, offer=lambda _: forces), [first, late], float("inf")
+    )
+    assert asked == [{"drive-lag"}, set(forces)][:wanted]
+    assert best.best is late.best

@@ -257,13 +257,7 @@ class ModelState:
     def share(self, other: ModelState, floor: float, gap: float) -> float:
         """Tell which share of a gap is gone here and is there in another state.
 
-        Parameters
-        ----------
-        other : ModelState
-        floor : float
-            Mean square of the noise.
-        gap : float
-            Mean square of the gap above the floor.
+        ``floor`` is the mean square of the noise, ``gap`` that of the gap above it.
         """
         return (other.power(floor) - self.power(floor)) / gap
 

@@ -173,7 +173,7 @@ def _with_another(
     ]
     known = {_laws(item) for item in went_on}
     carried = [fitted(x.state, score) for x in fewer if _laws(x) not in known]
-    return _one_more(carried, offer, score, SINGLES, alone, say)
+    return _one_more(carried, offer, score, PAIRS, alone, say)
 
 
 def _laws(item: Fitted) -> frozenset[tuple[str, str]]:

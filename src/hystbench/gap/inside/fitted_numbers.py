@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.one_coordinate import ZEROS, Host
+from hystbench.gap.inside.host import Host
+from hystbench.gap.inside.one_coordinate import ZEROS
 from hystbench.gap.thresholds import ABOUT, CERTAIN
 from hystbench.sentences import percent
 

@@ -12,7 +12,8 @@ from hystbench.gap.fitting.in_stages import fitted_far
 from hystbench.gap.fitting.least_squares import fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.inside.one_coordinate import ZEROS, Host, Kind
+from hystbench.gap.inside.host import Host, Kind
+from hystbench.gap.inside.one_coordinate import ZEROS
 from hystbench.gap.thresholds import ABOUT, FURTHER
 
 

@@ -35,10 +35,10 @@ from hystbench.gap.inside.choose import (
 )
 from hystbench.gap.inside.fewer import OnAll, on_fewer
 from hystbench.gap.inside.fitted_numbers import re_tuning
+from hystbench.gap.inside.host import Host, Kind
 from hystbench.gap.inside.host_places import host_places
 from hystbench.gap.inside.insert_law import Times, laws_for
 from hystbench.gap.inside.lags_of_base import LAGS, with_lags_of_base
-from hystbench.gap.inside.one_coordinate import Host, Kind
 from hystbench.gap.inside.other_names import with_other_names
 from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.inside.short_steps import in_short_steps

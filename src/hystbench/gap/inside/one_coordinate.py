@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from operator import itemgetter
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -33,34 +33,6 @@ from hystbench.record import FloatArray, Record
 
 ZEROS = ("bias", "offset", "delay_s", "blend")
 """Numbers that are counted from a zero: a share of them says nothing."""
-
-
-Kind = Literal["stores", "coordinate", "loose mass", "two masses", "given", "structure"]
-"""What a host is made of."""
-
-
-@dataclass(frozen=True)
-class Host:
-    """A linear model that forces may act inside of."""
-
-    alone: ModelState
-    """What the gap is counted from."""
-    fitted: Fitted
-    """The same, its numbers fitted to the records: what forces are put in."""
-    words: str
-    """How it stands in place of the base."""
-    other: ModelState | None = None
-    """What forces are put in instead: as good while linear, and not fitted, as a fit
-    would come back."""
-    charge: float = 0.0
-    """Charge for numbers of a given base that are fitted though nobody set them
-    free."""
-    kind: Kind = "coordinate"
-
-    @property
-    def counts(self) -> int:
-        """As how many effects it counts: one if known numbers are fitted."""
-        return int(self.charge > 0.0)
 
 
 def best_host(states: Iterable[ModelState], score: Score) -> Fitted | None:

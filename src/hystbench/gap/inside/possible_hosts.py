@@ -32,13 +32,12 @@ from hystbench.gap.fitting.on_records import free_within
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.given_hosts import as_given, held_about, is_seen_moving
+from hystbench.gap.inside.host import Host, Kind
 from hystbench.gap.inside.host_places import host_places, own_numbers
 from hystbench.gap.inside.joint import structure
 from hystbench.gap.inside.one_coordinate import (
     BEGUN,
     MOTIONS,
-    Host,
-    Kind,
     best_host,
     free_masses,
     likeliest,
@@ -181,19 +180,24 @@ def _in_time(one: Fitted, score: Score) -> Iterator[Host]:
     a force beside the wrong one of the two is not told right: so it is one or the
     other.
     """
-    state, block = one.state, one.state.chain[0]
-    if isinstance(block, Mechanism):
-        free = tuple(x for x in state.free if x.parameter != "blend")
-        chain = (replace(block, blend=0.0), *state.chain[1:])
-        state = replace(state.with_chain(chain), free=free)
-    late = fitted(with_free_timing(state), score)
+    late = fitted(_with_timing(one.state), score)
     more = len(late.state.free) - len(one.state.free)
     if late.score < one.score - PARAMETER * more:
         words = (
             "a model of one coordinate with a timing of its own stands in place of the "
             "linear base"
         )
-        yield Host(late.state, late, words)
+        yield Host(late.state, late, words, carry=_with_timing)
+
+
+def _with_timing(state: ModelState) -> ModelState:
+    """Let a model of one coordinate take its input late, in place of a zero."""
+    block = state.chain[0]
+    if isinstance(block, Mechanism):
+        free = tuple(x for x in state.free if x.parameter != "blend")
+        chain = (replace(block, blend=0.0), *state.chain[1:])
+        state = replace(state.with_chain(chain), free=free)
+    return with_free_timing(state)
 
 
 def _of_two(one: Fitted, frequencies: Sequence[float], score: Score) -> Iterator[Host]:

@@ -14,9 +14,9 @@ from hystbench.blocks.store import STARTS, Store
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.inside.host import Host
 from hystbench.gap.inside.one_coordinate import (
     BEGUN,
-    Host,
     as_simulated,
     best_host,
     likeliest,

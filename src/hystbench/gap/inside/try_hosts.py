@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
+from hystbench.gap.fitting.in_stages import gentlest
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.choose import charged, chosen, may_gain
+from hystbench.gap.inside.choose import best_of_each, charged, chosen, may_gain
 from hystbench.gap.inside.combine_forces import singles, together
 from hystbench.gap.inside.fitted_numbers import more_for_numbers
-from hystbench.gap.inside.insert_law import Offer
+from hystbench.gap.inside.host import Host
+from hystbench.gap.inside.insert_law import Laws, Offer
 from hystbench.gap.inside.known_host import with_best_beside_free
-from hystbench.gap.inside.one_coordinate import Host
+from hystbench.gap.inside.lags_of_base import LAGS
+from hystbench.gap.inside.likeliest import to_the_end
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import MOST
 
@@ -28,6 +32,8 @@ class Tried:
     found: Sequence[Fitted]
     best: Fitted
     """The one that is chosen."""
+    before: Tried | None = None
+    """The same in the host without a timing, where they were fitted on from there."""
 
 
 @dataclass(frozen=True)
@@ -48,16 +54,45 @@ class HostTrial:
         """Choose among the hypotheses in a host."""
         return Tried(host, found, chosen(found, self.score.floor, self.share))
 
-    def with_one(self, host: Host) -> Tried:
-        """Try each force alone in a host."""
+    def with_one(self, host: Host, before: Tried | None = None) -> Tried:
+        """Try each force alone in a host, or what did best in the one before."""
+        if before is not None and before.best.effects and host.carry is not None:
+            self.say(f"inside: {host.words}; forces are fitted on in it")
+            found = self._carried(host, host.carry, before)
+            return replace(self.of(host, found), before=before)
         self.say(f"inside: {host.words}; forces are tried in it")
         found = singles(host.fitted, self.offer, self.score, self.say, host.other)
         return self.of(host, found)
 
-    def with_several(self, tried: Tried, most: float) -> Tried:
-        """Go on to several forces in a host, so many at most."""
-        host, about = tried.host, (self.offer, self.score, self.say)
-        return self.of(host, together(tried.found, *about, most - host.counts))
+    def _carried(
+        self,
+        host: Host,
+        carry: Callable[[ModelState], ModelState],
+        before: Tried,
+    ) -> list[Fitted]:
+        """Fit forces on in another host: the best by all its laws, the others as found.
+
+        They are fitted to the end in any case, and no others are tried.
+        """
+        best, *others = sorted(before.found[1:], key=lambda item: item.score)
+        of_best = partial(self._offered, names=best.effects)
+        found = singles(host.fitted, of_best, self.score, self.say, host.other)
+        begun = [Fitted(carry(item.state), item.score) for item in others]
+        gentle = gentlest(host.fitted.state)
+        return best_of_each([*found, *to_the_end(begun, self.score, gentle)])
+
+    def with_several(self, tried: Tried, most: float, lags: bool = False) -> Tried:
+        """Go on to several forces in a host, so many at most; or to lags alone."""
+        host = tried.host
+        offer = partial(self._offered, names=LAGS) if lags else self.offer
+        about = offer, self.score, self.say, most - host.counts
+        return self.of(host, together(tried.found, *about))
+
+    def _offered(self, fitted: Fitted, names: Collection[str]) -> Laws:
+        """Give what may be put into a hypothesis, of some effects."""
+        return {
+            name: laws for name, laws in self.offer(fitted).items() if name in names
+        }
 
     def with_best_beside_free(self, tried: Tried) -> Tried:
         """Add what does best where the host's known numbers are free."""
@@ -120,7 +155,7 @@ def in_each_host(
             limit = most()
         if limit - host.counts < 1 or (little and host.kind == "structure"):
             continue
-        tried = trial.with_one(host)
+        tried = trial.with_one(host, every[-1] if every else None)
         every.append(tried)
         best = tried.best
         if best.effects and not trial.leaves_more(best, MOST) and begins_again(tried):
@@ -139,6 +174,7 @@ def best_with_several(trial: HostTrial, every: Sequence[Tried], limit: float) ->
 
     That is done in the host that does best with one. But first in the one of the fewest
     numbers, and in those whose numbers are not re-tuned: several forces may do as much.
+    What a timing does, a lag may do too: no other force is tried without that timing.
     """
     best = min(every, key=trial.cost)
     numbers = [len(tried.host.fitted.state.free) for tried in every]
@@ -148,7 +184,11 @@ def best_with_several(trial: HostTrial, every: Sequence[Tried], limit: float) ->
         if tried.host.charge < best.host.charge
         or count == min(numbers) < len(best.host.fitted.state.free)
     ]
-    full = [trial.with_several(tried, limit) for tried in cheaper]
+    if trial.identified and not trial.wants_more(best):
+        return best
+    full = [
+        trial.with_several(tried, limit, lags=tried is best.before) for tried in cheaper
+    ]
     wanting = all(map(trial.wants_more, full))
     full.append(trial.with_several(best, limit) if wanting else best)
     if wanting and not trial.identified and limit - best.host.counts > 1:
