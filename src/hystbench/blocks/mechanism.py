@@ -71,6 +71,8 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
 
     def given(self, motion: Motion) -> FloatArray:
         """Give the output of a motion, which may have run away."""
+        if motion.shown is not None:
+            return motion.shown
         with np.errstate(over="ignore", invalid="ignore"):
             if self.output == "force":
                 spring = self.stiffness * motion.position + motion.force
@@ -109,13 +111,11 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
             curved = (p - damping * v - stiffness * q - force) / mass
             if slope:
                 force += slope * q
-        return [
-            [
-                Motion(*(x[k, own] for x in (q, v, curved, force)))
-                for own in driven.shown
-            ]
-            for k in range(len(hosts))
-        ]
+        found = []
+        for each, *moved in zip(every, q, v, curved, force, strict=True):
+            signals = (*moved, each.host.given(Motion(*moved)))
+            found.append([Motion(*(x[at] for x in signals)) for at in driven.shown])
+        return found
 
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
         """Move the coordinate over the interval that has passed."""

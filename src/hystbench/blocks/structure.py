@@ -152,19 +152,19 @@ class Structure(ForcedDynamics, name="structure", place="base"):
         count = len(self.stiffness)
         motion = np.zeros((len(moved), driven.count, 2 * count))
         for k, host in enumerate(moved):
-            motion[k, driven.begins, :count] = [
-                host._balance(z, laws[k]) for z in driven.before[k].tolist()
-            ]
+            motion[k, driven.begins, :count] = host._balances(driven.before[k], laws[k])
         tables = _tables(moved, driven.step / driven.parts)
         force = driven.move(driven.values, tables, laws, motion)
+        joints = [
+            host._at_joint(*own)
+            for host, *own in zip(moved, motion, force, driven.values, strict=True)
+        ]
         found = []
         for host, key in zip(hosts, moves, strict=True):
             k = number[key]
-            parts = (
-                (motion[k, at], force[k, at], driven.values[k, at])
-                for at in driven.shown
-            )
-            found.append([host._motion(*part) for part in parts])
+            shown = host._output(motion[k], force[k], driven.values[k])
+            signals = (*joints[k], force[k], shown)
+            found.append([Motion(*(x[at] for x in signals)) for at in driven.shown])
         return found
 
     @property
@@ -178,15 +178,28 @@ class Structure(ForcedDynamics, name="structure", place="base"):
         every = zip(self.damping, self.stiffness, strict=True)
         return tuple((1.0, damping, stiffness) for damping, stiffness in every)
 
-    def _motion(self, modes: FloatArray, force: FloatArray, z: FloatArray) -> Motion:
-        """Give the motion of the joint and the output from that of the modes."""
-        joint, weights = self.at_joint, self._shown()
-        q, v = np.hsplit(modes, 2)
+    def _at_joint(self, modes: FloatArray, force: FloatArray, z: FloatArray) -> Signals:
+        """Give how the joint moves: its position, velocity and acceleration."""
+        joint, still = self.at_joint, np.zeros(len(self.stiffness))
+        weights = np.column_stack(
+            [
+                np.append(joint, still),
+                np.append(still, joint),
+                -np.append(joint * self.stiffness, joint * self.damping),
+            ]
+        )
         with np.errstate(over="ignore", invalid="ignore"):  # it may have run away
+            position, velocity, curved = (modes @ weights).T
             driven = z * float(joint @ self.drive) - force * float(joint @ joint)
-            curved = driven - v @ (joint * self.damping) - q @ (joint * self.stiffness)
-            shown = modes @ weights[:-2] + weights[-2] * force + weights[-1] * z
-            return Motion(q @ joint, v @ joint, curved, force, shown)
+            return position, velocity, driven + curved
+
+    def _output(
+        self, modes: FloatArray, force: FloatArray, z: FloatArray
+    ) -> FloatArray:
+        """Give the output of a motion of the modes."""
+        *weights, of_force, of_drive = self._shown()
+        with np.errstate(over="ignore", invalid="ignore"):
+            return np.asarray(modes @ weights + of_force * force + of_drive * z)
 
     def _shown(self) -> FloatArray:
         """Weights in the output of q and q' of all modes, of F and of what drives."""
@@ -207,15 +220,23 @@ class Structure(ForcedDynamics, name="structure", place="base"):
         weights[-1] += self.direct
         return np.asarray(weights)
 
-    def _balance(self, z: float, laws: FloatArray) -> FloatArray:
-        """Find where the springs hold what drives it, next to where modes alone do."""
+    def _balances(self, before: FloatArray, laws: FloatArray) -> FloatArray:
+        """Find where the springs hold what drives it, next to where modes alone do.
+
+        Shape (records, modes), of what drove each record before.
+        """
         driven, held = self._rests()
         if not len(laws) or self.start == "rest":
-            return np.asarray(z * driven)
-        alone, spring = z * float(self.at_joint @ driven), 1.0 / self.receptance
-        x, memory = np.zeros(1), np.zeros(len(laws))
-        kernels.call("hb_settle", spring, alone * spring, len(laws), laws, memory, x)
-        return np.asarray(z * driven - (alone - float(x[0])) * spring * held)
+            return np.outer(before, driven)
+        spring = 1.0 / self.receptance
+        alone = before * float(self.at_joint @ driven)
+        found = np.empty(len(before))
+        for k, place in enumerate(alone.tolist()):
+            x, memory = np.zeros(1), np.zeros(len(laws))
+            about = spring, place * spring, len(laws), laws, memory, x
+            kernels.call("hb_settle", *about)
+            found[k] = x[0]
+        return np.outer(before, driven) - np.outer((alone - found) * spring, held)
 
     def _rests(self) -> FloatArray:
         """Give q of all modes under a unit of what drives it, and of force.
