@@ -19,7 +19,11 @@ from hystbench.gap.progress import Say, silent
 
 
 def with_best_beside_free(
-    found: Sequence[Fitted], offer: Offer, score: Score, say: Say = silent
+    found: Sequence[Fitted],
+    offer: Offer,
+    score: Score,
+    say: Say = silent,
+    beside_free: Sequence[Fitted] = (),
 ) -> list[Fitted]:
     """Add the forces and pairs that do best where the host's own numbers are free.
 
@@ -38,6 +42,8 @@ def with_best_beside_free(
         Gives what may be put in.
     score : Score
     say : callable
+    beside_free : sequence of Fitted
+        What was found with those numbers free, if that was looked for.
 
     Returns
     -------
@@ -51,11 +57,12 @@ def with_best_beside_free(
     place = host_of(host)
     if not isinstance(host.chain[place], Mechanism) or not _known(host, place):
         return list(found)
-    others = (item for item in host.free if item.block != place)
-    free = (*others, *own_numbers(host, place))
-    begun = fitted(replace(host, free=free), score)
-    say("inside: with the host's own numbers free, to see which forces belong together")
-    beside_free = together(singles(begun, offer, score, say), offer, score, say, 2)
+    if not beside_free:
+        others = (item for item in host.free if item.block != place)
+        free = (*others, *own_numbers(host, place))
+        begun = fitted(replace(host, free=free), score)
+        say("inside: with its own numbers free, to see which forces belong together")
+        beside_free = together(singles(begun, offer, score, say), offer, score, say, 2)
     likely = sorted(beside_free, key=lambda item: item.score)
     one, *_ = (item for item in likely if len(item.effects) < 2)
     pairs = [item for item in likely if len(item.effects) == 2]

@@ -94,9 +94,9 @@ class HostTrial:
             name: laws for name, laws in self.offer(fitted).items() if name in names
         }
 
-    def with_best_beside_free(self, tried: Tried) -> Tried:
+    def with_best_beside_free(self, tried: Tried, free: Sequence[Fitted]) -> Tried:
         """Add what does best where the host's known numbers are free."""
-        about = self.offer, self.score, self.say
+        about = self.offer, self.score, self.say, free
         return self.of(tried.host, with_best_beside_free(tried.found, *about))
 
     def leaves_more(self, item: Fitted, share: float) -> bool:
@@ -198,8 +198,10 @@ def best_with_several(trial: HostTrial, every: Sequence[Tried], limit: float) ->
                 for tried in every
                 if tried.host.charge and tried.host.kind == "given"
             ]
+        charged = (x.found for x in full if x.host.charge and x.host.kind == "given")
+        free = next(charged, ())
         full = [
-            tried if tried.host.charge else trial.with_best_beside_free(tried)
+            tried if tried.host.charge else trial.with_best_beside_free(tried, free)
             for tried in full
         ]
     fewest = min(
