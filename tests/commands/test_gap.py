@@ -30,7 +30,7 @@ def run(tmp_path, monkeypatch):
         closed=SimpleNamespace(decision=decision),
         effects=(),
         verdict="named",
-        content={"reason": "the gap is closed", "withdrawn": None},
+        content={"reason": "the gap is closed", "withdrawn": None, "warnings": []},
         save=lambda out, report: None,
     )
 

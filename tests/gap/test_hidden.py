@@ -23,7 +23,8 @@ from hystbench.gap.judging.verdict import judge
 from hystbench.gap.locate import locate
 from hystbench.gap.naming import add_effects as naming
 from hystbench.gap.naming.rank import rank
-from hystbench.gap.records.floor import lone_share, noise_floor
+from hystbench.gap.records.floor import noise_floor
+from hystbench.gap.records.lone_samples import lone_share
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.thresholds import FOREIGN, PAYS, SCALE, SHAPE
 from tests.gap.halved import first_halves

@@ -72,6 +72,8 @@ def gap(
         evidence=evidence,
     )
     found.save(out, report)
+    known = evidence.warnings
+    options.warn(line for line in found.content["warnings"] if line not in known)
     say(f"{found.verdict}: {found.content['reason']}")  # once all is written
     if asked.write_experiment is not None:
         given = found.closed.decision, evidence.input, asked.write_experiment

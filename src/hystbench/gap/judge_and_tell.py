@@ -45,7 +45,8 @@ from hystbench.gap.locate.level_classes import beside_level
 from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.ladder import FitResult, contributions, rungs
 from hystbench.gap.records.black_box import BlackBox, black_box
-from hystbench.gap.records.floor import Floor, lone_share, unrepeated
+from hystbench.gap.records.floor import Floor, unrepeated
+from hystbench.gap.records.lone_samples import lone_share, lone_words
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.model import Model
 
@@ -128,6 +129,7 @@ def judge_and_tell(
         "base_parameters": base_parameters(base, state),
         "simulator": simulator_mapping(model, start.records),
         "black_box": {"explained_on_folds": judged.box.explained_on_folds},
+        "warnings": [lone_words("fit", after, left.lone)] if left.far_off else [],
     }
     if why_none:
         content["no_experiment"] = why_none

@@ -135,7 +135,8 @@ def decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Dec
     # A trial may run away: it is judged by what it leaves.
     with np.errstate(over="ignore", invalid="ignore"):
         decision = search(evidence, base, asked, quantities)
-    content = {**decision.content, "warnings": steps}
+    warnings = [*steps, *decision.content["warnings"]]
+    content = {**decision.content, "warnings": warnings}
     content = with_device(content, evidence.device_kind, evidence.quantities)
     return decision, Decided(first, decision, content, vocabulary, built_in)
 

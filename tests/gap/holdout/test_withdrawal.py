@@ -8,6 +8,7 @@ import pytest
 from hystbench.gap.asked import Asked
 from hystbench.gap.holdout.withdraw import (
     first_figure,
+    rms_of_a_constant,
     withdrawal,
     without_names,
     worse_than_a_constant,
@@ -107,12 +108,61 @@ def test_a_base_that_a_constant_beats_on_hold_out_records_is_told():
     fit = record(u, [2.0, 4.0, 2.0, 4.0], name="a")
     held = record(u, [4.0, 2.0, 4.0, 2.0], name="b", use="hold-out")
     evidence = Evidence("rig", (fit,), (held,))
-    (told,) = worse_than_a_constant(1.5, evidence, 0.1)
+    still = rms_of_a_constant(evidence, 0.1)
+    assert still == 1.0
+    (told,) = worse_than_a_constant(1.5, still, "um")
     assert "leaves 1.5 um rms, and a constant" in told
     assert " 1 um" in told
-    assert worse_than_a_constant(0.9, evidence, 0.1) == []
+    assert worse_than_a_constant(0.9, still, "um") == []
     # As much noise would leave of a record at rest.
-    assert worse_than_a_constant(1.5, evidence, 1.0) == []
+    assert worse_than_a_constant(1.5, rms_of_a_constant(evidence, 1.0), "um") == []
+
+
+def test_no_name_stands_beside_what_a_constant_does_better_than():
+    taken = withdrawal(content(1.5, 1.4), still=1.0)
+    assert taken["names"] == ["creep"]
+    assert "leaves 1.4 um rms there, and a constant" in taken["why"]
+    assert withdrawal(content(1.5, 0.9), still=1.0) is None
+    # A re-tuned base has no name that could be wrong.
+    assert withdrawal(content(1.5, 1.4, "parameters", ()), still=1.0) is None
+
+
+def spoilt(tmp_path, name, spoil):
+    """Write the tiny device with nothing hidden, one record of it spoilt."""
+    data, base = write_tiny(tmp_path)
+    rng = np.random.default_rng(1)
+    for file in sorted(data.glob("*.csv")):
+        table = np.loadtxt(file, delimiter=",", skiprows=1)
+        model = Model.from_mapping(BASE, "base")
+        table[:, 2] = model.simulate(table[:, 1], table[1, 0])
+        table[:, 2] += 0.02 * rng.standard_normal(len(table))
+        if file.stem == name:
+            spoil(table)
+        np.savetxt(file, table, "%.9g", ",", header="time_s,current_A,displacement_um")
+        file.write_text(file.read_text().removeprefix("# "))
+    out = tmp_path / "out"
+    close_gap(load_evidence(data), load_model(base), out, report=False, vocabulary=LATE)
+    return json.loads((out / "gap.json").read_text())
+
+
+def test_no_gap_is_not_said_where_the_base_predicts_nothing(tmp_path):
+    def swapped(table):
+        table[:, [1, 2]] = table[:, [2, 1]]
+
+    found = spoilt(tmp_path, "unseen", swapped)
+    assert found["verdict"] == "unnamed"
+    assert "as it is, the base predicts nothing" in found["reason"]
+    assert found["reason"].count("of the fit records: ") == 1
+
+
+def test_lone_samples_are_told_with_their_place(tmp_path):
+    def glitch(table):
+        table[200:203, 2] += 30.0
+
+    (told,) = spoilt(tmp_path, "unseen", glitch)["warnings"]
+    assert "left on the hold-out records" in told
+    assert "unseen (3 samples from " in told
+    assert "'missing: interpolate'" in told
 
 
 @pytest.fixture(scope="module")

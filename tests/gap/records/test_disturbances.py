@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.gap.records.floor import lone_share, unrepeated
+from hystbench.gap.records.floor import unrepeated
+from hystbench.gap.records.lone_samples import lone_share
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.record import Channel, Record
 

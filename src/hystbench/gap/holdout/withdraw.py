@@ -28,7 +28,13 @@ from hystbench.gap.holdout.shortfall import no_surer_than_even, shortfall
 from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.naming.ladder import FitResult
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.lone_samples import (
+    lone_share,
+    lone_words,
+    much_stands_alone,
+)
 from hystbench.gap.records.nuisance import left_rms
+from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.thresholds import ABOVE_NOISE, AS_GOOD
 from hystbench.gap.vocabulary import Vocabulary, with_device
 from hystbench.metrics import rms
@@ -56,27 +62,29 @@ class Decided:
 def show_on_hold_out(decided: Decided, evidence: Evidence) -> Outcome:
     """Show a decision on the hold-out records; take back what is worse there.
 
-    It is worse where it leaves more than the base, or than the hysteresis that was
-    identified before any effect was known.
+    It is worse where it leaves more than the base, than the hysteresis that was
+    identified before any effect was known, or than a constant.
     """
     first, fitted, built_in = decided.first, decided.fitted, decided.built_in
     shown = score_hold_out(fitted, evidence.hold_out)
     other = first if is_another(first, fitted.base) else None
     least = np.inf if other is None else _left(other, fitted, evidence)
     content = {**decided.content, "withdrawn": None, **shown.content}
+    still = rms_of_a_constant(evidence, fitted.floor.rms)
+    worse = worse_than_a_constant(content["gap"]["before"], still, content["unit"])
+    lone = _lone_samples(shown, evidence, fitted.floor.rms)
     content["warnings"] = [
         *evidence.warnings,
         *decided.content.get("warnings", ()),
         *lead_warnings((*fitted.state.records, *evidence.hold_out)),
-        *worse_than_a_constant(content["gap"]["before"], evidence, fitted.floor.rms),
-        *more_than_on_fit_records(content),
+        *([*worse, *lone] or more_than_on_fit_records(content)),
     ]
     if other is not None:
         content["reason"] += (
             f"; as it was first identified it leaves {sized(least, content['unit'])} "
             "rms of the hold-out records"
         )
-    taken = withdrawal(content, least)
+    taken = withdrawal(content, least, still)
     if taken is not None:
         # The ladder and what runs away stay: they tell why.
         rung = fitted.rungs[0]
@@ -94,6 +102,10 @@ def show_on_hold_out(decided: Decided, evidence: Evidence) -> Outcome:
     elif content["effects"] or content["verdict"] == "parameters":
         content["effects"] = no_surer_than_even(content)
         content["reason"] = f"{first_figure(content)}; {content['reason']}"
+    if content["verdict"] == "no-gap" and worse:
+        # The fit records show none, but nothing of the device is known by that.
+        content["verdict"] = "unnamed"
+        content["reason"] = f"{worse[0]}; of the fit records: {content['reason']}"
     content["shortfall"] = shortfall(content)
     content = with_what_was_asked(content, decided.vocabulary)
     if built_in is not None:
@@ -101,6 +113,20 @@ def show_on_hold_out(decided: Decided, evidence: Evidence) -> Outcome:
         content = _with_built_in(content, built_in, alone_rms)
     content = with_device(content, evidence.device_kind, evidence.quantities)
     return replace(shown, content=content)
+
+
+def _lone_samples(shown: Outcome, evidence: Evidence, floor: float) -> list[str]:
+    """Say that much of what is left of the hold-out records stands in lone samples."""
+    gap = shown.content["gap"]
+    if gap["after"] is None:
+        return []
+    pairs = zip(evidence.hold_out, shown.outputs, strict=True)
+    compared = [Compared(record.as_measured, after) for record, (_, after) in pairs]
+    lone = lone_share([item.residual[item.record.counted] for item in compared])
+    before = max(gap["before"] ** 2, floor**2)
+    if not much_stands_alone(lone, gap["after"] ** 2, before):
+        return []
+    return [lone_words("hold-out", compared, lone)]
 
 
 def more_than_on_fit_records(content: Mapping[str, Any]) -> list[str]:
@@ -117,33 +143,40 @@ def more_than_on_fit_records(content: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def worse_than_a_constant(before: float, evidence: Evidence, floor: float) -> list[str]:
+def rms_of_a_constant(evidence: Evidence, floor: float) -> float:
+    """Give what the mean output of the fit records leaves of the hold-out records.
+
+    Infinite where that is no more than noise: a record at rest shows nothing of a base.
+    """
+    mean = np.mean(np.concatenate([record.y for record in evidence.fit]))
+    outputs = np.concatenate([record.as_measured.y for record in evidence.hold_out])
+    still = rms(outputs - mean)
+    return np.inf if still**2 <= (1 + AS_GOOD) * floor**2 else still
+
+
+def worse_than_a_constant(before: float, still: float, unit: str) -> list[str]:
     """Say that the mean output of the fit records does better than the base.
 
     Parameters
     ----------
     before : float
         RMS residual of the base on the hold-out records.
-    evidence : Evidence
-    floor : float
-        RMS of the noise: a record at rest shows no more, and nothing of the base.
+    still : float
+        That of a constant.
+    unit : str
 
     Returns
     -------
     list of str
         One warning, or none.
     """
-    mean = np.mean(np.concatenate([record.y for record in evidence.fit]))
-    outputs = np.concatenate([record.as_measured.y for record in evidence.hold_out])
-    still = rms(outputs - mean)
-    noisy = still**2 <= (1 + AS_GOOD) * floor**2
-    if noisy or before**2 <= (1 + AS_GOOD) * still**2:
+    if before**2 <= (1 + AS_GOOD) * still**2:
         return []
-    unit = evidence.fit[0].output.unit
     return [
         f"on the hold-out records the base leaves {sized(before, unit)} rms, and a "
         f"constant, the mean output of the fit records, {sized(still, unit)}: as it "
-        "is, the base predicts nothing. Check its units, its start and its numbers"
+        "is, the base predicts nothing. Check its columns, its units, its start and "
+        "its numbers"
     ]
 
 
@@ -179,7 +212,7 @@ def first_figure(content: Mapping[str, Any]) -> str:
 
 
 def withdrawal(
-    content: Mapping[str, Any], least: float = np.inf
+    content: Mapping[str, Any], least: float = np.inf, still: float = np.inf
 ) -> dict[str, Any] | None:
     """Tell what the hold-out records take back, if the model is worse on them.
 
@@ -189,6 +222,8 @@ def withdrawal(
         What gap.json would hold if nothing were taken back.
     least : float
         RMS residual of another base that it must not be worse than either.
+    still : float
+        That of a constant: names beside what does worse explain nothing.
 
     Returns
     -------
@@ -200,13 +235,20 @@ def withdrawal(
     """
     gap, unit = content["gap"], content["unit"]
     before, after = min(gap["before"], least), gap["after"]
-    if after is not None and after**2 <= (1 + AS_GOOD) * before**2:
-        return None
     names = [item["name"] for item in content["effects"]]
+    if not names:
+        still = np.inf
+    if after is not None and after**2 <= (1 + AS_GOOD) * min(before, still) ** 2:
+        return None
     what = " and ".join(names) or "the re-tuning of the base"
     if after is None:
         lost = " and ".join(item["record"] for item in content["runs_away"])
         shown = f"with it the model cannot be run to the end of {lost}"
+    elif after**2 <= (1 + AS_GOOD) * before**2:
+        shown = (
+            f"the model leaves {sized(after, unit)} rms there, and a constant, the "
+            f"mean output of the fit records, {sized(still, unit)}"
+        )
     else:
         grown = f"{before:.3g} to {sized(after, unit)} rms"
         shown = f"with it the gap grows there, from {grown}"

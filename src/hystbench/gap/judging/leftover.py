@@ -10,6 +10,7 @@ from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.locate.forms import effective_count, f_test
+from hystbench.gap.records.lone_samples import much_stands_alone
 from hystbench.gap.thresholds import (
     ABOVE_NOISE,
     AS_GOOD,
@@ -124,7 +125,8 @@ class Leftover:
     @property
     def far_off(self) -> bool:
         """Whether much of what is left stands in lone samples."""
-        return self.lone * (1.0 + self.all_after) > FOREIGN * max(self.all_before, 1.0)
+        about = 1.0 + self.all_after, max(self.all_before, 1.0)
+        return much_stands_alone(self.lone, *about)
 
     @property
     def is_new(self) -> bool:

@@ -3,10 +3,10 @@
 White noise is sought in a spectrum by the median of its bins. Drift sits in the lowest
 bins, mains in a few lone ones and a gap in the excited ones; the median passes them by.
 
-Samples that stand alone, far off from the others, are dropouts or spikes. And the same
-input over and over brings the same output, period by period, from any plant without a
-memory that outlasts a period; so does every error of a hysteresis. What still differs
-between periods, beyond the noise, is none of that: heat, bad contacts, lost words.
+The same input over and over brings the same output, period by period, from any plant
+without a memory that outlasts a period; so does every error of a hysteresis. What still
+differs between periods, beyond the noise, is none of that: heat, bad contacts, lost
+words.
 """
 
 from __future__ import annotations
@@ -137,33 +137,6 @@ def _step(y: FloatArray) -> float:
     multiples = steps / least
     whole = np.abs(multiples - np.round(multiples)) < 0.05
     return least if bool(np.all(whole)) else 0.0
-
-
-FAR_DEVIATIONS = 8.0
-"""Robust standard deviations: of normal noise no sample is so far off."""
-TO_SIGMA = 1.4826
-"""Standard deviation of normal noise over its median absolute deviation."""
-
-
-def lone_share(residuals: Sequence[FloatArray]) -> float:
-    """Give the share of the power of residuals that stands in samples far off.
-
-    Each record is held against its own median absolute deviation; one more than half
-    of which is a single value says nothing.
-
-    Parameters
-    ----------
-    residuals : sequence of ndarray, shape (n,)
-    """
-    far = whole = 0.0
-    for residual in residuals:
-        about = residual - np.median(residual)
-        usual = TO_SIGMA * float(np.median(np.abs(about)))
-        squares = about**2
-        whole += float(squares.sum())
-        if usual > 0:
-            far += float(squares[np.abs(about) > FAR_DEVIATIONS * usual].sum())
-    return far / whole if whole > 0 else 0.0
 
 
 LEAST_PERIODS = 3

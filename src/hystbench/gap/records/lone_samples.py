@@ -1,0 +1,90 @@
+"""Samples that stand alone, far off from the others: dropouts, spikes, lost words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hystbench.gap.records.scored_samples import Compared
+from hystbench.gap.thresholds import FOREIGN
+from hystbench.record import FloatArray, Mask
+from hystbench.sentences import listed
+
+MEND = (
+    "If they are no motion of the device, empty their cells and write "
+    "'missing: interpolate' of the record"
+)
+
+FAR_DEVIATIONS = 8.0
+"""Robust standard deviations: of normal noise no sample is so far off."""
+TO_SIGMA = 1.4826
+"""Standard deviation of normal noise over its median absolute deviation."""
+
+
+def far_off(residual: FloatArray) -> Mask:
+    """Tell which samples of a residual stand far off from the others.
+
+    A record is held against its own median absolute deviation; one more than half of
+    which is a single value says nothing.
+
+    Parameters
+    ----------
+    residual : ndarray, shape (n,)
+    """
+    about = np.abs(residual - np.median(residual))
+    usual = TO_SIGMA * float(np.median(about))
+    return np.asarray((usual > 0) & (about > FAR_DEVIATIONS * usual))
+
+
+def lone_share(residuals: Sequence[FloatArray]) -> float:
+    """Give the share of the power of residuals that stands in samples far off.
+
+    Parameters
+    ----------
+    residuals : sequence of ndarray, shape (n,)
+    """
+    far = whole = 0.0
+    for residual in residuals:
+        squares = (residual - np.median(residual)) ** 2
+        whole += float(squares.sum())
+        far += float(squares[far_off(residual)].sum())
+    return far / whole if whole > 0 else 0.0
+
+
+def much_stands_alone(lone: float, after: float, before: float) -> bool:
+    """Tell whether samples far off hold a share of a gap that no effect does.
+
+    Parameters
+    ----------
+    lone : float
+        Their share of the power of what is left.
+    after, before : float
+        Power of what is left, with the noise, and of the gap, at least the noise.
+    """
+    return lone * after > FOREIGN * before
+
+
+def lone_words(kind: str, compared: Sequence[Compared], lone: float) -> str:
+    """Say where the samples far off are, record by record, and what mends it.
+
+    Parameters
+    ----------
+    kind : str
+        Of the records: "fit" or "hold-out".
+    compared : sequence of Compared
+    lone : float
+        Their share of the power of what is left.
+    """
+    places = []
+    for item in compared:
+        record, counted = item.record, item.record.counted
+        there = np.flatnonzero(counted)[far_off(item.residual[counted])]
+        if len(there):
+            word = "sample" if len(there) == 1 else "samples"
+            since = record.time[there[0]]
+            places.append(f"{record.name} ({len(there)} {word} from {since:.4g} s on)")
+    return (
+        f"{100 * lone:.0f} % of the power that is left on the {kind} records stands in "
+        f"samples far off from the others: {listed(places)}. {MEND}"
+    )
