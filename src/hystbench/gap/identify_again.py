@@ -8,8 +8,10 @@ from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.beside_base import BesideBase, stays
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.freed_record import freed_of_laws, freed_of_slow_law
+from hystbench.gap.naming.with_own_values import without
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.thresholds import LOOSE
 from hystbench.model import Model
 
 TURNS = 3
@@ -27,8 +29,8 @@ def identified_again(
 ) -> BesideBase:
     """Name beside a loop that is identified again, where that explains more.
 
-    Its record is freed of what laws do to it. Where no such loop stands, it is freed of
-    as much creep or heat as the record itself shows.
+    Its record is freed of what laws do to it. Where no such loop stands and laws leave
+    much, it is freed of as much creep or heat as the fit records show.
 
     Parameters
     ----------
@@ -47,10 +49,17 @@ def identified_again(
     latest = _in_turns(
         found, freed_of_laws(found.base, named, evidence, floor), evidence, look, say
     )
-    if latest is found:
+    if latest is found and _laws_leave_much(found):
         freed = freed_of_slow_law(found.base, evidence, floor, offered)
         latest = _in_turns(found, freed, evidence, look, say)
     return latest
+
+
+def _laws_leave_much(found: BesideBase) -> bool:
+    """Tell whether laws leave more of the gap than a name may; a path is no law."""
+    state, floor = found.named.state, found.floor.rms**2
+    laws = without(state, state.paths)
+    return laws.power(floor) > LOOSE * found.start.power(floor)
 
 
 def _in_turns(

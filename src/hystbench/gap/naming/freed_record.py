@@ -9,7 +9,7 @@ the loop: then the record itself tells how much.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -21,7 +21,7 @@ from hystbench.blocks.logarithmic_creep import LogarithmicCreep
 from hystbench.blocks.thermal_drift import ThermalDrift
 from hystbench.gap.bases.gpi import ORDER, IdentifiedGpi
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.slow import QUICKEST, SLOW_SAMPLES
+from hystbench.gap.effects.slow import SLOW_SAMPLES
 from hystbench.gap.fitting.augmented_model import beside_blocks
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.fitting.state import ModelState
@@ -35,6 +35,10 @@ from hystbench.record import FloatArray, Record
 
 MOST_CREEP = 0.9
 """Magnitude at most: creep beyond that is more than the motion that creeps."""
+CREEPS = (1.0, 4.0, 16.0)
+"""The record holds so many of the longest time constants of creep."""
+DECADES = 50.0
+"""The longest of them over the shortest."""
 HEATS = (60.0, 20.0, 7.0)
 """The record holds so many of the time constants of heat."""
 CLOSE = 0.01
@@ -85,8 +89,8 @@ def freed_of_slow_law(
 ) -> Evidence | None:
     """Take creep or heat off the record that a loop was identified from.
 
-    A law is tried by its size: by the one with which the loop leaves least of its
-    record. Creep has all time constants that it is looked for with, heat one of some.
+    A law is tried by its size: by the one with which the loop and the law leave least
+    of all fit records. Of creep and of heat some ranges of time constants are tried.
 
     Parameters
     ----------
@@ -101,14 +105,14 @@ def freed_of_slow_law(
     -------
     Evidence or None
         With the law that leaves least. None where the base is no loop that was
-        identified, or leaves no more of its record than noise; where the loop leaves
-        most of that beside each law as well; or where the best does no more to the
-        record than noise does.
+        identified, or leaves no more than noise; where it leaves most of that beside
+        each law as well; or where the best does no more to the record than noise does.
     """
     slow = evidence.slowest
     if not isinstance(base, IdentifiedGpi) or len(slow) < SLOW_SAMPLES:
         return None
-    left = float(np.var(slow.y - run_base(base, (slow,), evidence.input_hold)[0]))
+    outputs = run_base(base, evidence.fit, evidence.input_hold)
+    left = _left(evidence.fit, outputs)
     noise = floor_rms**2
     if left <= (1 + ABOVE_NOISE) * noise:
         return None
@@ -117,10 +121,14 @@ def freed_of_slow_law(
 
     from hystbench.identification import identify
 
-    def stays(size: float, law: Callable[[float], Block]) -> float:
-        y = _without(law(size), slow)
-        loop = identify(slow.u, y, ORDER, starts=1)
-        return float(np.var(y - loop.simulate(slow.u)))
+    every = max(len(slow) // SLOW_SAMPLES, 1)
+
+    def stays(size: float, make: Callable[[float], Any]) -> float:
+        law = make(size)
+        y = _without(law, slow)
+        loop = identify(slow.u[::every], y[::every], ORDER, starts=1)
+        outputs = [law.simulate(loop.simulate(x.u), x.u, x.dt) for x in evidence.fit]
+        return _left(evidence.fit, outputs)
 
     least, freed = LOOSE * left, slow
     for law, bounds in _slow_laws(slow, offered):
@@ -134,22 +142,35 @@ def freed_of_slow_law(
     return _with(evidence, freed.as_measured)
 
 
+def _left(records: Sequence[Record], outputs: Sequence[FloatArray]) -> float:
+    """Give the power that is left of records, without what each has as its zero."""
+    pairs = zip(records, outputs, strict=True)
+    return float(np.mean([np.var(record.y - y) for record, y in pairs]))
+
+
 def _slow_laws(
     record: Record, offered: Collection[str]
 ) -> Iterator[tuple[Callable[[float], Block], tuple[float, float]]]:
-    """Give laws by their size: creep, and heat by some time constants, with bounds."""
+    """Give laws by their size, with its bounds: creep and heat by some time scales."""
     span = record.dt * len(record)
     if "creep" in offered:
-        creep = partial(
-            LogarithmicCreep, first_time_s=span / QUICKEST, last_time_s=span
-        )
-        yield (lambda size: creep(magnitude=size)), (0.0, MOST_CREEP)
+        for part in CREEPS:
+            creep = partial(
+                LogarithmicCreep,
+                first_time_s=span / part / DECADES,
+                last_time_s=span / part,
+            )
+            yield partial(_creep, creep), (0.0, MOST_CREEP)
     if "thermal-drift" in offered:
         # Of the output's range, where the input's square stays at its largest.
         one = float(np.ptp(record.y) / np.max(record.u**2))
         for part in HEATS:
             heats = partial(_heat, span / part, one)
             yield heats, (-1.0, 1.0)
+
+
+def _creep(law: Callable[..., Block], size: float) -> Block:
+    return law(magnitude=size)
 
 
 def _heat(time_constant_s: float, one: float, size: float) -> Block:
