@@ -78,6 +78,8 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
                 spring = self.stiffness * motion.position + motion.force
                 return spring + (self.damping + self.blend) * motion.velocity
             if self.output == "position":
+                if self.blend == 0.0:
+                    return motion.position
                 return motion.position + self.blend * motion.velocity
             if self.output == "velocity":
                 return motion.velocity + self.blend * motion.acceleration
@@ -106,9 +108,13 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
         modes = [(host.linear,) for host in hosts]
         tables = tables_of(modes, one, one, driven.step / driven.parts)
         force = driven.move(p, tables, numbers, motion)
-        q, v = np.ascontiguousarray(np.moveaxis(motion, 2, 0))
+        q, v = motion[..., 0].copy(), motion[..., 1].copy()
         with np.errstate(over="ignore", invalid="ignore"):  # it may have run away
-            curved = (p - damping * v - stiffness * q - force) / mass
+            curved = damping * v
+            curved += stiffness * q
+            curved += force
+            np.subtract(p, curved, out=curved)
+            curved /= mass
             if slope:
                 force += slope * q
         found = []

@@ -275,6 +275,46 @@ INLINE void move(index_t n, int modes, index_t parts, double dt, double ramp, in
     }
 }
 
+/* Moves a structure without forces through a record, from the motion in its first row. */
+INLINE void coast(index_t n, int modes, double ramp, const double *table, const double *p,
+                  double *motion, double *out)
+{
+    const int size = 2 * modes;
+    const double *part = table + hb_part(modes, 0);
+    double now[size];
+    for (int j = 0; j < size; j++) now[j] = motion[j];
+    for (index_t k = 0;; k++) {
+        for (int j = 0; j < size; j++) motion[size * k + j] = now[j];
+        out[k] = 0;
+        if (k + 1 == n) return;
+        hb_modes_after(modes, part, now, p[k], p[k] + ramp * (p[k + 1] - p[k]), 0);
+        int runs_away = 0;
+        for (int j = 0; j < size; j++) runs_away |= !(fabs(now[j]) < 1e100);
+        if (!runs_away) continue;
+        for (index_t j = k + 1; j < n; j++) {
+            for (int l = 0; l < size; l++) motion[size * j + l] = NAN;
+            out[j] = NAN;
+        }
+        return;
+    }
+}
+
+/* All of several structures without forces: the first, and those near it. */
+INLINE void coast_each(index_t n, index_t records, const index_t *ends, int modes,
+                       index_t near, index_t wide, double ramp, const double *table,
+                       const double *tables, const double *p, double *motion, double *out)
+{
+    const int numbers = hb_part(modes, 1);
+    double own[numbers];
+    for (int j = 0; j < numbers; j++) own[j] = table[j];
+    for (index_t i = 0; i <= near; i++, p += n, motion += 2 * modes * n, out += n) {
+        for (int j = 0; i && j < numbers; j++) own[j] = tables[j * wide + i - 1];
+        for (index_t r = 0, begin = 0; r < records; begin = ends[r++])
+            coast(ends[r] - begin, modes, ramp, own, p + begin, motion + 2 * modes * begin,
+                  out + begin);
+    }
+}
+
 /* Motions of the modes at the samples, a row each, and the force F, from the motion in
  * the first row of each record. One record follows another: each ends where `ends` says,
  * and begins without a memory. Over one of `parts` equal parts of an interval dt the
@@ -291,8 +331,18 @@ EXPORT void hb_structure(index_t n, index_t records, const index_t *ends, index_
                          const double *forces, const double *p, double *motion, double *out)
 {
     const index_t size = 2 * modes;
-    double memory[count + 1], before[size + count + 1];
     const index_t wide = (near + WIDTH - 1) / WIDTH * WIDTH;
+    if (!count && parts == 1) {
+#define COAST(modes)                                                                     \
+    coast_each(n, records, ends, modes, near, wide, ramp, table, tables, p, motion, out)
+        if (modes == 1)
+            COAST(1);
+        else
+            COAST((int)modes);
+#undef COAST
+        return;
+    }
+    double memory[count + 1], before[size + count + 1];
     double rows[(size + count + 7) * wide + 1], moved[2 * count * near + 1];
     int own[count * near + 1], *last = own;
     for (index_t i = 0; i < near; i++)
