@@ -191,6 +191,23 @@ def test_rounded_times_become_a_sampling_frequency(run, tmp_path):
     assert rate == pytest.approx(1000, rel=0.01)
 
 
+@pytest.mark.parametrize("share", [0.012, 0.03, 0.1, 0.2])
+def test_of_a_clock_that_jitters_the_tolerance_is_written(run, tmp_path, share):
+    rng = np.random.default_rng(1)
+    time = DT * (np.arange(1200) + share * rng.uniform(-1, 1, 1200))
+    for hz in (5, 10):
+        u = sine(hz)
+        rows = (f"{t:.9g},{a:.9g},{b:.9g}" for t, a, b in zip(time, u, loop(u), strict=True))
+        (tmp_path / f"run-{hz}.csv").write_text("\n".join([HEADER, *rows]) + "\n")
+    status, said, error = run("init", *sorted(tmp_path.glob("*.csv")))
+    assert (status, error) == (0, "")
+    worst = np.abs(np.diff(time) / np.diff(time).mean() - 1).max()
+    # A tenth is added, as another record may be somewhat worse.
+    assert written()["time"]["tolerance"] == pytest.approx(1.1 * worst, abs=2e-3)
+    assert "'tolerance' is written" in said
+    load_dataset(tmp_path / "dataset.yaml").read("run-5")
+
+
 def test_no_column_of_time_needs_a_sampling_frequency(run, tmp_path):
     files = records(tmp_path, "t,u,y")
     for file in files:

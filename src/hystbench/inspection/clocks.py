@@ -1,6 +1,7 @@
 """A column of time: what it counts, and how evenly."""
 
 import datetime as dt
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -98,7 +99,8 @@ def ticks_of(time: FloatArray, where: str, table: Table) -> Ticks:
     if whole and mean > 0 and away.max() <= 1.01 * quantum and quantum > 0.5 * mean:
         return Ticks(mean, UNIFORM_TOLERANCE, True)
     if uneven <= LARGEST_TOLERANCE and away.max() <= LARGEST_TOLERANCE * mean:
-        return Ticks(mean, min(LARGEST_TOLERANCE, np.ceil(1100 * uneven) / 1000), False)
+        with_a_tenth = math.ceil(1100 * uneven) / 1000
+        return Ticks(mean, min(LARGEST_TOLERANCE, with_a_tenth), False)
     row = int(np.argmax(np.abs(steps - mean)))
     raise InputError(
         f"{where}: {table.place(row + 1)}: a step in time of "
