@@ -18,6 +18,7 @@ from hystbench.inspection.facts import Facts, facts_of, late
 from hystbench.inspection.findings import KIND_ORDER, Finding, finding
 from hystbench.inspection.model_findings import model_findings
 from hystbench.inspection.same_input import FAR_APART, SameInput, same_inputs
+from hystbench.inspection.unlike import Unlike, unlike_the_others
 from hystbench.inspection.visible import SmallestSeen, seen_effects
 from hystbench.metrics import rms
 from hystbench.record import Record
@@ -85,14 +86,18 @@ def check(dataset: Dataset, effects: bool = True, model: str = "") -> Check:
         is none of these records.
     """
     records = tuple(dataset.read(name) for name in dataset.record_files)
-    base = base_of(dataset, records, model)
+    unlike = unlike_the_others(records)
+    base = base_of(dataset, records, model, [item.name for item in unlike])
     facts = tuple(facts_of(dataset, item) for item in base.whole)
     periods = {item.name: item.period for item in facts}
     floor = noise_floor(
         [_repeating(item, periods) for item in base.fit],
         dataset.about.get("noise_rms"),
     )
-    found = [*_findings(dataset, records, facts, floor), *model_findings(dataset, base)]
+    found = [
+        *_findings(dataset, records, facts, floor, unlike),
+        *model_findings(dataset, base),
+    ]
     return Check(
         dataset,
         records,
@@ -118,11 +123,26 @@ def _repeating(item: Compared, periods: Mapping[str, int | None]) -> Compared:
 
 
 def _findings(
-    dataset: Dataset, records: Sequence[Record], facts: Sequence[Facts], floor: Floor
+    dataset: Dataset,
+    records: Sequence[Record],
+    facts: Sequence[Facts],
+    floor: Floor,
+    unlike: Sequence[Unlike],
 ) -> list[Finding]:
     """Say what a reader should know of the records."""
     both = list(zip(records, facts, strict=True))
     found = [each for pair in both for each in _still(dataset, *pair)]
+    found += [
+        finding(
+            "exchanged" if item.exchanged else "times",
+            name=item.name,
+            factor=item.factor,
+            left=100 * item.left,
+            mended=100 * item.mended,
+        )
+        for item in unlike
+    ]
+    spoilt = {item.name for item in unlike}
     new = [item for item in facts if item.period and not item.declared]
     if new:
         told = ", ".join(f"{item.name} every {item.period} samples" for item in new)
@@ -138,7 +158,7 @@ def _findings(
             ms=1e3 * abs(by),
             samples=abs(by) / item.dt,
         )
-        for item, by in late(facts)
+        for item, by in late([item for item in facts if item.name not in spoilt])
     ]
     twice = same_inputs(records)
     if twice and floor.method == "upper-bound":

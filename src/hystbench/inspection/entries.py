@@ -332,7 +332,7 @@ def dataset_text(about: Mapping[str, Any]) -> str:
     lines = [FIRST_COMMENT]
     for key, value in about.items():
         if key != "records":
-            lines.append(f"{key}: {_flow(value)}\n")
+            lines.append(f"{key}: {flow(value)}\n")
     lines.append("records:\n")
     lines += [f"  - {entry_text(entry)}\n" for entry in about["records"]]
     return "".join(lines)
@@ -341,8 +341,9 @@ def dataset_text(about: Mapping[str, Any]) -> str:
 def entry_text(entry: Mapping[str, Any]) -> str:
     """Write a record's entry in one line."""
     ordered = {key: entry[key] for key in KEY_ORDER if key in entry}
-    return _flow(ordered)
+    return flow(ordered)
 
 
-def _flow(value: Any) -> str:
+def flow(value: Any) -> str:
+    """Write a value in one line."""
     return yaml_text(value, 10**6, flow=True).removesuffix("...\n").strip()
