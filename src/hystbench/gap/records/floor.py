@@ -97,6 +97,10 @@ def _from_repeats(record: Record) -> float | None:
     # Two long runs, not many short ones: mains and the input's own lines stay narrow.
     n = periods // 2 * period
     difference = (record.y[-n:] - record.y[-2 * n : -n]) / np.sqrt(2)
+    # A dropout or a spike is in all bins: no median of a spectrum shrugs it off.
+    about, usual = difference - np.median(difference), usual_deviation(difference)
+    if usual > 0:
+        difference = difference[np.abs(about) <= FAR_DEVIATIONS * usual]
     power, _ = periodogram(difference, record.dt)
     return _at_least(record.y, np.sqrt(_median_level(power[2:])))
 
@@ -145,6 +149,11 @@ TO_SIGMA = 1.4826
 """Standard deviation of normal noise over its median absolute deviation."""
 
 
+def usual_deviation(residual: FloatArray) -> float:
+    """Give the standard deviation that a residual has but for samples far off."""
+    return TO_SIGMA * float(np.median(np.abs(residual - np.median(residual))))
+
+
 def lone_share(residuals: Sequence[FloatArray]) -> float:
     """Give the share of the power of residuals that stands in samples far off.
 
@@ -158,7 +167,7 @@ def lone_share(residuals: Sequence[FloatArray]) -> float:
     far = whole = 0.0
     for residual in residuals:
         about = residual - np.median(residual)
-        usual = TO_SIGMA * float(np.median(np.abs(about)))
+        usual = usual_deviation(residual)
         squares = about**2
         whole += float(squares.sum())
         if usual > 0:
