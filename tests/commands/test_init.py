@@ -197,7 +197,8 @@ def test_of_a_clock_that_jitters_the_tolerance_is_written(run, tmp_path, share):
     time = DT * (np.arange(1200) + share * rng.uniform(-1, 1, 1200))
     for hz in (5, 10):
         u = sine(hz)
-        rows = (f"{t:.9g},{a:.9g},{b:.9g}" for t, a, b in zip(time, u, loop(u), strict=True))
+        table = zip(time, u, loop(u), strict=True)
+        rows = (f"{t:.9g},{a:.9g},{b:.9g}" for t, a, b in table)
         (tmp_path / f"run-{hz}.csv").write_text("\n".join([HEADER, *rows]) + "\n")
     status, said, error = run("init", *sorted(tmp_path.glob("*.csv")))
     assert (status, error) == (0, "")
