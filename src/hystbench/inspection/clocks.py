@@ -90,8 +90,23 @@ class Ticks:
     rounded: bool
 
 
-def ticks_of(time: FloatArray, where: str, table: Table) -> Ticks:
-    """Look at a column of time; what dataset.yaml cannot say is refused."""
+def jumps_of(time: FloatArray) -> list[int]:
+    """Give the samples, from 0, before which a clock jumps: rows were lost there.
+
+    A step differs there from the usual one by more than dataset.yaml may allow.
+    """
+    places = np.flatnonzero(np.isfinite(time))
+    steps = np.diff(time[places]) / np.diff(places)
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    far = np.abs(steps - usual) > LARGEST_TOLERANCE * usual
+    return places[1:][far].tolist() if usual > 0 else []
+
+
+def ticks_of(time: FloatArray, where: str, table: Table, first: int = 0) -> Ticks:
+    """Look at a column of time; what dataset.yaml cannot say is refused.
+
+    The first sample of it may be a later one of the table.
+    """
     there = time[np.isfinite(time)]
     steps = np.diff(there)
     mean = float(there[-1] - there[0]) / max(len(steps), 1)
@@ -109,7 +124,7 @@ def ticks_of(time: FloatArray, where: str, table: Table) -> Ticks:
         return Ticks(mean, min(LARGEST_TOLERANCE, with_a_tenth), False)
     row = int(np.argmax(np.abs(steps - mean)))
     raise InputError(
-        f"{where}: {table.place(row + 1)}: a step in time of "
+        f"{where}: {table.place(first + row + 1)}: a step in time of "
         f"{steps[row]:g} s where the mean is {mean:g} s; expected uniform sampling: "
         "give the parts between such steps as files or 'rows' of their own"
     )
