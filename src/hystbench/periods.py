@@ -98,8 +98,8 @@ def repeats(u: FloatArray, period: int) -> bool:
     Where it does not fit twice into the record, nothing contradicts it. One that grows
     changes by a share of itself; one whose period is no whole number of samples changes
     by a share of its slope. Least squares on both, and on a constant, leave what is new
-    in each period. It is noise if it is rougher than the input: what is as smooth is the
-    input itself, of sines that nearly come back together.
+    in each period. It is noise if it is rougher than the input: what is as smooth is
+    the input itself, of sines that nearly come back together.
     """
     if 2 * period > len(u):
         return True
@@ -115,7 +115,9 @@ def repeats(u: FloatArray, period: int) -> bool:
 def _roughness(values: FloatArray) -> float:
     """Give what differs between neighbours, as a share of the variance: 1 if white."""
     variance = float(np.var(values))
-    return float(np.mean(np.diff(values) ** 2)) / (2 * variance) if variance > 0 else 0.0
+    return (
+        float(np.mean(np.diff(values) ** 2)) / (2 * variance) if variance > 0 else 0.0
+    )
 
 
 def differences(u: FloatArray) -> FloatArray:

@@ -142,7 +142,9 @@ def _findings(
     new = [item for item in facts if item.period and not item.declared]
     if new:
         told = ", ".join(f"{item.name} every {item.period} samples" for item in new)
-        lines = [entry_with(dataset, item.name, period_samples=item.period) for item in new]
+        lines = [
+            entry_with(dataset, item.name, period_samples=item.period) for item in new
+        ]
         topic = "steady" if "noise_rms" in dataset.about else "periods"
         found.append(finding(topic, told=told, paste=lines))
     found += [finding("no period", **vars(x)) for x in facts if not x.repeats]

@@ -126,7 +126,7 @@ def ticks_of(time: FloatArray, where: str, table: Table, first: int = 0) -> Tick
     raise InputError(
         f"{where}: {table.place(first + row + 1)}: a step in time of "
         f"{steps[row]:g} s where the mean is {mean:g} s; expected uniform sampling: "
-        "give the parts between such steps as files or 'rows' of their own"
+        "give the parts between such steps as files of their own"
     )
 
 

@@ -51,7 +51,7 @@ def split_unit(name: str) -> tuple[str, str | None]:
 
 
 def _is_over(name: str, unit: str) -> bool:
-    """Tell whether a quantity stands over its unit: ``I/mA``, not ``N/A`` or ``in/out``.
+    """Tell whether a quantity stands over its unit: ``I/mA``, but not ``N/A``.
 
     Over a time stands a rate as well, as in ``steps/s``, unless it is called time.
     """

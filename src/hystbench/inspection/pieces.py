@@ -1,4 +1,4 @@
-"""Pieces of a record to be: cut where its clock jumps, and where samples are missing."""
+"""Pieces of a record to be: cut where its clock jumps or samples are missing."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -19,7 +19,9 @@ MOST_LOST = 0.5
 is no clock."""
 
 
-def clock_of_part(part: RecordColumns, signals: ChosenColumns) -> tuple[Ticks, list[int]]:
+def clock_of_part(
+    part: RecordColumns, signals: ChosenColumns
+) -> tuple[Ticks, list[int]]:
     """Look at the clock of a part.
 
     Returns
@@ -126,7 +128,7 @@ def pieces_of(
 
 def _between(kept: Mask, jumps: Sequence[int]) -> list[tuple[int, int]]:
     """Give the stretches that are kept, cut at jumps."""
-    found = []
+    found: list[tuple[int, int]] = []
     for first, behind in runs(kept):
         ends = [first, *(at for at in jumps if first < at < behind), behind]
         found += pairwise(ends)

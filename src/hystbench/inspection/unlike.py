@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hystbench.blocks.linear import low_pass
 from hystbench.gap.records.black_box import ringing
@@ -138,7 +139,7 @@ def _products(
     dt: float,
     lags: FloatArray,
     modes: FloatArray,
-    rows: FloatArray,
+    rows: NDArray[np.intp],
 ) -> _Products:
     """Give the products of a record, each signal about its mean: zeros may differ."""
     moved = u - u[0]
