@@ -143,10 +143,10 @@ def _products(
 ) -> _Products:
     """Give the products of a record, each signal about its mean: zeros may differ."""
     moved = u - u[0]
-    columns = [moved, *(low_pass(moved, dt, tau, 0.0) for tau in lags)]
+    columns = [moved[rows], *(low_pass(moved, dt, tau, 0.0)[rows] for tau in lags)]
     for frequency in modes:
-        columns += ringing(moved, dt, float(frequency))
-    table = np.array([column[rows] for column in columns]).T
+        columns += [part[rows] for part in ringing(moved, dt, float(frequency))]
+    table = np.array(columns).T
     table -= table.mean(axis=0)
     output = y[rows] - y[rows].mean()
     power = max(float(output @ output), np.finfo(float).tiny)
