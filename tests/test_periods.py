@@ -46,6 +46,8 @@ def test_a_period_is_found(u, period):
         np.sin(2 * np.pi * K / 3000),  # once and a third
         1.0 * (K > 2000),
         K / 4000 * np.sin(2 * np.pi * K / 125),  # grows
+        # Three sines that nearly come back after 2000 samples, but not quite.
+        sum(np.sin(2 * np.pi * K * n / 2000) for n in (3.01, 7.02, 11.015)),
         np.exp(-K / 8000) * np.sin(2 * np.pi * K / 125) + 1e-3 * ROUNDED,
         # A period of 17.86 samples; seven of them do not lie twice in it.
         np.sin(2 * np.pi * K[:200] / 17.86) + 1e-3 * ROUNDED[:200],
@@ -79,6 +81,14 @@ def test_of_sines_the_shortest_stretch_of_whole_samples_and_periods(
     noise = 1e-4 * np.random.default_rng(0).normal(size=2000)
 
     assert find_period(np.sin(2 * np.pi * frequency_hz * time) + noise) == expected
+
+
+@pytest.mark.parametrize("corner", [1, 4, 16])
+def test_noise_that_is_smooth_itself_hides_no_period_of_a_slower_input(corner):
+    white = np.random.default_rng(1).standard_normal(4000)
+    noise = np.convolve(white, np.hanning(2 * corner + 1), "same")
+    u = sum(np.sin(2 * np.pi * K * n / 1000 + n) for n in (1, 3, 8))
+    assert find_period(u + 0.03 * noise / noise.std()) == 1000
 
 
 def test_noise_of_the_measurement_hides_no_period_of_many_lines():

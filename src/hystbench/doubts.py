@@ -14,7 +14,7 @@ from hystbench.dataset import CHANNELS, Dataset
 from hystbench.errors import InputError
 from hystbench.record import FloatArray, Record
 from hystbench.spectra import fastest_hz
-from hystbench.units import named_otherwise, plain, prefixed, seconds
+from hystbench.units import by_thousands, named_otherwise, plain, seconds
 
 SLOWEST_HZ = 0.02
 """Fastest content of all records together: somewhere a test of an actuator goes faster
@@ -222,13 +222,10 @@ def _other_size(
             continue
         other = min(many, key=lambda item: abs(np.log(item[0] / size)))
         ratio = size / other[0]
-        # The prefix that would bring both together.
-        power = 3 * round(np.log10(ratio) / 3)
         unit = plain(about["unit"])
-        likely = prefixed(unit, 10.0**power)
-        guess = f"is it in {likely}? Then multiply it by {10.0**-power:g}, or " * bool(
-            likely
-        )
+        likely = by_thousands(unit, ratio)
+        times = 10.0 ** (-3 * round(np.log10(ratio) / 3))
+        guess = f"is it in {likely}? Then multiply it by {times:g}, or " * bool(likely)
         yield (
             f"{dataset.record_files[name]}: column {about['column']!r}: a range of "
             f"{size:.3g} {unit} where {dataset.record_files[other[1]].name} has "

@@ -6,7 +6,8 @@ from scipy import fft
 from hystbench.record import FloatArray
 
 AS_GOOD = 4.0
-"""A shorter period is taken whose mean square difference is larger by up to this."""
+"""A shorter period is taken whose mean square difference is larger by up to this. Noise
+differs between neighbours by more than this times what the input does."""
 EXACT = 1e-8
 """A mean square difference, of the variance, below which two periods are the same."""
 ALIKE = 0.1
@@ -16,7 +17,8 @@ RISEN = 0.5
 """Half of the variance: within a period an input differs from itself by more."""
 BY_NOISE = 0.5
 """Share of what differs from one period to the next that has to be new in each. The
-rest is the input itself, grown, or moved by a part of a sample."""
+rest is the input itself, grown, or moved by a part of a sample. As rough as half of
+white noise may be the noise of any input."""
 
 
 def find_period(u: FloatArray) -> int | None:
@@ -96,7 +98,8 @@ def repeats(u: FloatArray, period: int) -> bool:
     Where it does not fit twice into the record, nothing contradicts it. One that grows
     changes by a share of itself; one whose period is no whole number of samples changes
     by a share of its slope. Least squares on both, and on a constant, leave what is new
-    in each period.
+    in each period. It is noise if it is rougher than the input: what is as smooth is
+    the input itself, of sines that nearly come back together.
     """
     if 2 * period > len(u):
         return True
@@ -105,7 +108,16 @@ def repeats(u: FloatArray, period: int) -> bool:
         return True
     columns = np.column_stack([before, np.gradient(before), np.ones(len(before))])
     rest = change - columns @ np.linalg.lstsq(columns, change, rcond=None)[0]
-    return float(np.mean(rest**2)) > BY_NOISE * square
+    is_rough = _roughness(rest) > min(AS_GOOD * _roughness(before), BY_NOISE)
+    return is_rough and float(np.mean(rest**2)) > BY_NOISE * square
+
+
+def _roughness(values: FloatArray) -> float:
+    """Give what differs between neighbours, as a share of the variance: 1 if white."""
+    variance = float(np.var(values))
+    return (
+        float(np.mean(np.diff(values) ** 2)) / (2 * variance) if variance > 0 else 0.0
+    )
 
 
 def differences(u: FloatArray) -> FloatArray:

@@ -4,6 +4,7 @@ Messages and files keep the user's unit in letters that any program reads: ``um`
 is shown, axes and pages, is written by :func:`hystbench.figures.style.unit_text`.
 """
 
+import math
 import re
 from collections.abc import Iterable
 from contextlib import suppress
@@ -132,7 +133,8 @@ def check_same_unit(
         first = model if of_model else ""
         raise InputError(
             f"{where}; nothing is converted silently: {first}multiply the record's "
-            f"column by {factor:g} and say {ours!r} in its dataset.yaml"
+            f"column by {factor:g} and say {ours!r} in its dataset.yaml; if only its "
+            f"header is wrong, say {ours!r} and 'meant: true' there"
         )
 
 
@@ -154,6 +156,25 @@ def prefixed(unit: str, factor: float) -> str | None:
         if abs(size * factor / PREFIXES[prefix] - 1) < 1e-6:
             return f"{name}{symbol}{plain(unit)[found.end() :]}"
     return None
+
+
+def by_thousands(unit: str, ratio: float) -> str | None:
+    """Give the unit in which numbers likely are that look so many times too large.
+
+    Parameters
+    ----------
+    unit : str
+        The unit that is said.
+    ratio : float
+        Above zero; the nearest power of a thousand counts.
+
+    Returns
+    -------
+    str or None
+        None where the ratio is nearest to one, or no prefix makes up for it.
+    """
+    power = 3 * round(math.log10(ratio) / 3)
+    return prefixed(unit, 10.0**power) if power else None
 
 
 def named_otherwise(column: str, unit: str) -> str | None:

@@ -191,6 +191,69 @@ def test_rounded_times_become_a_sampling_frequency(run, tmp_path):
     assert rate == pytest.approx(1000, rel=0.01)
 
 
+@pytest.mark.parametrize("share", [0.012, 0.03, 0.1, 0.2])
+def test_of_a_clock_that_jitters_the_tolerance_is_written(run, tmp_path, share):
+    rng = np.random.default_rng(1)
+    time = DT * (np.arange(1200) + share * rng.uniform(-1, 1, 1200))
+    for hz in (5, 10):
+        u = sine(hz)
+        table = zip(time, u, loop(u), strict=True)
+        rows = (f"{t:.9g},{a:.9g},{b:.9g}" for t, a, b in table)
+        (tmp_path / f"run-{hz}.csv").write_text("\n".join([HEADER, *rows]) + "\n")
+    status, said, error = run("init", *sorted(tmp_path.glob("*.csv")))
+    assert (status, error) == (0, "")
+    worst = np.abs(np.diff(time) / np.diff(time).mean() - 1).max()
+    # A tenth is added, as another record may be somewhat worse.
+    assert written()["time"]["tolerance"] == pytest.approx(1.1 * worst, abs=2e-3)
+    assert "'tolerance' is written" in said
+    load_dataset(tmp_path / "dataset.yaml").read("run-5")
+
+
+def with_rows_lost(folder, lost, more=""):
+    """Write two records, of the first of which stretches of rows are lost."""
+    for hz in (5, 10):
+        u = sine(hz)
+        rows = zip(DT * np.arange(1200), u, loop(u), strict=True)
+        lines = [f"{t:.9g},{a:.9g},{b:.9g}" for t, a, b in rows]
+        if hz == 5:
+            gone = {k for first, behind in lost for k in range(first, behind)}
+            lines = [line for k, line in enumerate(lines) if k not in gone]
+        (folder / f"run-{hz}.csv").write_text("\n".join([HEADER, *lines]) + "\n")
+    return sorted(folder.glob("*.csv"))
+
+
+def test_a_record_is_cut_where_rows_are_lost(run, tmp_path):
+    files = with_rows_lost(tmp_path, [(400, 460), (700, 701), (710, 800)])
+    status, said, error = run("init", *files)
+    assert (status, error) == (0, "")
+    found = [each for each in written()["records"] if each["file"] == "run-5.csv"]
+    # Rows that are there: 400, then 700 - 460, then 9 that are too few, then 400.
+    assert [each["rows"] for each in found] == [[1, 400], [401, 640], [650, 1049]]
+    assert [each["name"] for each in found] == ["run-5-1", "run-5-2", "run-5-3"]
+    # The header is a row too: after the 400th sample comes row 402.
+    assert "run-5.csv: time jumps at row 402 and 2 more" in said
+    assert "9 samples in pieces shorter than 20 are left out" in said
+    dataset = load_dataset(tmp_path / "dataset.yaml")
+    assert [len(dataset.read(name)) for name in ("run-5-1", "run-5-3")] == [400, 400]
+
+
+def test_where_rows_are_lost_all_over_the_file_is_refused(run, tmp_path):
+    files = with_rows_lost(tmp_path, [(k, k + 3) for k in range(10, 1190, 15)])
+    error = refused("init", *files)
+    assert "a step in time of 0.004 s" in error
+    assert not Path("dataset.yaml").exists()
+
+
+def test_rows_that_are_lost_and_cells_that_are_empty_are_both_cut(run, tmp_path):
+    files = with_rows_lost(tmp_path, [(400, 460)])
+    lines = files[1].read_text().splitlines()
+    lines[201] = lines[201].rpartition(",")[0] + ","
+    files[1].write_text("\n".join(lines) + "\n")
+    assert run("init", *files, "--missing", "split")[0] == 0
+    found = [each for each in written()["records"] if each["file"] == "run-5.csv"]
+    assert [each["rows"] for each in found] == [[1, 200], [202, 400], [401, 1140]]
+
+
 def test_no_column_of_time_needs_a_sampling_frequency(run, tmp_path):
     files = records(tmp_path, "t,u,y")
     for file in files:

@@ -188,6 +188,36 @@ def test_layouts_of_text(tmp_path, text, encoding):
     np.testing.assert_array_equal(table.column("u").values, [1, 2, 3])
 
 
+@pytest.mark.parametrize(
+    ("cell", "said"),
+    [
+        (
+            "OVLD",
+            "'OVLD' (the first of 3); expected a finite number: make the cell empty",
+        ),
+        ("1.130,22", "'1.130,22' (the first of 3); expected a finite number, without "),
+        ("-12.000.130,5", "without points between thousands"),
+    ],
+)
+def test_a_cell_that_is_no_number_is_told_as_it_stands(tmp_path, cell, said):
+    cells = [f"{k / 1000:.3f}".replace(".", ",") for k in range(40)]
+    outputs = [*cells[:20], cell, cell, cell, *cells[23:]]
+    rows = [f'{t};{t};"{y}"' for t, y in zip(cells, outputs, strict=True)]
+    (tmp_path / "run.csv").write_text("\n".join(["t;u;y", *rows]) + "\n")
+    error = message(lambda: read_table(tmp_path / "run.csv", ["t", "u", "y"]))
+    assert "run.csv: row 22: column 'y' is" in error
+    assert said in error
+
+
+def test_commas_between_thousands_are_told(tmp_path):
+    rows = [f'0.{k:03d},1.0,"{k}.5"' for k in range(10, 40)]
+    rows[20] = '0.030,1.0,"1,130.22"'
+    (tmp_path / "run.csv").write_text("\n".join(["t,u,y", *rows]) + "\n")
+    error = message(lambda: read_table(tmp_path / "run.csv", ["t", "u", "y"]))
+    assert "row 22: column 'y' is '1,130.22'; expected a finite number, with" in error
+    assert "without commas between thousands" in error
+
+
 def test_an_empty_cell_is_no_number_and_a_word_is_an_error(tmp_path):
     path = tmp_path / "a.csv"
     path.write_text("t,u\n0,1\n1,\n2,NaN\n3,4\n")

@@ -1,9 +1,12 @@
 """Columns of time that count from a date."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from hystbench.inspection.clocks import clock_of
+from hystbench.formats import Table
+from hystbench.inspection.clocks import clock_of, ticks_of
 from hystbench.units import seconds
 
 STEP = 0.001
@@ -29,6 +32,17 @@ def test_what_can_only_be_a_date_is_one(first, unit, said):
 @pytest.mark.parametrize("first", [0.0, 100.0, 1e5])
 def test_small_numbers_are_no_dates(first):
     assert clock_of(first + STEP * np.arange(2000)) is None
+
+
+@pytest.mark.parametrize("frequency", [2000.0, 1024.0, 1333.0, 48000.0])
+@pytest.mark.parametrize("first", [0.0, 3.2174])
+@pytest.mark.parametrize("count", [1999, 2000, 2001])
+def test_of_rounded_times_the_roundest_frequency_is_told(frequency, first, count):
+    digits = int(np.log10(frequency))  # the last decimal is longer than a step
+    times = np.round(first + np.arange(count) / frequency, digits)
+    found = ticks_of(times, "run.csv", Table(Path("run.csv"), ()))
+    assert found.rounded
+    assert 1 / found.step == pytest.approx(frequency, rel=1e-12)
 
 
 def test_a_record_of_a_month_counts_no_days():

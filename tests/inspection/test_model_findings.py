@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import yaml
 
 from tests.gap.made import record, write_folder
 from tests.gap.small import block
@@ -30,9 +31,20 @@ def test_nothing_is_said_of_a_model_that_fits(stage):
 
 def test_units_that_are_a_thousand_off_are_told(stage):
     (one,) = told(of_stage(stage, gain=1e-3), "misfit")
-    assert one.topic == "misfit units"
+    assert one.topic == "misfit header"
     gain = float(one.text.partition("Times ")[2].partition(",")[0])
     assert gain == pytest.approx(1000, rel=0.02)
+    # Numbers a thousand times too large for um are in nm.
+    (line,) = one.paste
+    assert yaml.safe_load(line)["output"]["unit"] == "nm"
+    assert yaml.safe_load(line)["output"]["meant"] is True
+
+
+def test_another_sign_is_told_and_no_other_unit(stage):
+    (one,) = told(of_stage(stage, gain=-1.0), "misfit")
+    assert one.topic == "misfit units"
+    assert "or its sign" in one.text
+    assert not one.paste
 
 
 def test_another_zero_is_told(tmp_path):

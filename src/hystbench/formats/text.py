@@ -317,17 +317,20 @@ def _numbers(
             values, stamps[column] = times
             found.append(values)
             continue
-        if decimal == ",":
-            said = [cell.replace(",", ".") for cell in said]
-        numbers = [_value(cell, strict) for cell in said]
+        numbers = [
+            _value(cell.replace(",", ".") if decimal == "," else cell, strict)
+            for cell in said
+        ]
         spoilt = [k for k, number in enumerate(numbers) if number is None]
         values = np.array([np.nan if x is None else x for x in numbers])
         # A column of words is none of numbers; one with a few of them is spoilt.
         words = not strict and (len(spoilt) > len(rows) / 2 or np.isnan(values).all())
         if spoilt and not words:
+            cell = said[spoilt[0]]
+            first_of = f" (the first of {len(spoilt)})" * (len(spoilt) > 1)
             raise InputError(
                 f"{path}: row {rows[spoilt[0]] + 1}: column {layout.names[column]!r} "
-                f"is {said[spoilt[0]]!r}; expected a finite number"
+                f"is {cell!r}{first_of}; expected a {_wanted(cell, decimal)}"
             )
         found.append(None if words else values)
     return found, stamps
@@ -342,6 +345,17 @@ def _value(cell: str, strict: bool) -> float | None:
     except ValueError:
         return None
     return None if "_" in cell or (strict and math.isinf(value)) else value
+
+
+def _wanted(cell: str, decimal: str) -> str:
+    """Say what to do with a cell that is no number."""
+    mark, name = (".", "points") if decimal == "," else (",", "commas")
+    if all(map(str.isdigit, cell.replace(mark, "").lstrip("+-").split(decimal))):
+        return f"finite number, without {name} between thousands"
+    return (
+        "finite number: make the cell empty and say 'missing: interpolate' of its "
+        "record, or take out a row that is no sample"
+    )
 
 
 def _no_numbers(lines: Sequence[str], wanted: Collection[str] | None) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -40,7 +40,8 @@ class Base:
     whole: tuple[Compared, ...]
     """All records, as they were measured."""
     fit: tuple[Compared, ...]
-    """Those to fit, as ``hystbench gap`` takes them: of a free mass cut in windows."""
+    """Those to fit, as ``hystbench gap`` takes them: of a free mass cut in windows.
+    A loop of play operators is fitted to no spoilt one."""
 
     @property
     def called(self) -> str:
@@ -74,7 +75,12 @@ def left_of(compared: Sequence[Compared]) -> float:
     return rms(*(item.residual[item.record.counted] for item in compared))
 
 
-def base_of(dataset: Dataset, records: Sequence[Record], given: str = "") -> Base:
+def base_of(
+    dataset: Dataset,
+    records: Sequence[Record],
+    given: str = "",
+    spoilt: Collection[str] = (),
+) -> Base:
     """Give the base of a check, run once on all records.
 
     Parameters
@@ -84,6 +90,8 @@ def base_of(dataset: Dataset, records: Sequence[Record], given: str = "") -> Bas
         All of the dataset, as they were read.
     given : str
         As of ``hystbench gap --model``; by default a loop of play operators is fitted.
+    spoilt : collection of str
+        Names of records that this loop is not fitted to: it would fit no other.
 
     Raises
     ------
@@ -92,11 +100,14 @@ def base_of(dataset: Dataset, records: Sequence[Record], given: str = "") -> Bas
     """
     hold = dataset.input_hold
     if not given:
-        base = loop_of_plays([record for record in records if record.use == "fit"])
+        to_fit = [record for record in records if record.use == "fit"]
+        sound = [record for record in to_fit if record.name not in spoilt] or to_fit
+        base = loop_of_plays(sound)
         outputs = run_base(base, tuple(records), hold)
         pairs = zip(records, outputs, strict=True)
         whole = tuple(Compared(record, y) for record, y in pairs)
-        fit = tuple(item for item in whole if item.record.use == "fit")
+        chosen = {record.name for record in sound}
+        fit = tuple(item for item in whole if item.record.name in chosen)
         return Base(base, given, "", whole, fit)
     evidence = evidence_of(dataset, records)
     base, note = load_base(given, evidence)

@@ -1,23 +1,22 @@
 """A dataset looked at: what each record is like, what is wrong, what it can reveal."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from hystbench.dataset import Dataset
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
-from hystbench.flat import flats
 from hystbench.gap.records.floor import Floor, noise_floor
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.inspection.base import Base, base_of
-from hystbench.inspection.entries import entry_text
 from hystbench.inspection.facts import Facts, facts_of, late
 from hystbench.inspection.findings import KIND_ORDER, Finding, finding
 from hystbench.inspection.model_findings import model_findings
+from hystbench.inspection.record_findings import entry_with, record_findings
 from hystbench.inspection.same_input import FAR_APART, SameInput, same_inputs
+from hystbench.inspection.unlike import Unlike, unlike_the_others
 from hystbench.inspection.visible import SmallestSeen, seen_effects
 from hystbench.metrics import rms
 from hystbench.record import Record
@@ -26,8 +25,6 @@ SAME_RATIO = 2.0
 """Ratio of the fastest rate to the slowest below which records are of one rate."""
 ONE_RATE = ("sine", "ramps")
 """Kinds of input of which a record has one rate, or few."""
-UNEVEN_SHARE = 0.01
-"""Share of a step: a clock that is less even than that is told."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,14 +82,18 @@ def check(dataset: Dataset, effects: bool = True, model: str = "") -> Check:
         is none of these records.
     """
     records = tuple(dataset.read(name) for name in dataset.record_files)
-    base = base_of(dataset, records, model)
+    unlike = unlike_the_others(records)
+    base = base_of(dataset, records, model, [item.name for item in unlike])
     facts = tuple(facts_of(dataset, item) for item in base.whole)
     periods = {item.name: item.period for item in facts}
     floor = noise_floor(
         [_repeating(item, periods) for item in base.fit],
         dataset.about.get("noise_rms"),
     )
-    found = [*_findings(dataset, records, facts, floor), *model_findings(dataset, base)]
+    found = [
+        *_findings(dataset, records, facts, floor, unlike),
+        *model_findings(dataset, base),
+    ]
     return Check(
         dataset,
         records,
@@ -118,19 +119,35 @@ def _repeating(item: Compared, periods: Mapping[str, int | None]) -> Compared:
 
 
 def _findings(
-    dataset: Dataset, records: Sequence[Record], facts: Sequence[Facts], floor: Floor
+    dataset: Dataset,
+    records: Sequence[Record],
+    facts: Sequence[Facts],
+    floor: Floor,
+    unlike: Sequence[Unlike],
 ) -> list[Finding]:
     """Say what a reader should know of the records."""
     both = list(zip(records, facts, strict=True))
-    found = [each for pair in both for each in _still(dataset, *pair)]
+    found = [each for pair in both for each in record_findings(dataset, *pair)]
+    found += [
+        finding(
+            "exchanged" if item.exchanged else "times",
+            name=item.name,
+            factor=item.factor,
+            left=100 * item.left,
+            mended=100 * item.mended,
+        )
+        for item in unlike
+    ]
+    spoilt = {item.name for item in unlike}
     new = [item for item in facts if item.period and not item.declared]
     if new:
         told = ", ".join(f"{item.name} every {item.period} samples" for item in new)
-        lines = [_entry(dataset, item.name, period_samples=item.period) for item in new]
+        lines = [
+            entry_with(dataset, item.name, period_samples=item.period) for item in new
+        ]
         topic = "steady" if "noise_rms" in dataset.about else "periods"
         found.append(finding(topic, told=told, paste=lines))
     found += [finding("no period", **vars(x)) for x in facts if not x.repeats]
-    found += [each for item in facts for each in _holes(item)]
     found += [
         finding(
             "late" if by > 0 else "early",
@@ -138,7 +155,7 @@ def _findings(
             ms=1e3 * abs(by),
             samples=abs(by) / item.dt,
         )
-        for item, by in late(facts)
+        for item, by in late([item for item in facts if item.name not in spoilt])
     ]
     twice = same_inputs(records)
     if twice and floor.method == "upper-bound":
@@ -171,35 +188,3 @@ def _of_one_input(twice: Sequence[SameInput], unit: str) -> Finding:
     told = "; ".join(f"{x.first} and {x.other} have the same input" for x in twice)
     lines = [f"noise_rms: {noise:.3g}"]
     return finding("same input", lines, told=told, noise=noise, unit=unit)
-
-
-def _still(dataset: Dataset, record: Record, item: Facts) -> Iterator[Finding]:
-    """Say which channels of a record are stuck or clipped."""
-    if item.stuck:
-        of_input = item.stuck.partition(": ")[2].startswith(record.input.name)
-        channels = ["input" if of_input else "output"]
-        line = _entry(dataset, item.name, stands_still=channels)
-        yield finding("stuck", paste=[line], **vars(item))
-    given = ("input", record.input, record.u), ("output", record.output, record.y)
-    for key, channel, values in given:
-        on_purpose = key == "input" and item.input.kind in ("steps", "ramps")
-        if item.stuck or on_purpose or key in dataset.stands_still(item.name):
-            continue
-        for flat in flats(values):
-            said = vars(channel) | {"channel": channel.name, "name": item.name}
-            made = finding("flat", flat=flat, first=flat.first + 1, **said)
-            yield replace(made, topic=f"{flat.kind} {key}")
-
-
-def _holes(item: Facts) -> Iterator[Finding]:
-    """Say of a record that samples are missing, or its clock is uneven."""
-    if item.missing:
-        far = " too far" * item.bridged_too_far
-        yield replace(finding(f"bridged{far}", **vars(item)), topic="missing")
-    if item.jitter is not None and item.jitter > UNEVEN_SHARE:
-        yield finding("jitter", name=item.name, percent=100 * item.jitter)
-
-
-def _entry(dataset: Dataset, name: str, **more: Any) -> str:
-    """Give a record's line of dataset.yaml with what it should say too."""
-    return f"- {entry_text({**dataset.entry(name), **more})}"

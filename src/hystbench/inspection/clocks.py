@@ -1,6 +1,7 @@
 """A column of time: what it counts, and how evenly."""
 
 import datetime as dt
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -20,6 +21,12 @@ days."""
 
 LARGEST_TOLERANCE = 0.5
 """Largest tolerance that dataset.yaml may state, as a share of a step."""
+
+
+DIGITS = 10
+"""Digits of a frequency up to which it is a number that somebody has set."""
+WHOLE = 1e-3
+"""What is nearer to a whole number is one."""
 
 
 class _Count(NamedTuple):
@@ -83,8 +90,23 @@ class Ticks:
     rounded: bool
 
 
-def ticks_of(time: FloatArray, where: str, table: Table) -> Ticks:
-    """Look at a column of time; what dataset.yaml cannot say is refused."""
+def jumps_of(time: FloatArray) -> list[int]:
+    """Give the samples, from 0, before which a clock jumps: rows were lost there.
+
+    A step differs there from the usual one by more than dataset.yaml may allow.
+    """
+    places = np.flatnonzero(np.isfinite(time))
+    steps = np.diff(time[places]) / np.diff(places)
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    far = np.abs(steps - usual) > LARGEST_TOLERANCE * usual
+    return places[1:][far].tolist() if usual > 0 else []
+
+
+def ticks_of(time: FloatArray, where: str, table: Table, first: int = 0) -> Ticks:
+    """Look at a column of time; what dataset.yaml cannot say is refused.
+
+    The first sample of it may be a later one of the table.
+    """
     there = time[np.isfinite(time)]
     steps = np.diff(there)
     mean = float(there[-1] - there[0]) / max(len(steps), 1)
@@ -94,14 +116,33 @@ def ticks_of(time: FloatArray, where: str, table: Table) -> Ticks:
     away = np.abs(there - there[0] - mean * np.arange(len(there)))
     positive = steps[steps > 0]
     quantum = float(positive.min()) if len(positive) else np.inf
-    whole = np.abs(steps / quantum - np.round(steps / quantum)).max() < 1e-3
+    whole = np.abs(steps / quantum - np.round(steps / quantum)).max() < WHOLE
     if whole and mean > 0 and away.max() <= 1.01 * quantum and quantum > 0.5 * mean:
-        return Ticks(mean, UNIFORM_TOLERANCE, True)
+        return Ticks(_roundest(there, mean, quantum), UNIFORM_TOLERANCE, True)
     if uneven <= LARGEST_TOLERANCE and away.max() <= LARGEST_TOLERANCE * mean:
-        return Ticks(mean, min(LARGEST_TOLERANCE, np.ceil(1100 * uneven) / 1000), False)
+        with_a_tenth = math.ceil(1100 * uneven) / 1000
+        return Ticks(mean, min(LARGEST_TOLERANCE, with_a_tenth), False)
     row = int(np.argmax(np.abs(steps - mean)))
     raise InputError(
-        f"{where}: {table.place(row + 1)}: a step in time of "
+        f"{where}: {table.place(first + row + 1)}: a step in time of "
         f"{steps[row]:g} s where the mean is {mean:g} s; expected uniform sampling: "
-        "give the parts between such steps as files or 'rows' of their own"
+        "give the parts between such steps as files of their own"
     )
+
+
+def _roundest(time: FloatArray, mean: float, quantum: float) -> float:
+    """Give the step of the frequency of fewest digits that rounded times allow.
+
+    The first and the last time are rounded too: the mean step is off by that.
+    """
+    count = np.arange(len(time))
+    off = quantum / (len(time) - 1)
+    low, high = 1 / (mean + off), 1 / (mean - off)
+    for digits in range(1, DIGITS):
+        unit = 10.0 ** (math.floor(math.log10(high)) + 1 - digits)
+        numbers = range(math.ceil(low / unit), math.floor(high / unit) + 1)
+        for number in sorted(numbers, key=lambda n: abs(n * unit - 1 / mean)):
+            step = 1 / (number * unit)
+            if np.ptp(time - step * count) <= (1 + WHOLE) * quantum:
+                return step
+    return mean

@@ -21,9 +21,9 @@ from hystbench.inspection.entries import (
     checked_frequency,
     content_of,
     cut_in_two,
-    missing_in,
     with_roles,
 )
+from hystbench.inspection.pieces import missing_in
 from hystbench.inspection.user import Ask, Flags, User, words
 from hystbench.periods import find_period
 from hystbench.record import Record

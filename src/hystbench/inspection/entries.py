@@ -13,24 +13,15 @@ import numpy as np
 
 from hystbench.dataset import RECORD_NAME
 from hystbench.errors import InputError, refuse_unknown
-from hystbench.inspection.clocks import Ticks, ticks_of
-from hystbench.inspection.columns import (
-    SHORTEST,
-    ChosenColumns,
-    RecordColumns,
-)
-from hystbench.inspection.input_summary import (
-    InputSummary,
-    cannot_be_bridged,
-    runs,
-    summary_of,
-)
+from hystbench.inspection.clocks import Ticks
+from hystbench.inspection.columns import ChosenColumns, RecordColumns
+from hystbench.inspection.input_summary import InputSummary, summary_of
 from hystbench.inspection.names import split_unit
+from hystbench.inspection.pieces import clock_of_part, pieces_of
 from hystbench.inspection.user import User, words
 from hystbench.periods import find_period
 from hystbench.record import Mask, Record
 from hystbench.samples import UNIFORM_TOLERANCE
-from hystbench.units import seconds
 from hystbench.yaml_files import yaml_text
 
 HELD_OUT_PART = 3
@@ -63,24 +54,27 @@ def content_of(
     about: dict[str, Any] = {"name": user.given.name or _name_of(place)}
     if user.given.device is not None:
         about["device"] = {"kind": user.given.device}
-    clocks = [] if signals.time is None else [_ticks(each, signals) for each in parts]
-    rounded = any(clock.rounded for clock in clocks)
+    clocks: list[tuple[Ticks | None, list[int]]] = [(None, [])] * len(parts)
+    if signals.time is not None:
+        clocks = [clock_of_part(part, signals) for part in parts]
+    all_ticks = [ticks for ticks, _ in clocks if ticks is not None]
+    rounded = any(ticks.rounded for ticks in all_ticks)
     entries: list[Entry] = []
     owners: list[RecordColumns] = []
-    for k, part in enumerate(parts):
+    for part, (ticks, jumps) in zip(parts, clocks, strict=True):
         whole: Entry = {"file": _from(place, part)}
         if part.group:
             whole["group"] = part.group
-        if rounded:
-            whole["sampling_frequency_hz"] = float(f"{1 / clocks[k].step:.9g}")
-        pieces = _without_missing(part, signals, whole, user)
+        if rounded and ticks is not None:
+            whole["sampling_frequency_hz"] = float(f"{1 / ticks.step:.9g}")
+        pieces = pieces_of(part, signals, whole, jumps, user)
         entries += pieces
         owners += [part] * len(pieces)
     if rounded:
         user.note("rounded", time=signals.time)
-    elif clocks:
+    elif all_ticks:
         about["time"] = {"column": signals.time, "unit": signals.time_unit}
-        tolerance = max(clock.tolerance for clock in clocks)
+        tolerance = max(ticks.tolerance for ticks in all_ticks)
         if tolerance > UNIFORM_TOLERANCE:
             about["time"]["tolerance"] = round(tolerance, 3)
             user.note("tolerance", percent=100 * tolerance)
@@ -97,13 +91,6 @@ def content_of(
         user.note("simulated", column=signals.simulated)
     _give_names(entries)
     return about, entries, owners
-
-
-def _ticks(part: RecordColumns, signals: ChosenColumns) -> Ticks:
-    """Look at the clock of a part."""
-    unit = seconds("--time-unit", signals.time_unit)
-    time = part.columns[signals.time or ""].values * unit
-    return ticks_of(time, part.where, part.table)
 
 
 def _from(place: Path, part: RecordColumns) -> str:
@@ -145,57 +132,6 @@ def checked_frequency(told: str | float) -> float:
             f"--sampling-frequency: {told}; expected a finite number of Hz above 0"
         )
     return value
-
-
-def missing_in(part: RecordColumns, signals: ChosenColumns) -> Mask:
-    """Tell of each sample whether time, input or output has no number."""
-    columns = [part.columns[signals.input], part.columns[signals.output]]
-    if signals.time is not None:
-        columns.append(part.columns[signals.time])
-    return np.asarray(
-        ~np.all([np.isfinite(column.values) for column in columns], axis=0)
-    )
-
-
-def _without_missing(
-    part: RecordColumns, signals: ChosenColumns, entry: Entry, user: User
-) -> list[Entry]:
-    """Give the entries of a part: one, or a piece each between missing samples."""
-    bad = missing_in(part, signals)
-    if not bad.any():
-        return [entry]
-    said = words(
-        "missing",
-        where=part.where,
-        count=np.count_nonzero(bad),
-        samples=len(bad),
-        place=part.table.place(int(np.argmax(bad))),
-    )
-    ways = ("interpolate", "split")
-    question = f"{said}; 'interpolate' them or 'split' the record there"
-    what = user.given.missing or user.ask(question, ways, "--missing", None)
-    u = part.columns[signals.input].values
-    cut = cannot_be_bridged(u) if what == "interpolate" else bad
-    entries, left = [], np.count_nonzero(~bad)
-    for first, behind in runs(~cut):
-        there = first + np.flatnonzero(~bad[first:behind])
-        if len(there) < SHORTEST:
-            continue
-        rows = [int(there[0]) + 1, int(there[-1]) + 1]
-        piece = entry if rows == [1, len(bad)] else {**entry, "rows": rows}
-        whole = not bad[there[0] : there[-1]].any()
-        entries.append(piece if whole else {**piece, "missing": "interpolate"})
-        left -= len(there)
-    told = {
-        "interpolated": what == "interpolate",
-        "split": what == "split",
-        "split at long gaps": what == "interpolate" and cut.any(),
-        "short pieces": left > 0,
-    }
-    numbers = {"pieces": len(entries), "left": left, "shortest": SHORTEST}
-    more = [words(topic, **numbers) for topic, holds in told.items() if holds]
-    user.notes.append("; ".join([said, *more]))
-    return entries
 
 
 def _give_names(entries: list[Entry]) -> None:
@@ -332,7 +268,7 @@ def dataset_text(about: Mapping[str, Any]) -> str:
     lines = [FIRST_COMMENT]
     for key, value in about.items():
         if key != "records":
-            lines.append(f"{key}: {_flow(value)}\n")
+            lines.append(f"{key}: {flow(value)}\n")
     lines.append("records:\n")
     lines += [f"  - {entry_text(entry)}\n" for entry in about["records"]]
     return "".join(lines)
@@ -341,8 +277,9 @@ def dataset_text(about: Mapping[str, Any]) -> str:
 def entry_text(entry: Mapping[str, Any]) -> str:
     """Write a record's entry in one line."""
     ordered = {key: entry[key] for key in KEY_ORDER if key in entry}
-    return _flow(ordered)
+    return flow(ordered)
 
 
-def _flow(value: Any) -> str:
+def flow(value: Any) -> str:
+    """Write a value in one line."""
     return yaml_text(value, 10**6, flow=True).removesuffix("...\n").strip()

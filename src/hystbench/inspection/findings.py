@@ -12,8 +12,8 @@ class Finding:
     """One thing that a reader should know."""
 
     kind: str
-    """``wrong``: ``hystbench gap`` refuses it; ``model``: the given model looks wrong;
-    ``missing``: dataset.yaml lacks it; or ``note``."""
+    """``wrong``: ``hystbench gap`` refuses it; ``record``: a record looks wrong;
+    ``model``: the given model does; ``missing``: dataset.yaml lacks it; or ``note``."""
     text: str
     paste: tuple[str, ...] = ()
     """Lines for dataset.yaml, or for the model file, that mend it."""
@@ -23,7 +23,7 @@ class Finding:
     """Whom it concerns; empty where that is no single record."""
 
 
-KIND_ORDER = ("wrong", "model", "missing", "note")
+KIND_ORDER = ("wrong", "record", "model", "missing", "note")
 
 
 def finding(topic: str, paste: Sequence[str] = (), **told: Any) -> Finding:

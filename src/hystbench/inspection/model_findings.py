@@ -18,10 +18,12 @@ from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.thresholds import AS_GOOD, LOOSE, WORTH_A_WORD
 from hystbench.inspection.base import Base, left_of
+from hystbench.inspection.entries import flow
 from hystbench.inspection.findings import Finding, finding
 from hystbench.model import Model
 from hystbench.record import FloatArray
 from hystbench.sentences import listed
+from hystbench.units import by_thousands
 
 REPEATING = "repeating"
 """The start of a block on whole periods, in a steady state."""
@@ -40,7 +42,7 @@ def model_findings(dataset: Dataset, base: Base) -> Iterator[Finding]:
         return
     yield from _another_quantity(dataset, base)
     if not base.fits:
-        yield _misfit(base)
+        yield _misfit(dataset, base)
     if kind_of_base(base.given) == "file":
         yield from _start(dataset, base)
 
@@ -115,7 +117,7 @@ def _quantity_given(model: Model) -> tuple[str, str, bool] | None:
     return None
 
 
-def _misfit(base: Base) -> Finding:
+def _misfit(dataset: Dataset, base: Base) -> Finding:
     """Say that a model leaves more than half, and what would mend it, if that shows.
 
     It mends what leaves at most half of that: else an effect may be missing.
@@ -134,6 +136,12 @@ def _misfit(base: Base) -> Finding:
         if left**2 <= LOOSE * base.left**2:
             told |= {"would": 100 * left / base.moves, "unit": output.unit}
             told |= dict(zip(("offset", "gain"), numbers, strict=False))
+            if topic == "units" and told["gain"] > 0:
+                likely = by_thousands(output.unit, told["gain"])
+                if likely is not None:
+                    about = {**dataset.about["output"], "unit": likely, "meant": True}
+                    lines = [f"output: {flow(about)}"]
+                    return finding("misfit header", lines, likely=likely, **told)
             return finding(f"misfit {topic}", **told)
     return finding("misfit", **told)
 

@@ -10,18 +10,24 @@ from hystbench.yaml_files import table_of
 #: Words of a name by what it is, and units that tell an input from an output.
 KNOWN: Mapping[str, Sequence[str]] = table_of(__file__)
 
-_BRACKET = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
+_BRACKET = re.compile(r"^(?P<name>.*?)\s*/?\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 _SLASH = re.compile(r"^(?P<name>.*?)\s+(?:/|in)\s+(?P<unit>\S+)\s*$")
 _COMMA = re.compile(r"^(?P<name>.*?),\s*(?P<unit>\S+)\s*$")
 ENDS = ("cm", "deg", "degC", "degF", "rpm", "bar", "psi")
 """Units without a prefix that end a name: no word of a name is one of them."""
+_OVER = re.compile(r"^(?P<name>[^/]*[^/\s])/(?P<unit>[^\s/]+)$")
+SIGNS = ("%", "°", "°C", "Nm")
+"""What else stands below a quantity."""
+SYMBOLS = {"T": ("K", "°C", "degC"), "s": ("m", "mm", "um")}
+"""Units that stand for a quantity too, and the units of that quantity."""
 _SUFFIX = re.compile(r"^(?P<name>.*[^_])_(?P<unit>[^\W_]+)$")
 
 
 def split_unit(name: str) -> tuple[str, str | None]:
     """Split a column's name from the unit that it ends with.
 
-    ``Zeit [s]``, ``force (N)``, ``U / V``, ``stroke, um`` and ``time_s`` are known.
+    ``Zeit [s]``, ``force (N)``, ``U / V``, ``stroke, um``, ``time_s`` and ``I/mA`` are
+    known.
 
     Returns
     -------
@@ -33,6 +39,9 @@ def split_unit(name: str) -> tuple[str, str | None]:
         found = form.match(name)
         if found and is_known(found["unit"]):
             return found["name"].strip(), plain(found["unit"])
+    found = _OVER.match(name)
+    if found and _is_over(found["name"], plain(found["unit"])):
+        return found["name"].replace("_", " ").strip(), plain(found["unit"])
     found = _SUFFIX.match(name)
     # Nothing else than letters with a prefix, or such a word, ends a name so.
     unit = found["unit"] if found else ""
@@ -41,14 +50,35 @@ def split_unit(name: str) -> tuple[str, str | None]:
     return name.replace("_", " ").strip(), None
 
 
+def _is_over(name: str, unit: str) -> bool:
+    """Tell whether a quantity stands over its unit: ``I/mA``, but not ``N/A``.
+
+    Over a time stands a rate as well, as in ``steps/s``, unless it is called time.
+    """
+    if _is_of_time(unit):
+        return is_time(name, unit)
+    if not _is_plain(unit):
+        return False
+    return not _is_plain(plain(name)) or unit in SYMBOLS.get(name, ())
+
+
+def _is_plain(unit: str) -> bool:
+    """Tell whether a text is a unit of one symbol."""
+    return unit in (*ENDS, *SIGNS) or SIMPLE.fullmatch(unit) is not None
+
+
+def _is_of_time(unit: str) -> bool:
+    try:
+        return seconds("", unit) > 0
+    except InputError:
+        return False
+
+
 def is_time(name: str, unit: str | None) -> bool:
     """Tell whether a column is called time, and its unit, if it has one, is of time."""
     if not _has(name, "time") and name.strip().lower() != "x value":
         return False
-    try:
-        return unit is None or seconds("", unit) > 0
-    except InputError:
-        return False
+    return unit is None or _is_of_time(unit)
 
 
 def is_simulated(name: str) -> bool:

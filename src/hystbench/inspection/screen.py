@@ -25,6 +25,7 @@ FLOORS = {
 }
 KINDS = {
     "wrong": "refused by 'hystbench gap'",
+    "record": "of a record",
     "model": "of the model",
     "missing": "to add",
     "note": "note",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -33,6 +35,17 @@ def test_repeats_give_the_noise_beside_gap_drift_and_mains(seed, level, disturb)
     assert floor.method == "repeats"
     # About a thousand bins a record: a few per cent, a median of a few of them less.
     assert floor.rms == pytest.approx(0.1 * level, rel=0.1)
+
+
+def test_spikes_and_dropouts_among_the_repeats_are_no_noise():
+    found = []
+    for item in records(1, 1.0, 0.0):
+        y = item.record.y.copy()
+        y[[210, 211, 900]] += 300.0, -200.0, 40.0
+        found.append(replace(item, record=replace(item.record, y=y)))
+    floor = noise_floor(found)
+    assert floor.method == "repeats"
+    assert floor.rms == pytest.approx(0.1, rel=0.1)
 
 
 @given(SEEDS, LEVELS)

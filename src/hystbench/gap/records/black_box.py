@@ -260,7 +260,7 @@ class BoxInputs:
         for signal in (u, s, u**2):
             lines += [low_pass(signal, dt, tau, signal[0])[rows] for tau in times]
         for frequency in np.geomspace(3 / self.longest, 0.2 / self.step, MODES):
-            lines += [part[rows] for part in _ringing(s, dt, float(frequency))]
+            lines += [part[rows] for part in ringing(s, dt, float(frequency))]
         plays = play(u, self.excursion * np.array(THRESHOLDS))
         state = self.state(compared, rows)
         first, second = np.triu_indices(state.shape[1])
@@ -341,7 +341,7 @@ def _lagged(signal: FloatArray, lag: float, position: NDArray[np.intp]) -> Float
     return np.asarray(np.interp(position - lag, np.arange(len(signal)), signal))
 
 
-def _ringing(signal: FloatArray, dt: float, frequency_hz: float) -> list[FloatArray]:
+def ringing(signal: FloatArray, dt: float, frequency_hz: float) -> list[FloatArray]:
     """Pass through a damped mode: two signals a quarter period apart.
 
     They are the parts of ``z(k) = p z(k-1) + (1 - |p|) v(k)`` with the mode's pole p.

@@ -19,6 +19,7 @@ import numpy as np
 
 from hystbench.gap.records.black_box import black_box
 from hystbench.gap.records.folds import SHORTEST
+from hystbench.gap.records.lone_samples import far_off
 from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import FloatArray, Record
 from hystbench.spectra import line_below, periodogram
@@ -97,6 +98,8 @@ def _from_repeats(record: Record) -> float | None:
     # Two long runs, not many short ones: mains and the input's own lines stay narrow.
     n = periods // 2 * period
     difference = (record.y[-n:] - record.y[-2 * n : -n]) / np.sqrt(2)
+    # A dropout or a spike is in all bins: no median of a spectrum shrugs it off.
+    difference = difference[~far_off(difference)]
     power, _ = periodogram(difference, record.dt)
     return _at_least(record.y, np.sqrt(_median_level(power[2:])))
 

@@ -22,6 +22,11 @@ TO_SIGMA = 1.4826
 """Standard deviation of normal noise over its median absolute deviation."""
 
 
+def usual_deviation(residual: FloatArray) -> float:
+    """Give the standard deviation that a residual has but for samples far off."""
+    return TO_SIGMA * float(np.median(np.abs(residual - np.median(residual))))
+
+
 def far_off(residual: FloatArray) -> Mask:
     """Tell which samples of a residual stand far off from the others.
 
@@ -33,7 +38,7 @@ def far_off(residual: FloatArray) -> Mask:
     residual : ndarray, shape (n,)
     """
     about = np.abs(residual - np.median(residual))
-    usual = TO_SIGMA * float(np.median(about))
+    usual = usual_deviation(residual)
     return np.asarray((usual > 0) & (about > FAR_DEVIATIONS * usual))
 
 

@@ -1,0 +1,73 @@
+"""A few samples far off their neighbours: dropouts, spikes, a recorder's error code."""
+
+import numpy as np
+
+from hystbench.flat import COARSE, smallest_step
+from hystbench.gap.records.lone_samples import FAR_DEVIATIONS, usual_deviation
+from hystbench.inspection.input_summary import runs
+from hystbench.record import FloatArray, Mask, Record
+
+LONGEST = 5
+"""Samples in a row that may stand alone: more are a motion, or a channel that is
+stuck."""
+NEAR = 6
+"""Samples on either side that they are held against: more of them than may stand
+alone."""
+FEW = 0.01
+"""Share of a record: what comes more often belongs to the signal."""
+
+
+def lone_samples(record: Record) -> dict[str, list[tuple[int, int]]]:
+    """Find the samples of a record that are far off their neighbours.
+
+    A sample is *bent* where it differs from the mean of the two beside it by more than
+    normal noise ever does. A few bent samples in a row are lone if one lies outside the
+    range of the neighbours behind and before them by more than that range: so no turn,
+    corner or jump is. What comes as the other channel is bent is its answer, or cause.
+
+    Parameters
+    ----------
+    record : Record
+
+    Returns
+    -------
+    dict of str to list of (int, int)
+        Of ``input`` and ``output`` the first sample of each stretch, from 0, and the
+        one behind its last.
+    """
+    return {
+        "input": _lone(record.u, _bent(record.y)),
+        "output": _lone(record.y, _bent(record.u)),
+    }
+
+
+def _bent(values: FloatArray, rounding: float = 0.0) -> Mask:
+    """Mark what differs from the mean of the two samples beside it."""
+    bend = np.zeros(len(values))
+    bend[1:-1] = values[1:-1] - (values[2:] + values[:-2]) / 2
+    least = max(FAR_DEVIATIONS * usual_deviation(bend), rounding)
+    return np.asarray(np.abs(bend) > least)
+
+
+def _lone(values: FloatArray, other: Mask) -> list[tuple[int, int]]:
+    """Give the lone stretches of a channel, by where the other one is bent."""
+    lone = np.zeros(len(values), dtype=np.bool_)
+    rounding = COARSE * smallest_step(values)
+    places = np.flatnonzero(_bent(values, rounding))
+    for group in np.split(places, np.flatnonzero(np.diff(places) > LONGEST) + 1):
+        if not len(group):
+            continue
+        first, behind = int(group[0]), int(group[-1]) + 1
+        before, after = values[max(first - NEAR, 0) : first], values[behind:][:NEAR]
+        at_an_end = min(len(before), len(after)) < NEAR
+        # The sound sample on either side is bent too.
+        too_long = behind - first > LONGEST + 2
+        if at_an_end or too_long or other[first:behind].any():
+            continue
+        near = np.concatenate([before, after])
+        span = max(float(np.ptp(near)), rounding)
+        own = values[first:behind]
+        out = (own < near.min() - span) | (own > near.max() + span)
+        if out.any():
+            lone[first + (not out[0]) : behind - (not out[-1])] = True
+    return runs(lone) if lone.mean() <= FEW else []

@@ -1,0 +1,135 @@
+"""Pieces of a record to be: cut where its clock jumps or samples are missing."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from hystbench.errors import InputError
+from hystbench.inspection.clocks import Ticks, jumps_of, ticks_of
+from hystbench.inspection.columns import SHORTEST, ChosenColumns, RecordColumns
+from hystbench.inspection.input_summary import cannot_be_bridged, runs
+from hystbench.inspection.user import User, words
+from hystbench.record import Mask
+from hystbench.units import seconds
+
+MOST_LOST = 0.5
+"""Share of a record that may lie in pieces too short to be records: of more the clock
+is no clock."""
+
+
+def clock_of_part(
+    part: RecordColumns, signals: ChosenColumns
+) -> tuple[Ticks, list[int]]:
+    """Look at the clock of a part.
+
+    Returns
+    -------
+    ticks : Ticks
+        Of the piece that is least even, where it jumps.
+    jumps : list of int
+        Samples, from 0, before which it jumps.
+
+    Raises
+    ------
+    InputError
+        If it is uneven all over.
+    """
+    unit = seconds("--time-unit", signals.time_unit)
+    time = part.columns[signals.time or ""].values * unit
+    try:
+        return ticks_of(time, part.where, part.table), []
+    except InputError:
+        jumps = jumps_of(time)
+        ends = [0, *jumps, len(time)]
+        long = [(a, b) for a, b in pairwise(ends) if b - a >= SHORTEST]
+        if not jumps or sum(b - a for a, b in long) < MOST_LOST * len(time):
+            raise
+    found = [ticks_of(time[a:b], part.where, part.table, a) for a, b in long]
+    return max(found, key=lambda ticks: (ticks.rounded, ticks.tolerance)), jumps
+
+
+def missing_in(part: RecordColumns, signals: ChosenColumns) -> Mask:
+    """Tell of each sample whether time, input or output has no number."""
+    columns = [part.columns[signals.input], part.columns[signals.output]]
+    if signals.time is not None:
+        columns.append(part.columns[signals.time])
+    return np.asarray(
+        ~np.all([np.isfinite(column.values) for column in columns], axis=0)
+    )
+
+
+def pieces_of(
+    part: RecordColumns,
+    signals: ChosenColumns,
+    entry: dict[str, Any],
+    jumps: Sequence[int],
+    user: User,
+) -> list[dict[str, Any]]:
+    """Give the entries of a part: one, or a piece each between what cuts it.
+
+    Parameters
+    ----------
+    part : RecordColumns
+    signals : ChosenColumns
+    entry : dict
+        Of the part as a whole.
+    jumps : sequence of int
+        Samples, from 0, before which the clock jumps.
+    user : User
+        Is asked what to do where samples are missing.
+    """
+    bad = missing_in(part, signals)
+    if not bad.any() and not jumps:
+        return [entry]
+    said = []
+    what, cut = "", bad
+    if bad.any():
+        told = words(
+            "missing",
+            where=part.where,
+            count=np.count_nonzero(bad),
+            samples=len(bad),
+            place=part.table.place(int(np.argmax(bad))),
+        )
+        said.append(told)
+        ways = ("interpolate", "split")
+        question = f"{told}; 'interpolate' them or 'split' the record there"
+        what = user.given.missing or user.ask(question, ways, "--missing", None)
+        u = part.columns[signals.input].values
+        cut = cannot_be_bridged(u) if what == "interpolate" else bad
+    entries, left = [], np.count_nonzero(~bad)
+    for first, behind in _between(~cut, jumps):
+        there = first + np.flatnonzero(~bad[first:behind])
+        if len(there) < SHORTEST:
+            continue
+        rows = [int(there[0]) + 1, int(there[-1]) + 1]
+        piece = entry if rows == [1, len(bad)] else {**entry, "rows": rows}
+        whole = not bad[there[0] : there[-1]].any()
+        entries.append(piece if whole else {**piece, "missing": "interpolate"})
+        left -= len(there)
+    holds = {
+        "jumps": bool(jumps),
+        "interpolated": what == "interpolate",
+        "split": what == "split",
+        "split at long gaps": what == "interpolate" and cut.any(),
+        "short pieces": left > 0,
+    }
+    numbers = {"pieces": len(entries), "left": left, "shortest": SHORTEST}
+    if jumps:
+        more = f" and {len(jumps) - 1} more" * (len(jumps) > 1)
+        place = part.table.place(jumps[0])
+        numbers |= {"where": part.where, "place": f"{place}{more}"}
+    said += [words(topic, **numbers) for topic, true in holds.items() if true]
+    user.notes.append("; ".join(said))
+    return entries
+
+
+def _between(kept: Mask, jumps: Sequence[int]) -> list[tuple[int, int]]:
+    """Give the stretches that are kept, cut at jumps."""
+    found: list[tuple[int, int]] = []
+    for first, behind in runs(kept):
+        ends = [first, *(at for at in jumps if first < at < behind), behind]
+        found += pairwise(ends)
+    return found
