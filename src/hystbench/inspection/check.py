@@ -10,13 +10,13 @@ from hystbench.doubts import doubts
 from hystbench.errors import InputError
 from hystbench.gap.records.floor import Floor, noise_floor
 from hystbench.gap.records.scored_samples import Compared
+from hystbench.gap.records.unlike import Unlike, unlike_the_others
 from hystbench.inspection.base import Base, base_of
 from hystbench.inspection.facts import Facts, facts_of, late
 from hystbench.inspection.findings import KIND_ORDER, Finding, finding
 from hystbench.inspection.model_findings import model_findings
 from hystbench.inspection.record_findings import entry_with, record_findings
 from hystbench.inspection.same_input import FAR_APART, SameInput, same_inputs
-from hystbench.inspection.unlike import Unlike, unlike_the_others
 from hystbench.inspection.visible import SmallestSeen, seen_effects
 from hystbench.metrics import rms
 from hystbench.record import Record
@@ -128,16 +128,7 @@ def _findings(
     """Say what a reader should know of the records."""
     both = list(zip(records, facts, strict=True))
     found = [each for pair in both for each in record_findings(dataset, *pair)]
-    found += [
-        finding(
-            "exchanged" if item.exchanged else "times",
-            name=item.name,
-            factor=item.factor,
-            left=100 * item.left,
-            mended=100 * item.mended,
-        )
-        for item in unlike
-    ]
+    found += [finding("unlike", name=x.name, line=x.words) for x in unlike]
     spoilt = {item.name for item in unlike}
     new = [item for item in facts if item.period and not item.declared]
     if new:

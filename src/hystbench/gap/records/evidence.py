@@ -14,6 +14,7 @@ from hystbench.errors import InputError
 from hystbench.gap.records import folds, nuisance
 from hystbench.gap.records.continued import continued
 from hystbench.gap.records.free_mass import decay_of_free_mass, windows
+from hystbench.gap.records.unlike import unlike_the_others
 from hystbench.gap.records.usable import check_usable
 from hystbench.model import Model
 from hystbench.quantities import NONE_KNOWN, Quantities
@@ -120,7 +121,8 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
             f"{dataset.path}: identification: {named!r} is held out; expected a record "
             "with 'use: fit'"
         )
-    return evidence_of(dataset, records, doubts(dataset, records))
+    unlike = (item.words for item in unlike_the_others(records))
+    return evidence_of(dataset, records, (*doubts(dataset, records), *unlike))
 
 
 def evidence_of(

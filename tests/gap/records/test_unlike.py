@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from hystbench.dataset import load_dataset
+from hystbench.gap.records.evidence import load_evidence
+from hystbench.gap.records.unlike import unlike_the_others
 from hystbench.inspection import screen
 from hystbench.inspection.check import check
-from hystbench.inspection.unlike import unlike_the_others
 from tests.gap.made import record
 from tests.inspection.made import DT, sine, write
 from tests.inspection.stage import wave
@@ -104,3 +105,12 @@ def test_the_loop_of_the_check_is_fitted_without_it(tmp_path):
     pairs["r1"] = pairs["r1"][0], -pairs["r1"][1]
     mended = check(load_dataset(write(tmp_path / "b", pairs)), effects=False)
     assert mended.base.left == pytest.approx(sound.base.left, rel=0.3)
+
+
+def test_the_gap_workflow_warns_of_it(tmp_path):
+    records = {f"r{k}": (u, y) for k, (u, y) in enumerate(signals())}
+    records["r2"] = records["r2"][::-1]
+    place = write(tmp_path, records, roles={"r1": "hold-out"})
+    (told,) = load_evidence(place).warnings
+    assert told.startswith("r2: a linear model of the other records leaves ")
+    assert "Exchange the two columns" in told

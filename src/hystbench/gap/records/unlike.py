@@ -33,6 +33,15 @@ THOUSAND = 1000 / TEN
 """A factor that is nearer to a thousand than to a hundred: the range of the record
 tells it already (``doubts``)."""
 
+EXCHANGE = (
+    "Exchange the two columns in its file, or their names in the header, if they are "
+    "the wrong way round"
+)
+MULTIPLY = (
+    "Was its sign, its unit or the range of an amplifier another? Then multiply a "
+    "column of its file, input or output"
+)
+
 
 @dataclass(frozen=True)
 class Unlike:
@@ -47,6 +56,20 @@ class Unlike:
     mended: float
     """Share of the output's rms that the model of the others leaves of the record, as
     it is and mended."""
+
+    @property
+    def words(self) -> str:
+        """Say what it is like, and what to do."""
+        mended, mend = (
+            ("if input and output are exchanged", EXCHANGE)
+            if self.exchanged
+            else (f"of its output times {self.factor:.2g}", MULTIPLY)
+        )
+        return (
+            f"{self.name}: a linear model of the other records leaves "
+            f"{100 * self.left:.0f} % of its output's rms, but {100 * self.mended:.2g} "
+            f"% {mended}. {mend}"
+        )
 
 
 class _Products(NamedTuple):
