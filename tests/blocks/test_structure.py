@@ -117,6 +117,35 @@ def test_one_mode_is_a_mechanism(kind, start):
         np.testing.assert_allclose(found, wanted, atol=1e-11 * np.ptp(wanted))
 
 
+@pytest.mark.parametrize(
+    "host", [two_masses(), Mechanism(mass=1.0, damping=0.6, stiffness=300.0)]
+)
+def test_without_a_force_all_move_as_beside_a_force_that_does_nothing(host):
+    """The kernel takes another way there; the linear part of a step is exact."""
+    u, dt = given(0.004 * np.arange(300)), 0.004
+    records = (u, 0.5 * u[::-1].copy())
+    softer = 1.001 * np.array(host.stiffness)
+    near = replace(host, stiffness=softer.tolist())
+    beside = []
+    for more in ([], [force("drag", coefficient=0.0)]):
+        chains = [attached([each, *more]) for each in (host, near)]
+        beside.append(through_near(chains, records, (dt, dt)))
+    for alone, wanted in zip(*beside, strict=True):
+        for one, other in zip(alone, wanted, strict=True):
+            np.testing.assert_allclose(one, other, atol=1e-9 * np.ptp(other))
+
+
+def test_without_a_force_what_runs_away_has_no_number_from_there():
+    host = Mechanism(mass=1.0, damping=0.6, stiffness=300.0, output="acceleration")
+    u = np.ones(50)
+    u[20] = 1e105
+    near = attached([replace(host, damping=0.7)])
+    (one,), (other,) = through_near([attached([host]), near], (u,), (0.01,))
+    for found in (one, other):
+        assert np.isfinite(found[:20]).all()
+        assert np.isnan(found[21:]).all()
+
+
 @pytest.mark.parametrize("kind", OUTPUTS[:3])
 def test_without_a_force_it_is_the_sum_of_its_modes(kind):
     block = replace(Structure.from_mapping(EXAMPLES["structure"]), output=kind)

@@ -30,7 +30,11 @@ def run(tmp_path, monkeypatch):
         closed=SimpleNamespace(decision=decision),
         effects=(),
         verdict="named",
-        content={"reason": "the gap is closed", "withdrawn": None, "warnings": []},
+        content={
+            "reason": "the gap is closed",
+            "withdrawn": None,
+            "warnings": ["a late word"],
+        },
         save=lambda out, report: None,
     )
 
@@ -48,6 +52,12 @@ def run(tmp_path, monkeypatch):
         return asked[-1], result.output
 
     return invoke
+
+
+def test_a_warning_of_the_hold_out_records_is_shown_at_the_end(run):
+    _, said = run()
+    assert said.count("hystbench: warning: a late word") == 1
+    assert said.index("a late word") < said.index("the gap is closed")
 
 
 def test_the_line_by_which_it_enters_the_contest_is_understood(run):

@@ -1,10 +1,12 @@
 """An input that was stamped late by part of a sample, beside effects that hide it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from hystbench.blocks.drive_lag import DriveLag
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
@@ -16,6 +18,7 @@ from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.inside.timing import (
     better_timed,
+    in_front,
     in_time_words,
     timed,
     timed_as_named,
@@ -119,6 +122,15 @@ def test_a_mass_is_tried_with_its_timing_in_place_of_a_zero():
         "0.005 s late, 0.5 of a sampling interval"
     )
     assert in_time_words(plain.fitted.state) == ""
+    # So is what was found in it, with a lag before the mass too.
+    whole = plain.fitted.state
+    lagged = in_front(DriveLag(time_constant_s=0.02), whole)
+    carried = timing.carry(lagged)
+    delay, lag, mass = carried.chain[:3]
+    assert (type(delay), type(lag)) == (InputDelay, DriveLag)
+    assert mass == replace(whole.chain[0], blend=0.0)
+    assert all(x.parameter != "blend" for x in carried.free)
+    assert len(carried.free) == len(whole.free)
 
 
 def test_a_tank_whose_input_was_stamped_late_still_shows_its_outlet():

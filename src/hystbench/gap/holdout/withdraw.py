@@ -71,14 +71,6 @@ def show_on_hold_out(decided: Decided, evidence: Evidence) -> Outcome:
     least = np.inf if other is None else _left(other, fitted, evidence)
     content = {**decided.content, "withdrawn": None, **shown.content}
     still = rms_of_a_constant(evidence, fitted.floor.rms)
-    worse = worse_than_a_constant(content["gap"]["before"], still, content["unit"])
-    lone = _lone_samples(shown, evidence, fitted.floor.rms)
-    content["warnings"] = [
-        *evidence.warnings,
-        *decided.content.get("warnings", ()),
-        *lead_warnings((*fitted.state.records, *evidence.hold_out)),
-        *([*worse, *lone] or more_than_on_fit_records(content)),
-    ]
     if other is not None:
         content["reason"] += (
             f"; as it was first identified it leaves {sized(least, content['unit'])} "
@@ -102,6 +94,14 @@ def show_on_hold_out(decided: Decided, evidence: Evidence) -> Outcome:
     elif content["effects"] or content["verdict"] == "parameters":
         content["effects"] = no_surer_than_even(content)
         content["reason"] = f"{first_figure(content)}; {content['reason']}"
+    worse = worse_than_a_constant(content["gap"]["before"], still, content["unit"])
+    lone = _lone_samples(shown, evidence, fitted.floor.rms)
+    content["warnings"] = [
+        *evidence.warnings,
+        *decided.content.get("warnings", ()),
+        *lead_warnings((*fitted.state.records, *evidence.hold_out)),
+        *([*worse, *lone] or more_than_on_fit_records(content)),
+    ]
     if content["verdict"] == "no-gap" and worse:
         # The fit records show none, but nothing of the device is known by that.
         content["verdict"] = "unnamed"
@@ -148,9 +148,9 @@ def rms_of_a_constant(evidence: Evidence, floor: float) -> float:
 
     Infinite where that is no more than noise: a record at rest shows nothing of a base.
     """
-    mean = np.mean(np.concatenate([record.y for record in evidence.fit]))
-    outputs = np.concatenate([record.as_measured.y for record in evidence.hold_out])
-    still = rms(outputs - mean)
+    mean = np.mean(np.concatenate([x.y[x.counted] for x in evidence.fit]))
+    measured = [record.as_measured for record in evidence.hold_out]
+    still = rms(np.concatenate([x.y[x.counted] for x in measured]) - mean)
     return np.inf if still**2 <= (1 + AS_GOOD) * floor**2 else still
 
 

@@ -33,7 +33,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.given_hosts import as_given, held_about, is_seen_moving
 from hystbench.gap.inside.host import Host, Kind
-from hystbench.gap.inside.host_places import host_places, own_numbers
+from hystbench.gap.inside.host_places import host_of, host_places, own_numbers
 from hystbench.gap.inside.joint import structure
 from hystbench.gap.inside.one_coordinate import (
     BEGUN,
@@ -192,11 +192,13 @@ def _in_time(one: Fitted, score: Score) -> Iterator[Host]:
 
 def _with_timing(state: ModelState) -> ModelState:
     """Let a model of one coordinate take its input late, in place of a zero."""
-    block = state.chain[0]
+    place = host_of(state)
+    block = state.chain[place]
     if isinstance(block, Mechanism):
-        free = tuple(x for x in state.free if x.parameter != "blend")
-        chain = (replace(block, blend=0.0), *state.chain[1:])
-        state = replace(state.with_chain(chain), free=free)
+        free = (x for x in state.free if (x.block, x.parameter) != (place, "blend"))
+        chain = list(state.chain)
+        chain[place] = replace(block, blend=0.0)
+        state = replace(state.with_chain(tuple(chain)), free=tuple(free))
     return with_free_timing(state)
 
 

@@ -37,7 +37,7 @@ MOST_CREEP = 0.9
 """Magnitude at most: creep beyond that is more than the motion that creeps."""
 CREEPS = (1.0, 4.0, 16.0)
 """The record holds so many of the longest time constants of creep."""
-DECADES = 50.0
+SPREAD = 50.0
 """The longest of them over the shortest."""
 HEATS = (60.0, 20.0, 7.0)
 """The record holds so many of the time constants of heat."""
@@ -157,7 +157,7 @@ def _slow_laws(
         for part in CREEPS:
             creep = partial(
                 LogarithmicCreep,
-                first_time_s=span / part / DECADES,
+                first_time_s=span / part / SPREAD,
                 last_time_s=span / part,
             )
             yield partial(_creep, creep), (0.0, MOST_CREEP)
