@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from hystbench.gap import search as search_module
+from hystbench.gap.bases import split_linear
 from hystbench.gap.bases.load import checked_base, load_base
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Rational, Spectra, fit_ratio
@@ -88,6 +89,27 @@ def test_the_halves_are_those_of_the_system(split):
     for half, wanted in ((front, of_mode(30, 0.5)), (back, of_mode(55, 0.35))):
         near = np.abs(poles(half) - wanted).min()
         assert near < 0.1 * abs(wanted)
+
+
+def test_halves_that_have_grown_too_long_are_left_for_shorter_ones(
+    clipped_records, monkeypatch
+):
+    """More poles and zeros fit the records better, and other records worse."""
+    grown = []
+
+    def longer(task, halves):
+        far = np.array([5.0, 1.0])
+        a = np.convolve(np.append(halves.front.a, 1.0), far)[:-1]
+        long = replace(halves, front=Rational(a, 5.0 * halves.front.b))
+        grown.append(replace(long, curve=3.0 * halves.curve, cost=0.5 * halves.cost))
+        return grown[-1]
+
+    monkeypatch.setattr(split_linear, "_grown", longer)
+    monkeypatch.setattr(split_linear, "FOLD_ROUNDS", 0)
+    base, note = load_base("linear", clipped_records)
+    assert grown
+    assert "written as two in series, of order 2 and" in note
+    assert len(base.chain[0].denominator) == 3 < len(grown[0].front.a) + 1
 
 
 def test_the_base_stays_linear(split, clipped_records):
