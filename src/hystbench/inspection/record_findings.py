@@ -39,8 +39,6 @@ def record_findings(
         yield finding("stuck", paste=[line], **vars(facts))
     given = ("input", record.input, record.u), ("output", record.output, record.y)
     for key, channel, values in given:
-        if key == "input" and facts.input.kind in ("steps", "ramps"):
-            continue  # on purpose
         said = vars(channel) | {"channel": channel.name, "name": facts.name}
         if lone[key]:
             # The file is to change, and so is its SHA-256.
@@ -51,6 +49,8 @@ def record_findings(
             yield replace(made, topic=f"lone {key} of {facts.name}")
         if facts.stuck or key in dataset.stands_still(facts.name):
             continue
+        if key == "input" and facts.input.kind in ("steps", "ramps"):
+            continue  # it stands still on purpose
         for flat in flats(values):
             if any(first <= flat.first < behind for first, behind in lone[key]):
                 continue
