@@ -350,7 +350,9 @@ def _value(cell: str, strict: bool) -> float | None:
 def _wanted(cell: str, decimal: str) -> str:
     """Say what to do with a cell that is no number."""
     mark, name = (".", "points") if decimal == "," else (",", "commas")
-    if all(map(str.isdigit, cell.replace(mark, "").lstrip("+-").split(decimal))):
+    # 1,5 may be a decimal comma: without it the number would be ten times as large.
+    grouped = rf"[+-]?\d{{1,3}}({re.escape(mark)}\d{{3}})+({re.escape(decimal)}\d+)?"
+    if re.fullmatch(grouped, cell):
         return f"finite number, without {name} between thousands"
     return (
         "finite number: make the cell empty and say 'missing: interpolate' of its "
