@@ -193,7 +193,7 @@ def test_layouts_of_text(tmp_path, text, encoding):
     [
         (
             "OVLD",
-            "'OVLD' (the first of 3); expected a finite number: make the cell empty",
+            "'OVLD' (the first of 3); expected a finite number: make such samples ",
         ),
         ("1.130,22", "'1.130,22' (the first of 3); expected a finite number, without "),
         ("-12.000.130,5", "without points between thousands"),

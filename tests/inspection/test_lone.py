@@ -126,8 +126,9 @@ def test_record_rows_and_the_line_for_it_are_told(tmp_path):
     place = write(tmp_path, made, roles={"sine-5": "hold-out"})
     (told,) = of_lone(check(load_dataset(place), effects=False))
     # Row 1 is the header, so sample 425, from 0, stands in row 427.
-    assert told.text.startswith("sine-10: displacement is far off its neighbours in ")
-    assert "row 427 to 428 and row 702." in told.text
+    assert told.text.startswith("sine-10: displacement has lone samples, ")
+    assert "in row 427 to 428 and row 702." in told.text
+    assert "make such samples missing" in told.text
     assert told.paste == ("- {file: sine-10.csv, use: fit, missing: interpolate}",)
 
 

@@ -1,4 +1,4 @@
-"""A few samples far off their neighbours: dropouts, spikes, a recorder's error code."""
+"""Lone samples, far off the others: dropouts, spikes, a recorder's error code."""
 
 import numpy as np
 
@@ -7,23 +7,23 @@ from hystbench.gap.records.lone_samples import FAR_DEVIATIONS, usual_deviation
 from hystbench.inspection.input_summary import runs
 from hystbench.record import FloatArray, Mask, Record
 
-LONGEST = 5
-"""Samples close together that may be so: more are a motion, or a channel that is
+MOST = 5
+"""Lone samples that may be close together: more are a motion, or a channel that is
 stuck."""
 NEAR = 6
-"""Samples on either side that they are held against: more of them than may stand
-alone."""
+"""Samples on either side that they are held against: more of them than may be lone."""
 FEW = 0.01
 """Share of a record: what comes more often belongs to the signal."""
 
 
 def lone_samples(record: Record) -> dict[str, list[tuple[int, int]]]:
-    """Find the samples of a record that are far off their neighbours.
+    """Find the lone samples of a record.
 
     A sample is *bent* where it differs from the mean of the two beside it by more than
-    normal noise ever does. A few bent samples in a row are lone if one lies outside the
-    range of the neighbours behind and before them by more than that range: so no turn,
-    corner or jump is. What comes as the other channel is bent is its answer, or cause.
+    normal noise ever does. Of a few bent samples close together those are lone that lie
+    outside the range of the neighbours behind and before them by more than that range:
+    so no turn, corner or jump is. What comes as the other channel is bent is its
+    answer, or cause.
 
     Parameters
     ----------
@@ -60,14 +60,14 @@ def _lone(values: FloatArray, other: Mask) -> list[tuple[int, int]]:
     lone = np.zeros(len(values), dtype=np.bool_)
     rounding = COARSE * smallest_step(values)
     places = np.flatnonzero(_bent(values))
-    for group in np.split(places, np.flatnonzero(np.diff(places) > LONGEST) + 1):
+    for group in np.split(places, np.flatnonzero(np.diff(places) > MOST) + 1):
         if not len(group):
             continue
         first, behind = int(group[0]), int(group[-1]) + 1
         before, after = values[max(first - NEAR, 0) : first], values[behind:][:NEAR]
         at_an_end = min(len(before), len(after)) < NEAR
         # The sound sample on either side is bent too.
-        too_many = len(group) > LONGEST + 2
+        too_many = len(group) > MOST + 2
         if at_an_end or too_many or other[first:behind].any():
             continue
         near = np.concatenate([before, after])
@@ -76,6 +76,6 @@ def _lone(values: FloatArray, other: Mask) -> list[tuple[int, int]]:
         out = (own < near.min() - span) | (own > near.max() + span)
         # A single one between two of them is within the range by chance.
         out[1:-1] |= out[:-2] & out[2:]
-        if np.count_nonzero(out) <= LONGEST:
+        if np.count_nonzero(out) <= MOST:
             lone[first:behind] = out
     return runs(lone) if lone.mean() <= FEW else []
