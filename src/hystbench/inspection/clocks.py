@@ -179,11 +179,20 @@ def _roundest(
 def _first_allowed(
     time: FloatArray, count: NDArray[np.intp], step: float, span: float
 ) -> float | None:
-    """Give the shortest step from which times are apart by no more than a span.
+    """Give the shortest step with which no two times are off by more than a span.
 
-    What is too far apart is so up to the step that takes its two times to that span:
-    from too short a step on this goes no farther than it may. None where a longer step
-    is too long: then there is no such step.
+    Two times that are farther apart than their steps ask for a longer step: the one
+    with which they are off by the span. No shorter one is allowed, so from a step that
+    is too short this ends at the shortest that is. Two times that ask for a shorter
+    step instead leave none: None is returned.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+    count : ndarray, shape (n,)
+        Of steps from the first time on.
+    step, span : float
+        A step that is too short, and how far times may be off from each other.
     """
     while True:
         away = time - step * count
