@@ -91,6 +91,29 @@ def test_noise_that_is_smooth_itself_hides_no_period_of_a_slower_input(corner):
     assert find_period(u + 0.03 * noise / noise.std()) == 1000
 
 
+@pytest.mark.parametrize("samples", [8, 20, 50])
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_noise_that_is_slower_than_the_input_hides_no_period(samples, seed):
+    white = np.random.default_rng(seed).standard_normal(4200)
+    noise = np.convolve(white, np.hanning(33), "same")[100:4100]
+    sine = np.sin(2 * np.pi * K / samples)
+    period = find_period(sine + 0.02 * np.std(sine) * noise / noise.std())
+    # Over one period such noise is a slope: a multiple may differ by it more clearly.
+    assert period in [samples * count for count in (1, 2, 3, 4, 5)]
+
+
+@pytest.mark.parametrize("lines", [2, 3, 5, 10])
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_of_lines_that_nearly_come_back_there_is_no_period(lines, seed):
+    # After 700 samples each is off by up to a hundredth of its own period.
+    rng = np.random.default_rng(seed)
+    off = rng.choice([-0.01, 0.01], lines)
+    off[0], off[1] = 0.01, -0.01
+    times = rng.choice(np.arange(1, 30), lines, replace=False) + off
+    u = sum(np.sin(2 * np.pi * K * n / 700 + i * i) for i, n in enumerate(times))
+    assert find_period(u) is None
+
+
 def test_noise_of_the_measurement_hides_no_period_of_many_lines():
     measured = np.tile(ROUND, 2)
     measured += 0.01 * np.random.default_rng(5).standard_normal(len(measured))

@@ -87,7 +87,7 @@ def stretches(values: FloatArray) -> list[FlatPart]:
     flank's rate. A smooth turn that is digitized stays within a step.
 
     *Stuck*: it stands elsewhere, for longer than two alike readings here and there
-    foretell, and jumps at the end at least half as far as the motion before would have
+    predict, and jumps at the end at least half as far as the motion before would have
     gone meanwhile.
 
     Parameters

@@ -6,8 +6,7 @@ from scipy import fft
 from hystbench.record import FloatArray
 
 AS_GOOD = 4.0
-"""A shorter period is taken whose mean square difference is larger by up to this. Noise
-differs between neighbours by more than this times what the input does."""
+"""A shorter period is taken whose mean square difference is larger by up to this."""
 EXACT = 1e-8
 """A mean square difference, of the variance, below which two periods are the same."""
 ALIKE = 0.1
@@ -17,8 +16,14 @@ RISEN = 0.5
 """Half of the variance: within a period an input differs from itself by more."""
 BY_NOISE = 0.5
 """Share of what differs from one period to the next that has to be new in each. The
-rest is the input itself, grown, or moved by a part of a sample. As rough as half of
-white noise may be the noise of any input."""
+rest is the input itself, grown, or moved by a part of a sample."""
+WHITE = 0.5
+"""Roughness, of white noise one, from which what differs is noise of any input."""
+LINES = 0.999
+"""Share of an input's power in its own lines and their skirts, 30 dB above the rest."""
+ALL = 0.9
+"""Share of what differs that lies at an input's own lines, beyond what white noise has
+there: from here on it is all of it, but for noise 10 dB below."""
 
 
 def find_period(u: FloatArray) -> int | None:
@@ -98,8 +103,8 @@ def repeats(u: FloatArray, period: int) -> bool:
     Where it does not fit twice into the record, nothing contradicts it. One that grows
     changes by a share of itself; one whose period is no whole number of samples changes
     by a share of its slope. Least squares on both, and on a constant, leave what is new
-    in each period. It is noise if it is rougher than the input: what is as smooth is
-    the input itself, of sines that nearly come back together.
+    in each period. It is noise if it is rough, or not at the input's own lines alone:
+    of sines that nearly come back together all of it does.
     """
     if 2 * period > len(u):
         return True
@@ -108,8 +113,9 @@ def repeats(u: FloatArray, period: int) -> bool:
         return True
     columns = np.column_stack([before, np.gradient(before), np.ones(len(before))])
     rest = change - columns @ np.linalg.lstsq(columns, change, rcond=None)[0]
-    is_rough = _roughness(rest) > min(AS_GOOD * _roughness(before), BY_NOISE)
-    return is_rough and float(np.mean(rest**2)) > BY_NOISE * square
+    if float(np.mean(rest**2)) <= BY_NOISE * square:
+        return False
+    return _roughness(rest) > WHITE or _at_own_lines(rest, before) <= ALL
 
 
 def _roughness(values: FloatArray) -> float:
@@ -118,6 +124,26 @@ def _roughness(values: FloatArray) -> float:
     return (
         float(np.mean(np.diff(values) ** 2)) / (2 * variance) if variance > 0 else 0.0
     )
+
+
+def _at_own_lines(rest: FloatArray, before: FloatArray) -> float:
+    """Give the share of a rest that lies at an input's lines: white noise has none.
+
+    What white noise has there is not counted; an input that is all lines tells nothing.
+    """
+    window = np.hanning(len(before) + 2)[1:-1]
+    own, left = (
+        np.abs(fft.rfft(window * (values - np.mean(values)))) ** 2
+        for values in (before, rest)
+    )
+    strongest = np.argsort(own)[::-1]
+    summed = np.cumsum(own[strongest])
+    count = int(np.searchsorted(summed, LINES * summed[-1])) + 1
+    by_chance = count / len(own)
+    if by_chance >= 1:
+        return 0.0
+    share = float(left[strongest[:count]].sum() / left.sum())
+    return (share - by_chance) / (1 - by_chance)
 
 
 def differences(u: FloatArray) -> FloatArray:

@@ -100,7 +100,7 @@ def whole(
         if missing is not None and ends:
             hint = "; at an end nothing can be interpolated: give 'rows' without it"
         elif described:
-            hint = " (for lone ones say 'missing: interpolate' of this record)"
+            hint = " (for a few write 'missing: interpolate' for the record)"
         raise InputError(
             f"{table.path}: {table.place(rows.start + at)}: column {column.name!r} is "
             f"{shown}; expected a finite number{hint}"

@@ -2,6 +2,12 @@
 
 from collections.abc import Sequence
 
+MAKE_MISSING = (
+    "make such samples missing (an empty cell, or NaN) and write 'missing: "
+    "interpolate' for the record"
+)
+"""What to do with samples that are none."""
+
 
 def listed(names: Sequence[str]) -> str:
     """Join names with commas and a last "and"."""

@@ -171,10 +171,11 @@ def by_thousands(unit: str, ratio: float) -> str | None:
     Returns
     -------
     str or None
-        None where the ratio is nearest to one, or no prefix makes up for it.
+        None where the ratio is nearer to another power of ten than to one of a
+        thousand, or is nearest to one, or no prefix makes up for it.
     """
-    power = 3 * round(math.log10(ratio) / 3)
-    return prefixed(unit, 10.0**power) if power else None
+    power = round(math.log10(ratio))
+    return prefixed(unit, 10.0**power) if power and power % 3 == 0 else None
 
 
 def named_otherwise(column: str, unit: str) -> str | None:

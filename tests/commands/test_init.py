@@ -244,6 +244,28 @@ def test_where_rows_are_lost_all_over_the_file_is_refused(run, tmp_path):
     assert not Path("dataset.yaml").exists()
 
 
+def test_another_sampling_rate_from_some_row_on_is_refused(run, tmp_path):
+    files = with_rows_lost(tmp_path, [(k, k + 1) for k in range(401, 999, 2)])
+    error = refused("init", *files)
+    assert "run-5.csv: row 403: a step in time of 0.002 s" in error
+    assert "expected uniform sampling" in error
+
+
+def test_a_piece_of_one_time_is_left_out(run, tmp_path):
+    files = with_rows_lost(tmp_path, [(30, 330)])
+    head, *rows = files[1].read_text().splitlines()
+    for k in range(1, 30):
+        rows[k] = "," + rows[k].partition(",")[2]
+    files[1].write_text("\n".join([head, *rows]) + "\n")
+    given = ("--missing", "split", "--time", "time_s")
+    status, said, error = run("init", *files, *given)
+    assert (status, error) == (0, "")
+    assert "into 1 piece;" in said
+    assert "1 sample in pieces shorter than 20 is left out" in said
+    (found,) = (x for x in written()["records"] if x["file"] == "run-5.csv")
+    assert found["rows"] == [31, 900]
+
+
 def test_rows_that_are_lost_and_cells_that_are_empty_are_both_cut(run, tmp_path):
     files = with_rows_lost(tmp_path, [(400, 460)])
     lines = files[1].read_text().splitlines()

@@ -193,7 +193,7 @@ def test_layouts_of_text(tmp_path, text, encoding):
     [
         (
             "OVLD",
-            "'OVLD' (the first of 3); expected a finite number: make the cell empty",
+            "'OVLD' (the first of 3); expected a finite number: make such samples ",
         ),
         ("1.130,22", "'1.130,22' (the first of 3); expected a finite number, without "),
         ("-12.000.130,5", "without points between thousands"),
@@ -209,13 +209,24 @@ def test_a_cell_that_is_no_number_is_told_as_it_stands(tmp_path, cell, said):
     assert said in error
 
 
-def test_commas_between_thousands_are_told(tmp_path):
+@pytest.mark.parametrize(
+    ("cell", "grouped"),
+    [
+        ("1,130.22", True),
+        ("-12,000,130", True),
+        # Of a decimal comma nothing is to be taken out: 1,5 is not 15.
+        ("1,5", False),
+        ("1130,225", False),
+        ("1,13,225", False),
+    ],
+)
+def test_commas_between_thousands_are_told(tmp_path, cell, grouped):
     rows = [f'0.{k:03d},1.0,"{k}.5"' for k in range(10, 40)]
-    rows[20] = '0.030,1.0,"1,130.22"'
+    rows[20] = f'0.030,1.0,"{cell}"'
     (tmp_path / "run.csv").write_text("\n".join(["t,u,y", *rows]) + "\n")
     error = message(lambda: read_table(tmp_path / "run.csv", ["t", "u", "y"]))
-    assert "row 22: column 'y' is '1,130.22'; expected a finite number, with" in error
-    assert "without commas between thousands" in error
+    assert f"row 22: column 'y' is '{cell}'; expected a finite number" in error
+    assert ("without commas between thousands" in error) == grouped
 
 
 def test_an_empty_cell_is_no_number_and_a_word_is_an_error(tmp_path):

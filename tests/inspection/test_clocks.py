@@ -1,10 +1,12 @@
 """Columns of time that count from a date."""
 
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from hystbench.errors import InputError
 from hystbench.formats import Table
 from hystbench.inspection.clocks import clock_of, ticks_of
 from hystbench.units import seconds
@@ -43,6 +45,47 @@ def test_of_rounded_times_the_roundest_frequency_is_told(frequency, first, count
     found = ticks_of(times, "run.csv", Table(Path("run.csv"), ()))
     assert found.rounded
     assert 1 / found.step == pytest.approx(frequency, rel=1e-12)
+
+
+def ticks(times):
+    return ticks_of(np.asarray(times), "run.csv", Table(Path("run.csv"), ()))
+
+
+def test_times_that_no_one_frequency_explains_keep_their_mean_step():
+    step = 0.00137
+    count = np.arange(400.0)
+    count[[100, 200]] += 1, -1  # a sample that came late, and one that came early
+    started = time.perf_counter()
+    assert ticks(step * count).step == pytest.approx(step, rel=1e-9)
+    assert time.perf_counter() - started < 1
+
+
+@pytest.mark.parametrize("samples", [1000, 1400])
+def test_a_single_tick_leaves_the_mean_step(samples):
+    times = np.floor(np.arange(samples) / 999)  # whole seconds at about 1 kHz
+    assert ticks(times).step == pytest.approx(1 / (samples - 1), rel=1e-9)
+
+
+def test_a_cell_without_a_time_takes_its_step_too():
+    times = STEP * np.arange(500)
+    times[200] = np.nan
+    found = ticks(times)
+    assert not found.rounded
+    assert found.step == pytest.approx(STEP, rel=1e-9)
+
+
+def test_of_rounded_times_one_may_be_missing():
+    times = np.round(np.arange(2000) / 2000, 3)
+    times[700:703] = np.nan
+    assert 1 / ticks(times).step == pytest.approx(2000, rel=1e-12)
+
+
+def test_the_row_of_a_wrong_step_is_told_below_cells_without_a_time():
+    times = STEP * np.arange(60)
+    times[10] = np.nan
+    times[40:] += 1
+    with pytest.raises(InputError, match=r"sample 41: a step in time of 1\.001 s"):
+        ticks(times)
 
 
 def test_a_record_of_a_month_counts_no_days():

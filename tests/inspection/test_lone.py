@@ -33,6 +33,13 @@ def with_bad(values, **places):
         ({"at_700": 45.0}, [(700, 701)]),
         ({"at_700": 45.0, "at_1510": [-60.0, 80.0]}, [(700, 701), (1510, 1512)]),
         ({"at_300": [9999.9] * 3}, [(300, 303)]),
+        # What lies between two of them is sound.
+        ({"at_700": 45.0, "at_704": -45.0}, [(700, 701), (704, 705)]),
+        ({"at_700": 45.0, "at_705": 45.0}, [(700, 701), (705, 706)]),
+        ({"at_700": 45.0, "at_707": 45.0}, [(700, 701), (707, 708)]),
+        ({"at_700": 45.0, "at_708": 45.0}, [(700, 701), (708, 709)]),
+        # Six in a row are a channel that is stuck.
+        ({"at_700": [45.0] * 6}, []),
         # One of four is no farther off than the signal goes: it lies between others.
         ({"at_1400": [-30.0, 42.0, 17.0, 1.0, -8.0]}, [(1400, 1405)]),
     ],
@@ -51,6 +58,12 @@ def test_dropouts_of_a_channel_that_is_coarsely_digitized_are_found():
     coarse = np.round(3 + SLOW, 1)
     y = with_bad(coarse, at_2000=0.0)
     assert lone_samples(record(SLOW, y)) == NOTHING | {"output": [(2000, 2001)]}
+
+
+def test_a_coarse_input_excuses_no_bad_sample_of_the_output():
+    y = with_bad(SLOW + NOISE, at_2000=30.0)
+    found = lone_samples(record(np.round(SLOW, 1), y))
+    assert found == NOTHING | {"output": [(2000, 2001)]}
 
 
 @pytest.mark.parametrize(
@@ -113,8 +126,9 @@ def test_record_rows_and_the_line_for_it_are_told(tmp_path):
     place = write(tmp_path, made, roles={"sine-5": "hold-out"})
     (told,) = of_lone(check(load_dataset(place), effects=False))
     # Row 1 is the header, so sample 425, from 0, stands in row 427.
-    assert told.text.startswith("sine-10: displacement is far off its neighbours in ")
-    assert "row 427 to 428 and row 702." in told.text
+    assert told.text.startswith("sine-10: displacement has lone samples, ")
+    assert "in row 427 to 428 and row 702." in told.text
+    assert "make such samples missing" in told.text
     assert told.paste == ("- {file: sine-10.csv, use: fit, missing: interpolate}",)
 
 
@@ -131,6 +145,17 @@ def test_a_record_that_is_mended_so_is_sound(tmp_path):
     again = check(load_dataset(place), effects=False)
     assert not of_lone(again)
     assert [item.missing for item in again.facts] == [0, 1, 0]
+
+
+def test_a_bad_sample_of_an_input_of_steps_is_told(tmp_path):
+    made = records()
+    u = np.repeat([0.0, 1.0, -1.0, 0.5], len(made["sine-5"][0]) // 4)
+    y = 8.0 * u + 0.01 * RNG.standard_normal(len(u))
+    u[350] = 20.0
+    place = write(tmp_path, made | {"steps": (u, y)})
+    (told,) = of_lone(check(load_dataset(place), effects=False))
+    assert (told.record, told.topic) == ("steps", "lone input of steps")
+    assert "row 352" in told.text
 
 
 def test_an_error_code_that_comes_thrice_is_told_once(tmp_path):

@@ -47,6 +47,20 @@ def test_another_sign_is_told_and_no_other_unit(stage):
     assert not one.paste
 
 
+def test_units_that_are_forty_off_are_no_other_prefix(stage):
+    (one,) = told(of_stage(stage, gain=1 / 40), "misfit")
+    assert one.topic == "misfit units"
+    assert "Times 40, it would leave" in one.text
+    assert not one.paste
+
+
+def test_of_other_units_the_offset_is_told_where_one_is_needed(tmp_path):
+    write_one(tmp_path, through(wave(0), block("mechanism", **STAGE)) + 0.3)
+    (one,) = told(of_stage(tmp_path, gain=1e-3), "misfit")
+    assert one.topic == "misfit header"
+    assert "Times 1e+03, with 0.3 um added, it would leave" in one.text
+
+
 def test_another_zero_is_told(tmp_path):
     write_one(tmp_path, through(wave(0), block("mechanism", **STAGE)) + 40.0)
     (one,) = told(of_stage(tmp_path), "misfit")

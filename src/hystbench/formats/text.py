@@ -19,6 +19,7 @@ import numpy as np
 from hystbench.errors import InputError
 from hystbench.formats.stamps import since_first
 from hystbench.formats.table import Column, FloatArray, Table
+from hystbench.sentences import MAKE_MISSING
 from hystbench.text_files import decoded
 
 COMMENTS = ("#", "%", "//", "!", '"#')
@@ -350,12 +351,11 @@ def _value(cell: str, strict: bool) -> float | None:
 def _wanted(cell: str, decimal: str) -> str:
     """Say what to do with a cell that is no number."""
     mark, name = (".", "points") if decimal == "," else (",", "commas")
-    if all(map(str.isdigit, cell.replace(mark, "").lstrip("+-").split(decimal))):
+    # 1,5 may be a decimal comma: without it the number would be ten times as large.
+    grouped = rf"[+-]?\d{{1,3}}({re.escape(mark)}\d{{3}})+({re.escape(decimal)}\d+)?"
+    if re.fullmatch(grouped, cell):
         return f"finite number, without {name} between thousands"
-    return (
-        "finite number: make the cell empty and say 'missing: interpolate' of its "
-        "record, or take out a row that is no sample"
-    )
+    return f"finite number: {MAKE_MISSING}, or take out a row that is no sample"
 
 
 def _no_numbers(lines: Sequence[str], wanted: Collection[str] | None) -> str:

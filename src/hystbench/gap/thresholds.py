@@ -144,7 +144,7 @@ In all 4.5 % of the output's rms, a ratio of signal to noise of 27 dB: what is n
 needs repeated periods or a declared noise. A convention.
 """
 FOREIGN = 0.05
-"""Share that no effect does: of the gap in samples far off, of what is left in what
+"""Share that no effect does: of the gap in lone samples, of what is left in what
 differs between periods.
 
 One part in twenty. A convention.

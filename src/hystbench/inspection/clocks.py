@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hystbench.errors import InputError
 from hystbench.formats import Table
@@ -105,44 +106,103 @@ def jumps_of(time: FloatArray) -> list[int]:
 def ticks_of(time: FloatArray, where: str, table: Table, first: int = 0) -> Ticks:
     """Look at a column of time; what dataset.yaml cannot say is refused.
 
-    The first sample of it may be a later one of the table.
+    The first sample of it may be a later one of the table. A cell without a time takes
+    its step all the same.
     """
-    there = time[np.isfinite(time)]
-    steps = np.diff(there)
-    mean = float(there[-1] - there[0]) / max(len(steps), 1)
+    places = np.flatnonzero(np.isfinite(time))
+    if len(places) < 2:
+        raise InputError(
+            f"{where}: fewer than two times from {table.place(first)} on; expected a "
+            "time for each sample"
+        )
+    there, count = time[places], places - places[0]
+    moves = np.diff(there)
+    steps = moves / np.diff(places)
+    mean = float(there[-1] - there[0]) / int(count[-1])
     uneven = float(np.abs(steps - mean).max()) / mean if mean > 0 else np.inf
     if uneven <= UNIFORM_TOLERANCE:
         return Ticks(mean, UNIFORM_TOLERANCE, False)
-    away = np.abs(there - there[0] - mean * np.arange(len(there)))
-    positive = steps[steps > 0]
+    away = np.abs(there - there[0] - mean * count)
+    positive = moves[moves > 0]
     quantum = float(positive.min()) if len(positive) else np.inf
-    whole = np.abs(steps / quantum - np.round(steps / quantum)).max() < WHOLE
+    whole = np.abs(moves / quantum - np.round(moves / quantum)).max() < WHOLE
     if whole and mean > 0 and away.max() <= 1.01 * quantum and quantum > 0.5 * mean:
-        return Ticks(_roundest(there, mean, quantum), UNIFORM_TOLERANCE, True)
+        step = _roundest(there, count, mean, quantum)
+        return Ticks(step, UNIFORM_TOLERANCE, True)
     if uneven <= LARGEST_TOLERANCE and away.max() <= LARGEST_TOLERANCE * mean:
         with_a_tenth = math.ceil(1100 * uneven) / 1000
         return Ticks(mean, min(LARGEST_TOLERANCE, with_a_tenth), False)
     row = int(np.argmax(np.abs(steps - mean)))
     raise InputError(
-        f"{where}: {table.place(first + row + 1)}: a step in time of "
+        f"{where}: {table.place(first + int(places[row + 1]))}: a step in time of "
         f"{steps[row]:g} s where the mean is {mean:g} s; expected uniform sampling: "
         "give the parts between such steps as files of their own"
     )
 
 
-def _roundest(time: FloatArray, mean: float, quantum: float) -> float:
+def _roundest(
+    time: FloatArray, count: NDArray[np.intp], mean: float, quantum: float
+) -> float:
     """Give the step of the frequency of fewest digits that rounded times allow.
 
-    The first and the last time are rounded too: the mean step is off by that.
+    The mean where they allow none, or where a single tick tells too little. Of several
+    frequencies of as few digits the one nearest to the mean is given.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+    count : ndarray, shape (n,)
+        Of steps from the first time on.
+    mean, quantum : float
+        Mean step, and what the times are rounded to.
     """
-    count = np.arange(len(time))
-    off = quantum / (len(time) - 1)
-    low, high = 1 / (mean + off), 1 / (mean - off)
+    span = (1 + WHOLE) * quantum
+    # The first and the last time are rounded too: the mean step is off by that.
+    off = span / int(count[-1])
+    if mean <= off:
+        return mean
+    least = _first_allowed(time, count, mean - off, span)
+    # Backward in time the longest step is the shortest.
+    most = _first_allowed(-time, count, -mean - off, span)
+    if least is None or most is None:
+        return mean
+    low, high = -1 / most, 1 / least
     for digits in range(1, DIGITS):
         unit = 10.0 ** (math.floor(math.log10(high)) + 1 - digits)
-        numbers = range(math.ceil(low / unit), math.floor(high / unit) + 1)
-        for number in sorted(numbers, key=lambda n: abs(n * unit - 1 / mean)):
-            step = 1 / (number * unit)
-            if np.ptp(time - step * count) <= (1 + WHOLE) * quantum:
-                return step
+        fewest, largest = math.ceil(low / unit), math.floor(high / unit)
+        if fewest <= largest:
+            nearest = round(1 / (mean * unit))
+            return 1 / (min(max(nearest, fewest), largest) * unit)
     return mean
+
+
+def _first_allowed(
+    time: FloatArray, count: NDArray[np.intp], step: float, span: float
+) -> float | None:
+    """Give the shortest step with which no two times are off by more than a span.
+
+    Two times that are farther apart than their steps ask for a longer step: the one
+    with which they are off by the span. No shorter one is allowed, so from a step that
+    is too short this ends at the shortest that is. Two times that ask for a shorter
+    step instead leave none: None is returned.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+    count : ndarray, shape (n,)
+        Of steps from the first time on.
+    step, span : float
+        A step that is too short, and how far times may be off from each other.
+    """
+    while True:
+        away = time - step * count
+        late, early = int(np.argmax(away)), int(np.argmin(away))
+        steps = int(count[late] - count[early])
+        if away[late] - away[early] <= span:
+            return step
+        if steps <= 0:
+            return None
+        longer = float(time[late] - time[early] - span) / steps
+        if longer <= step:
+            return step  # but for rounding it is there
+        step = longer

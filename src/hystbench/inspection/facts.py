@@ -151,7 +151,7 @@ def _parts(values: FloatArray) -> list[FloatArray]:
 
 
 def late(facts: Sequence[Facts]) -> list[tuple[Facts, float]]:
-    """Give the records that are late against what the others foretell, and by how much.
+    """Give the records that are late against what the others predict, and by how much.
 
     A loop of the wrong width is a phase that is the same at all rates, and a lag is one
     that grows with the rate: each record's phase, its delay times its rate, is held

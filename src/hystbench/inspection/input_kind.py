@@ -4,7 +4,7 @@
 - Ramps are straight between corners, also where a filter has rounded the corners.
 - A sweep's frequency goes one way through the record.
 - A sine, or a sum of sines, is a few lines that stay the same through the record: what
-  they are in one half foretells the other. What comes back to itself long after has
+  they are in one half predicts the other. What comes back to itself long after has
   lines too, however many.
 - All else is broadband.
 """
@@ -43,8 +43,8 @@ POWER_IN_LINES = 0.95
 """Share of the power that the lines of a sine, or of a sum of sines, have."""
 MOST_LINES = 20
 """Most lines of a sum of sines that does not come back to itself."""
-FORETOLD = 0.75
-"""Share of the power of one half that lines foretell with what they are in the other:
+PREDICTED = 0.75
+"""Share of the power of one half that lines predict with what they are in the other:
 the larger part of the rms is not missed."""
 LONG = 4
 """Parts of a record, of which one is long: noise of a band forgets itself before."""
@@ -175,7 +175,7 @@ def _stay(about: FloatArray, frequencies: FloatArray) -> bool:
         amplitudes = np.linalg.lstsq(known, given, rcond=1e-6)[0]
         missed += float(np.mean((wanted - other @ amplitudes) ** 2))
         whole += float(np.mean(wanted**2))
-    return missed < (1 - FORETOLD) * whole
+    return missed < (1 - PREDICTED) * whole
 
 
 def _comes_back(u: FloatArray) -> bool:

@@ -1,4 +1,4 @@
-"""A few samples far off their neighbours: dropouts, spikes, a recorder's error code."""
+"""Lone samples, far off the others: dropouts, spikes, a recorder's error code."""
 
 import numpy as np
 
@@ -7,23 +7,23 @@ from hystbench.gap.records.lone_samples import FAR_DEVIATIONS, usual_deviation
 from hystbench.inspection.input_summary import runs
 from hystbench.record import FloatArray, Mask, Record
 
-LONGEST = 5
-"""Samples in a row that may stand alone: more are a motion, or a channel that is
+MOST = 5
+"""Lone samples that may be close together: more are a motion, or a channel that is
 stuck."""
 NEAR = 6
-"""Samples on either side that they are held against: more of them than may stand
-alone."""
+"""Samples on either side that they are held against: more of them than may be lone."""
 FEW = 0.01
 """Share of a record: what comes more often belongs to the signal."""
 
 
 def lone_samples(record: Record) -> dict[str, list[tuple[int, int]]]:
-    """Find the samples of a record that are far off their neighbours.
+    """Find the lone samples of a record.
 
     A sample is *bent* where it differs from the mean of the two beside it by more than
-    normal noise ever does. A few bent samples in a row are lone if one lies outside the
-    range of the neighbours behind and before them by more than that range: so no turn,
-    corner or jump is. What comes as the other channel is bent is its answer, or cause.
+    normal noise ever does. Of a few bent samples close together those are lone that lie
+    outside the range of the neighbours behind and before them by more than that range:
+    so no turn, corner or jump is. What comes as the other channel is bent is its
+    answer, or cause.
 
     Parameters
     ----------
@@ -41,33 +41,41 @@ def lone_samples(record: Record) -> dict[str, list[tuple[int, int]]]:
     }
 
 
-def _bent(values: FloatArray, rounding: float = 0.0) -> Mask:
-    """Mark what differs from the mean of the two samples beside it."""
+def _bent(values: FloatArray) -> Mask:
+    """Mark what differs from the mean of the two samples beside it.
+
+    Of a channel that is coarsely digitized most bends are zero, and so is their
+    deviation: its rounding is what is as small as that and comes often. A staircase
+    bends rarely, twice at a step.
+    """
     bend = np.zeros(len(values))
     bend[1:-1] = values[1:-1] - (values[2:] + values[:-2]) / 2
-    least = max(FAR_DEVIATIONS * usual_deviation(bend), rounding)
-    return np.asarray(np.abs(bend) > least)
+    bent = np.abs(bend) > FAR_DEVIATIONS * usual_deviation(bend)
+    rounded = bent & (np.abs(bend) <= COARSE * smallest_step(values))
+    return np.asarray(bent & ~rounded if rounded.mean() > 2 * FEW else bent)
 
 
 def _lone(values: FloatArray, other: Mask) -> list[tuple[int, int]]:
     """Give the lone stretches of a channel, by where the other one is bent."""
     lone = np.zeros(len(values), dtype=np.bool_)
     rounding = COARSE * smallest_step(values)
-    places = np.flatnonzero(_bent(values, rounding))
-    for group in np.split(places, np.flatnonzero(np.diff(places) > LONGEST) + 1):
+    places = np.flatnonzero(_bent(values))
+    for group in np.split(places, np.flatnonzero(np.diff(places) > MOST) + 1):
         if not len(group):
             continue
         first, behind = int(group[0]), int(group[-1]) + 1
         before, after = values[max(first - NEAR, 0) : first], values[behind:][:NEAR]
         at_an_end = min(len(before), len(after)) < NEAR
         # The sound sample on either side is bent too.
-        too_long = behind - first > LONGEST + 2
-        if at_an_end or too_long or other[first:behind].any():
+        too_many = len(group) > MOST + 2
+        if at_an_end or too_many or other[first:behind].any():
             continue
         near = np.concatenate([before, after])
         span = max(float(np.ptp(near)), rounding)
         own = values[first:behind]
         out = (own < near.min() - span) | (own > near.max() + span)
-        if out.any():
-            lone[first + (not out[0]) : behind - (not out[-1])] = True
+        # A single one between two of them is within the range by chance.
+        out[1:-1] |= out[:-2] & out[2:]
+        if np.count_nonzero(out) <= MOST:
+            lone[first:behind] = out
     return runs(lone) if lone.mean() <= FEW else []

@@ -136,6 +136,9 @@ def _misfit(dataset: Dataset, base: Base) -> Finding:
         if left**2 <= LOOSE * base.left**2:
             told |= {"would": 100 * left / base.moves, "unit": output.unit}
             told |= dict(zip(("offset", "gain"), numbers, strict=False))
+            told["added"] = ""
+            if topic == "units" and _needs_offset(base, left):
+                told["added"] = f", with {told['offset']:.3g} {output.unit} added"
             if topic == "units" and told["gain"] > 0:
                 likely = by_thousands(output.unit, told["gain"])
                 if likely is not None:
@@ -144,6 +147,12 @@ def _misfit(dataset: Dataset, base: Base) -> Finding:
                     return finding("misfit header", lines, likely=likely, **told)
             return finding(f"misfit {topic}", **told)
     return finding("misfit", **told)
+
+
+def _needs_offset(base: Base, left: float) -> bool:
+    """Tell whether another gain leaves less with an offset, by what is worth a word."""
+    alone = _would_leave(base, "gain")[1]
+    return left**2 <= (1 - WORTH_A_WORD) * alone**2
 
 
 def _would_leave(base: Base, topic: str) -> tuple[list[float], float]:
@@ -158,6 +167,8 @@ def _would_leave(base: Base, topic: str) -> tuple[list[float], float]:
         held = np.zeros(len(shape))
         if topic == "offset":
             columns, held = columns[:1], shape
+        if topic == "gain":
+            columns = columns[1:]
         tables.append(np.column_stack(columns)[counted])
         outputs.append(item.record.y[counted])
         fixed.append(held[counted])

@@ -34,7 +34,8 @@ def clock_of_part(
     Raises
     ------
     InputError
-        If it is uneven all over.
+        If it is uneven all over, or samples enough for a record come in other steps
+        one after the other: another sampling rate is no lost row.
     """
     unit = seconds("--time-unit", signals.time_unit)
     time = part.columns[signals.time or ""].values * unit
@@ -42,10 +43,15 @@ def clock_of_part(
         return ticks_of(time, part.where, part.table), []
     except InputError:
         jumps = jumps_of(time)
-        ends = [0, *jumps, len(time)]
-        long = [(a, b) for a, b in pairwise(ends) if b - a >= SHORTEST]
-        if not jumps or sum(b - a for a, b in long) < MOST_LOST * len(time):
+        parts = list(pairwise([0, *jumps, len(time)]))
+        there = np.isfinite(time)
+        times = np.array([np.count_nonzero(there[a:b]) for a, b in parts])
+        kept = int(times[times >= SHORTEST].sum())
+        in_a_row = max((b - a for a, b in runs(times == 1)), default=0)
+        too_many = kept < MOST_LOST * np.count_nonzero(there)
+        if not jumps or too_many or in_a_row >= SHORTEST:
             raise
+    long = [parts[k] for k in np.flatnonzero(times >= SHORTEST)]
     found = [ticks_of(time[a:b], part.where, part.table, a) for a, b in long]
     return max(found, key=lambda ticks: (ticks.rounded, ticks.tolerance)), jumps
 
@@ -99,7 +105,7 @@ def pieces_of(
         what = user.given.missing or user.ask(question, ways, "--missing", None)
         u = part.columns[signals.input].values
         cut = cannot_be_bridged(u) if what == "interpolate" else bad
-    entries, left = [], np.count_nonzero(~bad)
+    entries, left = [], int(np.count_nonzero(~bad))
     for first, behind in _between(~cut, jumps):
         there = first + np.flatnonzero(~bad[first:behind])
         if len(there) < SHORTEST:
@@ -116,7 +122,12 @@ def pieces_of(
         "split at long gaps": what == "interpolate" and cut.any(),
         "short pieces": left > 0,
     }
-    numbers = {"pieces": len(entries), "left": left, "shortest": SHORTEST}
+    numbers: dict[str, Any] = {
+        "pieces": _counted(len(entries), "piece"),
+        "left": _counted(left, "sample"),
+        "are": "is" if left == 1 else "are",
+        "shortest": SHORTEST,
+    }
     if jumps:
         more = f" and {len(jumps) - 1} more" * (len(jumps) > 1)
         place = part.table.place(jumps[0])
@@ -124,6 +135,10 @@ def pieces_of(
     said += [words(topic, **numbers) for topic, true in holds.items() if true]
     user.notes.append("; ".join(said))
     return entries
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}{'s' * (count != 1)}"
 
 
 def _between(kept: Mask, jumps: Sequence[int]) -> list[tuple[int, int]]:

@@ -11,7 +11,7 @@ from hystbench.inspection.facts import Facts
 from hystbench.inspection.findings import Finding, finding
 from hystbench.inspection.lone import lone_samples
 from hystbench.record import Record
-from hystbench.sentences import listed
+from hystbench.sentences import MAKE_MISSING, listed
 
 UNEVEN_SHARE = 0.01
 """Share of a step: a clock that is less even than that is told."""
@@ -39,18 +39,18 @@ def record_findings(
         yield finding("stuck", paste=[line], **vars(facts))
     given = ("input", record.input, record.u), ("output", record.output, record.y)
     for key, channel, values in given:
-        if key == "input" and facts.input.kind in ("steps", "ramps"):
-            continue  # on purpose
         said = vars(channel) | {"channel": channel.name, "name": facts.name}
         if lone[key]:
             # The file is to change, and so is its SHA-256.
             line = entry_with(dataset, facts.name, missing="interpolate", sha256=None)
             places = _places(dataset, record.name, lone[key])
-            made = finding("lone", [line], places=places, **said)
+            made = finding("lone", [line], places=places, mend=MAKE_MISSING, **said)
             # Not with those of other records: each has its own places.
             yield replace(made, topic=f"lone {key} of {facts.name}")
         if facts.stuck or key in dataset.stands_still(facts.name):
             continue
+        if key == "input" and facts.input.kind in ("steps", "ramps"):
+            continue  # it stands still on purpose
         for flat in flats(values):
             if any(first <= flat.first < behind for first, behind in lone[key]):
                 continue

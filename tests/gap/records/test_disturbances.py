@@ -1,4 +1,4 @@
-"""Power in samples far off from the others, and what differs between periods."""
+"""Power in lone samples, far off the others, and what differs between periods."""
 
 import numpy as np
 import pytest

@@ -60,7 +60,7 @@ def test_a_gap_up_to_the_highest_frequency_makes_the_bound_larger_not_smaller():
     u = rng.standard_normal(4000)
     noise = 0.01 * rng.standard_normal(4000)
     floor = noise_floor([compare("noise", u, 6 * u + u**2 + noise, 6 * u)])
-    # A square of the input is foretold, and is no noise.
+    # A square of the input is predicted, and is no noise.
     assert floor.rms < 2 * np.std(noise)
     assert floor.method == "upper-bound"
     assert floor.rms > 0.01

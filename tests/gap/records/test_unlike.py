@@ -80,6 +80,32 @@ def test_another_gain_at_another_amplitude_is_no_wrong_factor():
     assert unlike_the_others(made(pairs)) == []
 
 
+@pytest.mark.parametrize("bias", [-3.0, 0.5])
+def test_another_gain_about_another_mean_is_no_wrong_factor(bias):
+    # The slope of a square is twice the bias: it has its sign, and a sixth of its size.
+    inputs = [b + 0.3 * wave(k) for k, b in enumerate((3.0, 3.0, 3.0, bias))]
+    # Each begins in balance.
+    devices = [u[0] ** 2 + lagged(u**2 - u[0] ** 2) for u in inputs]
+    pairs = [
+        (u, noisy(y, k)) for k, (u, y) in enumerate(zip(inputs, devices, strict=True))
+    ]
+    assert unlike_the_others(made(pairs)) == []
+
+
+def test_a_sign_is_told_of_records_about_one_mean():
+    pairs = [(3.0 + u, y) for u, y in spoilt(signals(), 2, lambda u, y: (u, -y))]
+    assert [found.name for found in unlike_the_others(made(pairs))] == ["r2"]
+
+
+def test_a_record_that_stands_still_where_it_is_looked_at_hides_no_other():
+    pairs = spoilt(signals(), 2, lambda u, y: (u, -y))
+    still = np.zeros(len(pairs[0][0]))
+    pairs += [(pairs[0][0], still), (still, pairs[1][1])]
+    with np.errstate(all="raise"):
+        found = unlike_the_others(made(pairs))
+    assert [item.name for item in found] == ["r2"]
+
+
 def test_two_records_do_not_tell_which_is_wrong():
     assert unlike_the_others(made(spoilt(signals()[:2], 0, lambda u, y: (u, -y)))) == []
 

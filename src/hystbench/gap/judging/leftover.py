@@ -39,7 +39,7 @@ class Leftover:
     output: float = 0.0
     """Mean square of the measured output about its mean, in floors."""
     lone: float = 0.0
-    """Share of the power of what is left that stands in samples far off."""
+    """Share of the power of what is left that stands in lone samples."""
     unrepeated: float | None = None
     """Power of what is left that differs between periods of the same input, above the
     floor and in floors; none where no record repeats."""
@@ -142,7 +142,7 @@ class Leftover:
         if self.far_off:
             return (
                 f"{100 * self.lone:.0f} % of the power that is left on the fit records "
-                "stands in lone samples, far off from the others, which no effect of "
+                "stands in lone samples, far off the others, which no effect of "
                 "the vocabulary does"
             )
         if self.unrepeated is None or self.unrepeated <= max(

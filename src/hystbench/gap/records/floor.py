@@ -42,7 +42,7 @@ class Floor:
     """RMS of the white noise on the output, in the output's unit; above zero."""
     method: Method
     """Differences of periods; stated by the dataset; or the high, unexcited part of the
-    residual's spectrum, as far as no black box foretells it. The last is a bound: what
+    residual's spectrum, as far as no black box predicts it. The last is a bound: what
     a gap leaves up there, and no black box knows, is taken for noise."""
 
 
@@ -53,7 +53,7 @@ def noise_floor(compared: Sequence[Compared], declared: float | None = None) -> 
     is subtracted from the second half: no model enters, and what the input causes
     cancels, gap included. Where no record holds two whole periods, the residual is
     read above the band that the input excites; and it is no more than a black box
-    leaves on folds, which foretells the gap and no noise.
+    leaves on folds, which predicts the gap and no noise.
 
     Parameters
     ----------
@@ -83,9 +83,9 @@ def noise_floor(compared: Sequence[Compared], declared: float | None = None) -> 
     bound = float(np.median([_from_residual(item) for item in compared]))
     if sum(len(item.record) for item in compared) < SHORTEST:
         return Floor(bound, "upper-bound")
-    # What the input foretells is no noise: a broad gap reaches above the band too.
-    foretold = black_box(compared, 0.0).left_on_folds
-    least = min(_at_least(item.record.y, foretold) for item in compared)
+    # What the input predicts is no noise: a broad gap reaches above the band too.
+    predicted = black_box(compared, 0.0).left_on_folds
+    least = min(_at_least(item.record.y, predicted) for item in compared)
     return Floor(min(bound, least), "upper-bound")
 
 

@@ -1,4 +1,4 @@
-"""Samples that stand alone, far off from the others: dropouts, spikes, lost words."""
+"""Lone samples, far off the others: dropouts, spikes, lost words."""
 
 from __future__ import annotations
 
@@ -9,12 +9,9 @@ import numpy as np
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.thresholds import FOREIGN
 from hystbench.record import FloatArray, Mask
-from hystbench.sentences import listed
+from hystbench.sentences import MAKE_MISSING, listed
 
-MEND = (
-    "If they are no motion of the device, empty their cells and write "
-    "'missing: interpolate' of the record"
-)
+MEND = f"If they are no motion of the device, {MAKE_MISSING}"
 
 FAR_DEVIATIONS = 8.0
 """Robust standard deviations: of normal noise no sample is so far off."""
@@ -23,12 +20,12 @@ TO_SIGMA = 1.4826
 
 
 def usual_deviation(residual: FloatArray) -> float:
-    """Give the standard deviation that a residual has but for samples far off."""
+    """Give the standard deviation that a residual has but for lone samples."""
     return TO_SIGMA * float(np.median(np.abs(residual - np.median(residual))))
 
 
 def far_off(residual: FloatArray) -> Mask:
-    """Tell which samples of a residual stand far off from the others.
+    """Tell which samples of a residual are lone: far off the others.
 
     A record is held against its own median absolute deviation; one more than half of
     which is a single value says nothing.
@@ -43,7 +40,7 @@ def far_off(residual: FloatArray) -> Mask:
 
 
 def lone_share(residuals: Sequence[FloatArray]) -> float:
-    """Give the share of the power of residuals that stands in samples far off.
+    """Give the share of the power of residuals that stands in lone samples.
 
     Parameters
     ----------
@@ -58,7 +55,7 @@ def lone_share(residuals: Sequence[FloatArray]) -> float:
 
 
 def much_stands_alone(lone: float, after: float, before: float) -> bool:
-    """Tell whether samples far off hold a share of a gap that no effect does.
+    """Tell whether lone samples hold a share of a gap that no effect does.
 
     Parameters
     ----------
@@ -71,7 +68,7 @@ def much_stands_alone(lone: float, after: float, before: float) -> bool:
 
 
 def lone_words(kind: str, compared: Sequence[Compared], lone: float) -> str:
-    """Say where the samples far off are, record by record, and what mends it.
+    """Say where the lone samples are, record by record, and what mends it.
 
     Parameters
     ----------
@@ -91,5 +88,5 @@ def lone_words(kind: str, compared: Sequence[Compared], lone: float) -> str:
             places.append(f"{record.name} ({len(there)} {word} from {since:.4g} s on)")
     return (
         f"{100 * lone:.0f} % of the power that is left on the {kind} records stands in "
-        f"samples far off from the others: {listed(places)}. {MEND}"
+        f"lone samples, far off the others: {listed(places)}. {MEND}"
     )

@@ -2,7 +2,7 @@
 
 Columns that are exchanged in one file, or a sign or a factor of ten that is wrong
 there. Nothing of the record itself tells that: a linear model of the other records
-does, as it foretells the record with its columns exchanged, or times a factor.
+does, as it predicts the record with its columns exchanged, or times a factor.
 """
 
 from collections.abc import Sequence
@@ -93,27 +93,36 @@ class _Products(NamedTuple):
 
 
 def unlike_the_others(records: Sequence[Record]) -> list[Unlike]:
-    """Find records that the others would foretell if they were mended.
+    """Find records that the others would predict if they were mended.
 
     Records are left out, fewer than half, until a linear model of the others but one
     leaves at most half of the rms of that one. Of each that was left out more than
     half is left as it is, and less than half of that, and of its output, with the
     columns exchanged or times a factor. A factor above zero has to be nearer to ten
-    than to one: a nonlinear device has another gain at another amplitude.
+    than to one: a nonlinear device has another gain at another amplitude. So it has
+    about another mean, and there even another sign: of a record whose input is, by its
+    mean, outside the range of the others no factor is told.
 
     Parameters
     ----------
     records : sequence of Record
-        Fewer than three tell nothing.
+        Fewer than three tell nothing. One that stands still where it is looked at is
+        left out.
     """
-    if len(records) < 3:
+    looked_at = [ScoredSamples.of([record], ROWS).positions[0] for record in records]
+    moving = [
+        (record, own)
+        for record, own in zip(records, looked_at, strict=True)
+        if np.ptp(record.u[own]) > 0 and np.ptp(record.y[own]) > 0
+    ]
+    if len(moving) < 3:
         return []
+    records, rows = zip(*moving, strict=True)
     step = min(record.dt for record in records)
     longest = max(record.dt * len(record) for record in records)
     slowest_clock = max(record.dt for record in records)
     lags = np.geomspace(step, max(longest / 3, 2 * step), LOW_PASSES)
     modes = np.geomspace(3 / longest, max(0.2 / slowest_clock, 6 / longest), MODES)
-    rows = [ScoredSamples.of([record], ROWS).positions[0] for record in records]
     of = [
         _products(x.u, x.y, x.dt, lags, modes, own)
         for x, own in zip(records, rows, strict=True)
@@ -127,9 +136,12 @@ def unlike_the_others(records: Sequence[Record]) -> list[Unlike]:
         turned = _products(record.y, record.u, record.dt, lags, modes, rows[k])
         left, exchanged = of[k].left(weights), turned.left(weights)
         factor, times = of[k].scaled(weights)
+        about = [records[j].u[rows[j]] for j in rest]
+        low, high = min(map(np.min, about)), max(map(np.max, about))
+        comparable = low <= np.mean(record.u[rows[k]]) <= high
         strange = factor < 0 or TEN <= max(factor, 1 / factor) < THOUSAND
         # Exchanged columns have no free number: they may leave twice the rms.
-        turn = LOOSE * exchanged <= times or not strange
+        turn = LOOSE * exchanged <= times or not (comparable and strange)
         least = exchanged if turn else times
         if left > LOOSE and least <= LOOSE * min(left, 1.0):
             numbers = 1.0 if turn else factor, float(np.sqrt(left))
@@ -138,7 +150,7 @@ def unlike_the_others(records: Sequence[Record]) -> list[Unlike]:
 
 
 def _alike(of: Sequence[_Products]) -> list[int]:
-    """Give the records that foretell each other; none where half of them do not."""
+    """Give the records that predict each other; none where half of them do not."""
     rest = list(range(len(of)))
 
     def left_of_each(chosen: Sequence[int]) -> float:
@@ -172,7 +184,7 @@ def _products(
     table = np.array(columns).T
     table -= table.mean(axis=0)
     output = y[rows] - y[rows].mean()
-    power = max(float(output @ output), np.finfo(float).tiny)
+    power = float(output @ output)
     return _Products(table.T @ table / power, table.T @ output / power)
 
 
