@@ -178,6 +178,7 @@ CONTENT = {
     "reason": "none is there",
     "effects": [],
     "withdrawn": None,
+    "warnings": [],
 }
 
 
