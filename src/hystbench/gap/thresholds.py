@@ -68,7 +68,7 @@ how far the confidences are off by it is measured by the contest.
 """
 BY_CHANCE = 0.05
 """Significance level of tests: what chance gives more often than this counts as
-chance. A name of several that is less probable than that is next to excluded.
+chance. A name that is less probable than that is next to excluded.
 
 The usual level.
 """

@@ -203,13 +203,14 @@ def confidence(
 
 
 def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
-    """Say that several names are likelier wrong than right; or nothing.
+    """Say that names are likelier wrong than right; or nothing.
 
-    If no name is likelier right than wrong, they stand in for each other, and for what
-    they are together. If one is next to excluded, so are the others, which were found
-    beside it. One name alone is what explains the gap best, however little its numbers
-    are known. A name counts with those that it cannot be told from: one of them is
-    right. A wrong shape of the base's own hysteresis makes no other name likelier.
+    If none of several is likelier right than wrong, they stand in for each other, and
+    for what they are together. If one is next to excluded, so are the others, which
+    were found beside it. One name alone is what explains the gap best, however little
+    its numbers are known, unless it is next to excluded. A name counts with those that
+    it cannot be told from: one of them is right. A wrong shape of the base's own
+    hysteresis makes no other name likelier.
 
     Parameters
     ----------
@@ -222,14 +223,17 @@ def likelier_wrong(effects: Sequence[Mapping[str, Any]]) -> str:
         for item, value in zip(effects, sure, strict=True)
         if item["name"] != SHAPE
     ]
-    if len(sure) < 2 or (max(missing) >= MOST and min(sure) >= BY_CHANCE):
+    alone = len(sure) < 2
+    if min(sure, default=1.0) >= BY_CHANCE and (alone or max(missing) >= MOST):
         return ""
     told = " and ".join(f"{x['name']} {x['confidence']:.2f}" for x in effects)
+    if alone:
+        return f"the name is next to excluded: {told}"
     if max(missing) < MOST:
         of_base = "" if len(missing) == len(sure) else "but for the base's own shape "
         return f"{of_base}no name is likelier right than wrong: {told}"
     least = effects[int(np.argmin(sure))]["name"]
-    return f"the names stand together, and {least} is next to excluded: {told}"
+    return f"{least} is next to excluded, and the others were found beside it: {told}"
 
 
 def error_of(
