@@ -162,7 +162,7 @@ def test_the_command_passes_what_was_asked(tiny, tmp_path, monkeypatch):
         return SimpleNamespace(
             effects=(),
             verdict="no-gap",
-            content={"reason": "none is there", "withdrawn": None},
+            content={"reason": "none is there", "withdrawn": None, "warnings": []},
             save=lambda out, report: None,
             closed=SimpleNamespace(decision=decision),
         )

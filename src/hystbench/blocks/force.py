@@ -35,7 +35,7 @@ class Motion(NamedTuple):
     force: FloatArray
     """Sum of the forces inside."""
     shown: FloatArray | None = None
-    """The output, where the coordinate alone does not tell it."""
+    """The output of what moved so, where it is known already."""
 
 
 class Dynamics(HeldBlock):
@@ -261,7 +261,7 @@ class Driven:
         motions = self.host.motions(signals, dts, self.forces, others, self.pieces)
         hosts = (self.host, *(other.host for other, _ in others))
         return [
-            tuple(map(host.given, own))
+            tuple(x.shown if x.shown is not None else host.given(x) for x in own)
             for host, own in zip(hosts, motions, strict=True)
         ]
 

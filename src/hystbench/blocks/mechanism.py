@@ -71,8 +71,6 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
 
     def given(self, motion: Motion) -> FloatArray:
         """Give the output of a motion, which may have run away."""
-        if motion.shown is not None:
-            return motion.shown
         with np.errstate(over="ignore", invalid="ignore"):
             if self.output == "force":
                 spring = self.stiffness * motion.position + motion.force

@@ -118,15 +118,6 @@ def test_a_base_that_a_constant_beats_on_hold_out_records_is_told():
     assert worse_than_a_constant(1.5, rms_of_a_constant(evidence, 1.0), "um") == []
 
 
-def test_no_name_stands_beside_what_a_constant_does_better_than():
-    taken = withdrawal(content(1.5, 1.4), still=1.0)
-    assert taken["names"] == ["creep"]
-    assert "leaves 1.4 um rms there, and a constant" in taken["why"]
-    assert withdrawal(content(1.5, 0.9), still=1.0) is None
-    # A re-tuned base has no name that could be wrong.
-    assert withdrawal(content(1.5, 1.4, "parameters", ()), still=1.0) is None
-
-
 def spoilt(tmp_path, name, spoil):
     """Write the tiny device with nothing hidden, one record of it spoilt."""
     data, base = write_tiny(tmp_path)

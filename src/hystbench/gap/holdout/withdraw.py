@@ -62,8 +62,8 @@ class Decided:
 def show_on_hold_out(decided: Decided, evidence: Evidence) -> Outcome:
     """Show a decision on the hold-out records; take back what is worse there.
 
-    It is worse where it leaves more than the base, than the hysteresis that was
-    identified before any effect was known, or than a constant.
+    It is worse where it leaves more than the base, or than the hysteresis that was
+    identified before any effect was known.
     """
     first, fitted, built_in = decided.first, decided.fitted, decided.built_in
     shown = score_hold_out(fitted, evidence.hold_out)
@@ -76,7 +76,7 @@ def show_on_hold_out(decided: Decided, evidence: Evidence) -> Outcome:
             f"; as it was first identified it leaves {sized(least, content['unit'])} "
             "rms of the hold-out records"
         )
-    taken = withdrawal(content, least, still)
+    taken = withdrawal(content, least)
     if taken is not None:
         # The ladder and what runs away stay: they tell why.
         rung = fitted.rungs[0]
@@ -212,7 +212,7 @@ def first_figure(content: Mapping[str, Any]) -> str:
 
 
 def withdrawal(
-    content: Mapping[str, Any], least: float = np.inf, still: float = np.inf
+    content: Mapping[str, Any], least: float = np.inf
 ) -> dict[str, Any] | None:
     """Tell what the hold-out records take back, if the model is worse on them.
 
@@ -222,8 +222,6 @@ def withdrawal(
         What gap.json would hold if nothing were taken back.
     least : float
         RMS residual of another base that it must not be worse than either.
-    still : float
-        That of a constant: names beside what does worse explain nothing.
 
     Returns
     -------
@@ -236,19 +234,12 @@ def withdrawal(
     gap, unit = content["gap"], content["unit"]
     before, after = min(gap["before"], least), gap["after"]
     names = [item["name"] for item in content["effects"]]
-    if not names:
-        still = np.inf
-    if after is not None and after**2 <= (1 + AS_GOOD) * min(before, still) ** 2:
+    if after is not None and after**2 <= (1 + AS_GOOD) * before**2:
         return None
     what = " and ".join(names) or "the re-tuning of the base"
     if after is None:
         lost = " and ".join(item["record"] for item in content["runs_away"])
         shown = f"with it the model cannot be run to the end of {lost}"
-    elif after**2 <= (1 + AS_GOOD) * before**2:
-        shown = (
-            f"the model leaves {sized(after, unit)} rms there, and a constant, the "
-            f"mean output of the fit records, {sized(still, unit)}"
-        )
     else:
         grown = f"{before:.3g} to {sized(after, unit)} rms"
         shown = f"with it the gap grows there, from {grown}"
