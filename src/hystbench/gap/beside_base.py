@@ -18,7 +18,7 @@ from hystbench.gap.inside.host import Kind
 from hystbench.gap.inside.named_inside import Inside
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.thresholds import FURTHER, PAYS
+from hystbench.gap.thresholds import FURTHER, LOOSE, PAYS
 from hystbench.model import Model
 
 
@@ -135,6 +135,12 @@ def stays(found: BesideBase, again: BesideBase, re_tuned: bool = False) -> bool:
     if alike and re_tuned and _by_laws_of_fewer_numbers(found, again):
         return False
     return not alike or value >= found.value(score) - margin
+
+
+def leaves_much(state: ModelState, start: ModelState, floor: Floor) -> bool:
+    """Tell whether effects leave more of the base's gap than a name may."""
+    square = floor.rms**2
+    return state.power(square) > LOOSE * start.power(square)
 
 
 def _by_laws_of_fewer_numbers(found: BesideBase, again: BesideBase) -> bool:

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 
 from hystbench.gap.bases.gpi import identified_gpi
-from hystbench.gap.beside_base import BesideBase, stays
+from hystbench.gap.beside_base import BesideBase, leaves_much, stays
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.freed_record import freed_of_laws, freed_of_slow_law
 from hystbench.gap.naming.with_own_values import without
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.thresholds import LOOSE
 from hystbench.model import Model
 
 TURNS = 3
@@ -57,9 +56,8 @@ def identified_again(
 
 def _laws_leave_much(found: BesideBase) -> bool:
     """Tell whether laws leave more of the gap than a name may; a path is no law."""
-    state, floor = found.named.state, found.floor.rms**2
-    laws = without(state, state.paths)
-    return laws.power(floor) > LOOSE * found.start.power(floor)
+    state = found.named.state
+    return leaves_much(without(state, state.paths), found.start, found.floor)
 
 
 def _in_turns(

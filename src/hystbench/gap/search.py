@@ -11,7 +11,7 @@ from hystbench.gap.bases.gpi import again_words, is_another
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import found_with, is_identified
 from hystbench.gap.bases.roughly_known import roughly_known
-from hystbench.gap.beside_base import BesideBase, stays
+from hystbench.gap.beside_base import BesideBase, leaves_much, stays
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.fitting.augmented_model import augmented
@@ -44,7 +44,6 @@ from hystbench.gap.naming.with_own_values import (
 )
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.thresholds import LOOSE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Record
@@ -317,7 +316,7 @@ class GapSearch:
         if (
             not _leaves_little(inside, floor)
             and self.evidence.own_offsets
-            and _leaves_much(in_a_chain().state, *whole)
+            and leaves_much(in_a_chain().state, *whole)
         ):
             start, inside, own = apart_inside(start, inside, floor.rms, look, say)
         return start, floor, inside, own
@@ -348,17 +347,11 @@ def _apart(found: BesideBase, asked: Asked) -> BesideBase:
     return replace(found, start=start, chain=chain, inside=inside, own=own)
 
 
-def _leaves_much(state: ModelState, start: ModelState, floor: Floor) -> bool:
-    """Tell whether effects leave more of the base's gap than a name may."""
-    square = floor.rms**2
-    return state.power(square) > LOOSE * start.power(square)
-
-
 def _leaves_little(inside: Inside | None, floor: Floor) -> bool:
     """Tell whether forces leave so little that no record needs numbers of its own."""
     if inside is None:
         return False
-    return not _leaves_much(inside.named.state, inside.start, floor)
+    return not leaves_much(inside.named.state, inside.start, floor)
 
 
 def _why_enough(

@@ -155,12 +155,7 @@ def _slow_laws(
     span = record.dt * len(record)
     if "creep" in offered:
         for part in CREEPS:
-            creep = partial(
-                LogarithmicCreep,
-                first_time_s=span / part / SPREAD,
-                last_time_s=span / part,
-            )
-            yield partial(_creep, creep), (0.0, MOST_CREEP)
+            yield partial(_creep, span / part), (0.0, MOST_CREEP)
     if "thermal-drift" in offered:
         # Of the output's range, where the input's square stays at its largest.
         one = float(np.ptp(record.y) / np.max(record.u**2))
@@ -169,8 +164,10 @@ def _slow_laws(
             yield heats, (-1.0, 1.0)
 
 
-def _creep(law: Callable[..., Block], size: float) -> Block:
-    return law(magnitude=size)
+def _creep(longest_s: float, size: float) -> Block:
+    return LogarithmicCreep(
+        magnitude=size, first_time_s=longest_s / SPREAD, last_time_s=longest_s
+    )
 
 
 def _heat(time_constant_s: float, one: float, size: float) -> Block:
