@@ -9,6 +9,7 @@ from hystbench.blocks.curve import finer
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.errors import InputError
 from hystbench.gap import search as search_module
+from hystbench.gap.bases.linear import CURVE, IdentifiedModel
 from hystbench.gap.beside_base import BesideBase
 from hystbench.gap.effects import effects
 from hystbench.gap.experiment import tell_apart
@@ -28,8 +29,9 @@ from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
 from hystbench.gap.thresholds import FURTHER, PAYS
 from hystbench.model import Model
+from hystbench.quantities import Quantities
 from tests.gap.made import CURRENT, DISPLACEMENT
-from tests.gap.searched import search
+from tests.gap.searched import among, search
 from tests.gap.small import block, hysteresis, measured
 
 
@@ -304,3 +306,28 @@ def test_forces_have_to_be_fewer_than_what_leaves_nothing(alike, effects, most):
     for bends in (path, plays):
         free = replace(named, state=replace(state, added=(bends,)))
         assert most_inside(free, floor.rms) == np.inf
+
+
+def test_a_path_that_leaves_nothing_is_no_reason_to_try_no_forces(monkeypatch):
+    """Beside a base that was found behind a curve a chain is tried first."""
+    curved = (block("sensor-nonlinearity", quadratic=0.2, cubic=0.0),)
+    gain = (block("gain", value=12.0),)
+    made = [
+        replace(one, y=one.y + 0.5 * np.linspace(0.0, 1.0, len(one)) ** 2)
+        for one in measured(gain, 0.02)
+    ]
+    asked, tried = [], ("drift", "sensor-nonlinearity")
+
+    def forces(*args, **more):
+        asked.append(args)
+
+    monkeypatch.setattr(search_module, "named_inside", forces)
+    base = IdentifiedModel("base", CURRENT, DISPLACEMENT, gain, found_with=CURVE)
+    takes = Quantities("force", "position")
+    about = {"quantities": takes, "vocabulary": among(*tried), "declared": 0.02}
+    search("made", made, base, **about)
+    assert asked
+    # A law that leaves nothing is a reason.
+    asked.clear()
+    search("made", measured((*gain, *curved), 0.02), base, **about)
+    assert not asked

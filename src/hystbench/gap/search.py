@@ -235,6 +235,8 @@ class GapSearch:
         if known or (quantities is not None and not identified):
             chain = in_a_chain(start, floor)
             enough = known and _why_enough(start, chain.state, floor, share)
+            if has_free_form(chain.state):  # it bends to what forces do
+                enough = ""
             if quantities and (enough or most_inside(chain, floor.rms) < 1):
                 say("no force could gain what matters, so none is tried inside")
                 quantities = None
