@@ -46,3 +46,9 @@ def test_naming_is_repeated_beside_a_re_tuned_base_for_a_law_of_many(records):
     exact = beside(records, PLAY)
     assert not exact.may_be_simpler()
     assert beside(records, PLAY, charge=17.0).may_be_simpler()
+
+
+def test_a_base_stays_where_the_other_was_scored_on_fewer_samples(records):
+    shorter = [record.cut(slice(1000, None)) for record in records]
+    for re_tuned in (False, True):
+        assert stays(beside(records, PLAY), beside(shorter, PLAY), re_tuned)

@@ -127,14 +127,17 @@ def stays(found: BesideBase, again: BesideBase, re_tuned: bool = False) -> bool:
     (:attr:`BesideBase.margin`). Numbers that were re-tuned are charged as an effect;
     timing is a matter of the records. Laws of many numbers bend to what such numbers
     do, so they are no rivals of laws of few that leave as little.
+
+    It stays too where the two were scored on more or fewer samples, as where leads were
+    left out of short records beside one of them: such scores do not compare.
     """
-    score = found.score_beside(again)
-    alike = len(again.start.sample) == len(found.start.sample)
-    value = again.value(score, re_tuned)
-    margin = found.margin if re_tuned else PAYS
-    if alike and re_tuned and _by_laws_of_fewer_numbers(found, again):
+    if len(again.start.sample) != len(found.start.sample):
+        return True
+    if re_tuned and _by_laws_of_fewer_numbers(found, again):
         return False
-    return not alike or value >= found.value(score) - margin
+    score = found.score_beside(again)
+    margin = found.margin if re_tuned else PAYS
+    return again.value(score, re_tuned) >= found.value(score) - margin
 
 
 def leaves_much(state: ModelState, start: ModelState, floor: Floor) -> bool:
@@ -145,11 +148,11 @@ def leaves_much(state: ModelState, start: ModelState, floor: Floor) -> bool:
 
 def _by_laws_of_fewer_numbers(found: BesideBase, again: BesideBase) -> bool:
     """Tell whether a re-tuned base needs no laws of many numbers for as little left."""
-    floor = found.floor.rms
+    square = found.floor.rms**2
     return (
         again.laws_of_many_numbers < found.laws_of_many_numbers
         and again.counts <= found.counts
-        and again.named.state.power(floor) <= found.named.state.power(floor)
+        and again.named.state.power(square) <= found.named.state.power(square)
     )
 
 
