@@ -1,5 +1,7 @@
 """A loop identified from a record in which an effect shows as well."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -164,6 +166,36 @@ def test_a_record_is_freed_of_its_creep(ends):
     assert left < 0.4 * np.std(slow.y - without)
     assert [x.name for x in freed.fit] == [x.name for x in evidence.fit]
     assert freed.fit[1:] == evidence.fit[1:]
+
+
+def test_samples_that_were_not_measured_hide_no_creep():
+    """Straight lines in their place are far from what any loop does."""
+    evidence, loop = stack()
+    base, _ = load_base("gpi", evidence)
+    *others, quick = evidence.fit
+    lost = (np.arange(len(quick)) // 100) % 3 == 1
+    y = np.where(lost, quick.y[0], quick.y)
+    quick = replace(quick, y=y, interpolated=lost)
+    freed = freed_of_slow_law(
+        base, replace(evidence, fit=(*others, quick)), NOISE, LAWS.offered
+    )
+    assert freed is not None
+    slow = evidence.slowest
+    without = loop.simulate(slow.u, DT)
+    left = np.std(freed.slowest.y - without)
+    assert left < 0.4 * np.std(slow.y - without)
+
+
+def test_a_law_that_acts_where_nothing_was_measured_leaves_the_record(heated):
+    evidence, base = heated
+    found = module.GapSearch(evidence, Asked(vocabulary=LAWS), None).beside(base)
+    slow, *others = evidence.fit
+    lost = np.ones(len(slow), dtype=bool)
+    lost[:2] = False  # a body takes seconds to get warm
+    fit = (replace(slow, interpolated=lost), *others)
+    assert freed_of_laws(base, found.named, evidence, found.floor.rms) is not None
+    missing = replace(evidence, fit=fit, identification="slow")
+    assert freed_of_laws(base, found.named, missing, found.floor.rms) is None
 
 
 def test_a_loop_that_fits_its_record_is_freed_of_nothing():

@@ -79,7 +79,7 @@ def freed_of_laws(
     bare = without(laws, {item.effect for item in laws.added})
     with_them, alone = (_simulated(base, own, slow) for own in (laws, bare))
     does = with_them - alone
-    if np.var(does) <= ABOVE_NOISE * floor_rms**2:
+    if _power(does, slow) <= ABOVE_NOISE * floor_rms**2:
         return None
     return _with(evidence, replace(slow, y=slow.y - does).as_measured)
 
@@ -106,7 +106,8 @@ def freed_of_slow_law(
     Evidence or None
         With the law that leaves least. None where the base is no loop that was
         identified, or leaves no more than noise; where it leaves most of that beside
-        each law as well; or where the best does no more to the record than noise does.
+        each law as well; or where the best does to the record no more than half of what
+        noise does, in power.
     """
     slow = evidence.slowest
     if not isinstance(base, IdentifiedGpi) or len(slow) < SLOW_SAMPLES:
@@ -137,7 +138,7 @@ def freed_of_slow_law(
         )
         if best.fun < least:
             least, freed = best.fun, replace(slow, y=_without(law(best.x), slow))
-    if np.var(slow.y - freed.y) <= ABOVE_NOISE * noise:
+    if _power(slow.y - freed.y, slow) <= ABOVE_NOISE * noise:
         return None
     return _with(evidence, freed.as_measured)
 
@@ -145,7 +146,12 @@ def freed_of_slow_law(
 def _left(records: Sequence[Record], outputs: Sequence[FloatArray]) -> float:
     """Give the power that is left of records, without what each has as its zero."""
     pairs = zip(records, outputs, strict=True)
-    return float(np.mean([np.var(record.y - y) for record, y in pairs]))
+    return float(np.mean([_power(record.y - y, record) for record, y in pairs]))
+
+
+def _power(signal: FloatArray, record: Record) -> float:
+    """Give the power of a signal about its mean, of a record's samples that count."""
+    return float(np.var(signal[record.counted]))
 
 
 def _slow_laws(
