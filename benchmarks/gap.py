@@ -101,7 +101,7 @@ def close(evidence: Evidence, model: str) -> str:
     with tempfile.TemporaryDirectory() as out:
         found = closed_gap(evidence, base)
         found.write(Path(out, "gap"), report=False)
-    content = found.decision.content
+    content = found.outcome.content
     named = "+".join(item["name"] for item in content["effects"])
     return named or str(content["verdict"])
 

@@ -10,10 +10,10 @@ def close_gap(evidence, base, folder, *, report=True, place="model", **asked):
     will_write(folder, evidence)
     closed = closed_gap(evidence, base, Asked(**asked), place)
     closed.write(folder, report)
-    return closed.decision
+    return closed
 
 
 def closed_beside(base, evidence, asked):
     """What is decided beside a base, by its file or by a word for it."""
     model, _ = load_base(str(base), evidence)
-    return closed_gap(evidence, model, asked).decision.content
+    return closed_gap(evidence, model, asked).outcome.content

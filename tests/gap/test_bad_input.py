@@ -182,8 +182,8 @@ def test_a_drive_that_saturates_is_named_once_the_dataset_says_that_it_is_real(r
     refused(rig, "one.csv", "clipped", "'stands_still: [output]'", records=records)
     shutil.rmtree(rig.out.parent / "rig")
     curves = ("drive-saturation", "saturation", "asymmetry", "dead-zone")
-    decision = rig(records=records, real=["output"], likely=curves)
-    (effect,) = decision.content["effects"]
+    closed = rig(records=records, real=["output"], likely=curves)
+    (effect,) = closed.outcome.content["effects"]
     assert effect["name"] == "drive-saturation"
     assert effect["parameters"]["limit"]["value"] == pytest.approx(limit, rel=0.02)
 
@@ -287,8 +287,8 @@ def test_records_of_different_rates_are_no_fault(rig):
     records = tables()
     records["two"] = records["two"][::2]
     records["three"] = records["three"][::4]
-    decision = rig(records=records)
-    assert len({one.dt for one in decision.state.records}) == 2
+    closed = rig(records=records)
+    assert len({one.dt for one in closed.decision.state.records}) == 2
     assert (rig.out / "gap.json").is_file()
 
 

@@ -129,7 +129,7 @@ def test_a_lag_shows_beside_a_loop_that_was_moving_before(loops, tmp_path):
     base = Model("plays", CURRENT, DISPLACEMENT, (PLAYS,))
     alike = among("drive-lag", "sensor-lag", "hysteresis-shape", "drift")
     found = close_gap(loops, base, tmp_path, report=False, vocabulary=alike)
-    assert [item["name"] for item in found.content["effects"]] == ["drive-lag"]
+    assert [item["name"] for item in found.outcome.content["effects"]] == ["drive-lag"]
     (held,) = loops.hold_out
     with (tmp_path / "holdout" / "held.csv").open(newline="") as stream:
         rows = list(csv.DictReader(stream))
@@ -150,8 +150,8 @@ def test_all_records_may_be_cut_out_of_a_motion(loops, tmp_path, periods):
     base = Model("plays", CURRENT, DISPLACEMENT, (PLAYS,))
     alike = among("drive-lag", "sensor-lag")
     found = close_gap(lone, base, tmp_path, report=False, vocabulary=alike)
-    assert "lag" in found.content["effects"][0]["name"]
-    assert np.isfinite(found.content["black_box"]["explained_on_folds"])
+    assert "lag" in found.outcome.content["effects"][0]["name"]
+    assert np.isfinite(found.outcome.content["black_box"]["explained_on_folds"])
 
 
 def test_a_column_of_a_simulator_begins_where_the_record_does(loops):

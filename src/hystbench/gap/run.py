@@ -38,7 +38,7 @@ from hystbench.model import Model
 from hystbench.record import Channel, Record
 
 DECISIVE = ("gap.json", "model.yaml")
-"""Written when the hold-out records were read, as these may take names back."""
+"""Written after the hold-out records were read: these may take names back."""
 SHOWN = (*DECISIVE, "holdout/*.csv")
 """The same with the records themselves."""
 FILES = (*DECISIVE, "curves.json", "report.html")
@@ -51,8 +51,8 @@ class Closed:
     """A gap that was searched and shown on hold-out records; nothing is written yet."""
 
     decision: Decision
-    """Its ``model`` and ``content`` are those after the hold-out records were read."""
     outcome: Outcome
+    """The decision after the hold-out records were read."""
     evidence: Evidence
 
     def write(self, folder: Path, report: bool = True) -> None:
@@ -112,9 +112,8 @@ def closed_gap(
     run_base(base, evidence.hold_out, evidence.input_hold)
     reserve_calls(evidence)
     decision, decided = decide(evidence, base, asked)
-    evidence, result = show(evidence, decided, asked.say)
-    decision = replace(decision, model=result.model, content=result.content)
-    return Closed(decision, result, evidence)
+    evidence, outcome = show(evidence, decided, asked.say)
+    return Closed(decision, outcome, evidence)
 
 
 def decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Decided]:

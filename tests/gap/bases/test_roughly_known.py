@@ -66,7 +66,7 @@ def device(frequency_hz, late):
 def closed(model, frequency_hz=38.5, late=LATE_BY, asked=LAGS):
     *fit, held = device(frequency_hz, late)
     evidence = Evidence("made", tuple(fit), (held,), noise_rms=NOISE)
-    return closed_gap(evidence, model, asked).decision
+    return closed_gap(evidence, model, asked).outcome
 
 
 def test_a_lag_is_named_beside_a_base_that_is_a_little_off():
@@ -178,7 +178,7 @@ def test_a_hysteresis_that_is_a_little_off_is_no_effect(lag, names):
     evidence = Evidence("made", tuple(fit), (held,))
     # Where there is nothing, no effect at all is named.
     asked = LAGS if names else Asked()
-    content = closed_gap(evidence, base(plays), asked).decision.content
+    content = closed_gap(evidence, base(plays), asked).outcome.content
     assert [item["name"] for item in content["effects"]] == names
     assert content["verdict"] == ("named" if names else "parameters")
     assert content["gap"]["after"] < 1.2 * NOISE * np.std(held.y)
@@ -189,7 +189,7 @@ def test_beside_a_hum_a_base_that_is_off_is_re_tuned_too():
     plays = PrandtlIshlinskii(thresholds=tuple(THRESHOLDS), weights=tuple(WEIGHTS))
     evidence = Evidence("made", tuple(fit), (held,))
     likely = Asked(vocabulary=among("mains-pickup", "drift", "sensor-lag", "creep"))
-    content = closed_gap(evidence, base(plays), likely).decision.content
+    content = closed_gap(evidence, base(plays), likely).outcome.content
     assert [x["name"] for x in content["effects"]] == ["mains-pickup"]
     assert content["base_parameters"]
 
@@ -267,7 +267,7 @@ def test_a_mode_and_a_gain_that_are_a_little_off_are_no_two_effects():
     *fit, held = swept(positioner(210.0, 1.0))
     evidence = Evidence("made", tuple(fit), (held,))
     asked = Asked(vocabulary=among("resonance", "calibration-error", "input-delay"))
-    content = closed_gap(evidence, positioner(211.5, 1.01), asked).decision.content
+    content = closed_gap(evidence, positioner(211.5, 1.01), asked).outcome.content
     assert content["effects"] == []
     assert content["verdict"] == "parameters"
     assert content["gap"]["after"] < 0.2 * content["gap"]["before"]

@@ -123,7 +123,7 @@ def test_the_spring_is_named_beside_both():
     about = first_halves(evidence())
     base, _ = load_base("linear", about)
     known = among("stiffness-hardening", "asymmetry", "input-delay")
-    found = closed_gap(about, base, Asked(vocabulary=known)).decision.content
+    found = closed_gap(about, base, Asked(vocabulary=known)).outcome.content
     assert [item["name"] for item in found["effects"]] == ["stiffness-hardening"]
     assert found["verdict"] == "named"
     assert found["record_values"]["kinds"] == ["offset"]

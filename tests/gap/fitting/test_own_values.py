@@ -218,7 +218,8 @@ def test_late_triggers_alone_are_no_gap_and_hold_out_records_have_theirs(tmp_pat
     data = write_folder(tmp_path / "rig", [*made(DELAYS), *held], noise_rms=NOISE)
     evidence = load_evidence(data)
     one, two = tmp_path / "one", tmp_path / "two"
-    content = close_gap(evidence, rig(), one, report=False, vocabulary=LIKELY).content
+    closed = close_gap(evidence, rig(), one, report=False, vocabulary=LIKELY)
+    content = closed.outcome.content
     assert (content["verdict"], content["effects"]) == ("no-gap", [])
     assert values_of(content)["share_of_gap_power"] == pytest.approx(1, abs=0.01)
     # As recorded it is 1 um and more; a base that is exact is told as exact.

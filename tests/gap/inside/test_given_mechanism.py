@@ -140,7 +140,7 @@ def test_a_given_mechanism_is_its_own_host(motions, tmp_path):
     path.write_text(LINEAR.replace(f"{SPRING}}}", f"{SPRING}, gain: 1.0}}"))
     evidence = evidence_of(motions, 0.01)
     base, _ = load_base(str(path), evidence)
-    model = closed_gap(evidence, base, FORCES).decision.model
+    model = closed_gap(evidence, base, FORCES).outcome.model
     mechanism, stiffness = model.chain
     assert replace(mechanism, hold="default") == base.chain[0]
     assert stiffness.cubic == pytest.approx(CUBIC, rel=0.05)

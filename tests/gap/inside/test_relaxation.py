@@ -48,7 +48,7 @@ def answer(vocabulary, noise, fades=0.0, damping=DAMPING, spring=SPRING):
 def test_a_force_that_fades_beside_a_known_spring_is_creep_and_no_hysteresis():
     """A loop of Bouc and Wen's has one number more, and comes near."""
     offered = ("creep", "hysteretic-force", "drag")
-    content = answer(offered, 5e-4, FADES).decision.content
+    content = answer(offered, 5e-4, FADES).outcome.content
     (found,) = content["effects"]
     assert (found["name"], found["place"]) == ("creep", "inside")
     assert found["blocks"] == ["relaxation-force"]
@@ -71,7 +71,7 @@ def test_a_mass_whose_numbers_are_a_little_off_lacks_no_mode_and_no_creep(off, n
 
     One that fades at once is a damper, and one that hardly fades a spring.
     """
-    content = answer(("resonance", "creep"), noise, **off).decision.content
+    content = answer(("resonance", "creep"), noise, **off).outcome.content
     assert (content["verdict"], content["effects"]) == ("parameters", [])
 
 

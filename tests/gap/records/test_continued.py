@@ -71,7 +71,7 @@ def test_a_base_of_long_memory_is_as_right_there_as_where_it_was_fitted(
     evidence = load_evidence(dataset(tmp_path, signals, BOTH))
     base, _ = load_base("linear", evidence)
     found = closed_gap(evidence, base, Asked())
-    assert found.decision.content["gap"]["before"] < 1.3 * NOISE
+    assert found.outcome.content["gap"]["before"] < 1.3 * NOISE
     (table,) = found.outcome.outputs
     assert len(table[0]) == LAST - FIRST
 

@@ -131,7 +131,7 @@ def test_a_gap_is_found_beside_records_with_holes(tmp_path):
     found = close_gap(
         load_evidence(data), load_model(base), tmp_path / "out", vocabulary=likely
     )
-    (effect,) = found.content["effects"]
+    (effect,) = found.outcome.content["effects"]
     assert effect["name"] == "drive-lag"
     number = effect["parameters"]["time_constant_s"]
     assert number["value"] == pytest.approx(LAG_S, rel=0.02)
