@@ -98,6 +98,7 @@ class BesideBase:
         many does. And where it pays for its numbers beside the effects, these may stand
         for a base that is off.
         """
+        # What is asked below is of one or two effects of few numbers.
         if self.counts > 2 or self.laws_of_many_numbers:
             return True
         state, score = self.named.state, self.score_beside(self)

@@ -33,7 +33,7 @@ from hystbench.gap.inside.named_inside import (
 )
 from hystbench.gap.inside.timing import better_timed, in_time_words, timed_as_named
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
-from hystbench.gap.naming.add_effects import Named, add_effects
+from hystbench.gap.naming.add_effects import NO_MORE_LEFT, Named, add_effects
 from hystbench.gap.naming.begun_otherwise import begun_as_named
 from hystbench.gap.naming.beside_forces import beside_forces
 from hystbench.gap.naming.poles_of_base import named_beside_them, with_poles_named
@@ -361,13 +361,13 @@ def _why_enough(
 ) -> str:
     """Say why no further effect could gain what matters; or nothing.
 
-    It is what ends a search in a chain as well: an effect has to take more than may
-    stay unnamed, and more than noise.
+    It would have to take more than may stay unnamed, as in a chain, and the noise would
+    have to be the lesser part of what is left.
     """
     square = floor.rms**2
     before, after = start.power(square), state.power(square)
     if after < square:
         return "less than the noise's own power is left above it"
     if after <= share * before:
-        return "no more is left than may stay unnamed"
+        return NO_MORE_LEFT
     return ""

@@ -1,9 +1,19 @@
 """The numbers that decide a verdict or a base: the meaning of each, and why its value.
 
 Fifteen of them are independent; where one is made of others, that is written. A
-sixteenth, ``WORTH_A_WORD``, decides only what is told. How thoroughly is searched
-(points of grids, finalists, rounds) stands where the search is: more of it finds the
-same name or a better one. Which samples of a record are sound stands in ``records``.
+sixteenth, ``WORTH_A_WORD``, decides only what is told.
+
+Other numbers decide too, but each in one place, and stand there:
+
+- How thoroughly is searched (points of grids, finalists, rounds; ``MOST_EFFECTS`` in
+  ``naming/rounds.py``): more of it finds the same name or a better one.
+- Which samples and records are sound: ``records``, as ``FAR_DEVIATIONS`` in
+  ``lone_samples.py``.
+- What a law is charged whose numbers are not what it should pay for: ``charge`` of a
+  variant in ``effects``, as ``CURVE_CHARGE`` in ``sensor.py``. An offset that stands
+  for a path pays as one (``naming/with_own_values.py``).
+- How many numbers are more than one formula has: ``MANY_NUMBERS`` in
+  ``fitting/state.py``.
 
 A value that is called a convention follows from nothing: it was set on development
 cases of the contest's plants.

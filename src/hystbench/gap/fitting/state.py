@@ -39,7 +39,7 @@ class Free(NamedTuple):
     low: float = -np.inf
     high: float = np.inf
     refused: Refused = ""
-    """Which ends of its range make another thing of its effect."""
+    """Ends of its range at which the effect becomes another effect."""
     given: float | None = None
     """What it was given as."""
 
@@ -53,6 +53,8 @@ class Added(NamedTuple):
     blocks: tuple[int, ...]
     """Places of its blocks in the chain; none for a signal beside it."""
     values: dict[str, float]
+    """By parameter; ``3.gain`` is one of the base's own, in the chain's block 3, and
+    what it was before."""
     charge: float
     replaced: Block | None = None
     """The chain's own block that it stands for."""
@@ -63,7 +65,7 @@ class Added(NamedTuple):
 
     @property
     def old_numbers(self) -> dict[tuple[int, str], float]:
-        """What it changed in blocks of the base, by place and parameter, as it was."""
+        """What the base's numbers that it changed were, by place and parameter."""
         parts = ((key.partition("."), old) for key, old in self.values.items())
         return {(int(k), name): old for (k, dot, name), old in parts if dot}
 
@@ -76,9 +78,11 @@ class Added(NamedTuple):
 ROUNDING = 16 * float(np.finfo(float).eps)
 """Share of the output's rms: smaller changes are rounding."""
 FORMS = (0.3, 0.6, 1.6, 3.0)
-"""Factors on a number of an added effect: what other forms of it could do."""
+"""Factors on a number of an added effect: what other forms of it could do. They reach
+half a decade down and up; what lies between does less."""
 MANY_NUMBERS = 4
-"""An effect of more numbers has no other forms."""
+"""No law of a chain that is one formula has more. One that has is a sum, of plays or of
+elements that creep: it bends to what others do, and has no other forms."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +122,7 @@ class ModelState:
         return shared(self.chain, self.records, self.hold, "fine").output
 
     def settled(self) -> ModelState:
-        """Give the state with what the quick simulation lacks made up for."""
+        """Measure ``correction`` anew."""
         lacks = self.sample.take(self.exact) - self.sample.take(self.simulation.output)
         return replace(self, correction=lacks)
 
@@ -251,11 +255,12 @@ class ModelState:
             columns = self.beside_columns[part]
             own = columns.any(axis=0)
             rest = self.residual[part]
+            # Columns nearer to each other than that are one but for rounding.
             found[own] = np.linalg.lstsq(columns[:, own], rest, rcond=1e-10)[0]
         return found
 
     def share(self, other: ModelState, floor: float, gap: float) -> float:
-        """Tell which share of a gap is gone here and is there in another state.
+        """Give the share of a gap that this state takes beyond another.
 
         ``floor`` is the mean square of the noise, ``gap`` that of the gap above it.
         """
@@ -349,11 +354,7 @@ class ModelState:
         return replace(
             self,
             chain=chain,
-            free=tuple(
-                item._replace(block=moved[item.block])
-                for item in self.free
-                if item.block in moved
-            ),
+            free=_moved_numbers(self.free, moved),
             added=tuple(_moved_effect(item, moved) for item in self.added),
         )
 
@@ -371,6 +372,7 @@ class ModelState:
 
     def _step(self, free: Free) -> float:
         value = self.value(free)
+        # Far above rounding, and so small that the output changes in proportion.
         size = 1e-3 * abs(value) or 1e-6
         # A tolerance may leave less room than that.
         size = min(size, (free.high - free.low) / 4)
@@ -379,20 +381,17 @@ class ModelState:
 
 def _moved_effect(item: Added, moved: Mapping[int, int]) -> Added:
     """Give an effect whose blocks stand elsewhere; values name some by their place."""
-    values = {}
-    for key, value in item.values.items():
-        place, dot, name = key.partition(".")
-        if dot and int(place) in moved:
-            values[f"{moved[int(place)]}.{name}"] = value
-        elif not dot:
-            values[key] = value
+    values = {key: value for key, value in item.values.items() if "." not in key}
+    for (place, name), value in item.old_numbers.items():
+        if place in moved:
+            values[f"{moved[place]}.{name}"] = value
     blocks = tuple(moved[k] for k in item.blocks if k in moved)
-    was_free = tuple(
-        free._replace(block=moved[free.block])
-        for free in item.was_free
-        if free.block in moved
-    )
+    was_free = _moved_numbers(item.was_free, moved)
     return item._replace(blocks=blocks, values=values, was_free=was_free)
+
+
+def _moved_numbers(free: Iterable[Free], moved: Mapping[int, int]) -> tuple[Free, ...]:
+    return tuple(x._replace(block=moved[x.block]) for x in free if x.block in moved)
 
 
 def _stack(columns: Sequence[FloatArray], rows: int) -> FloatArray:

@@ -34,6 +34,7 @@ from hystbench.gap.naming.second_looks import reconsidered
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import (
     FURTHER,
+    MOST,
     PAYS,
     SCALE,
     SHAPE,
@@ -41,6 +42,9 @@ from hystbench.gap.thresholds import (
 )
 
 LITTLE = "what the effects leave of a slightly wrong shape is most of it"
+NO_MORE_LEFT = "no more is left than may stay unnamed"
+SAID = 4
+"""Lines of a ranking that are said: the page has all of it."""
 
 
 @dataclass(frozen=True)
@@ -134,9 +138,9 @@ def _of_few_numbers(
     """
     if len(found.state.added) != 1 or found.state.has_shape:
         return found
-    (one,), name = found.state.added, found.state.added[0].effect
-    score = make_score(start, floor_rms, forms=False)
-    if not one.is_of_many_numbers or above_floor(found.state, score) < FURTHER:
+    (effect,) = found.state.added
+    name, score = effect.effect, make_score(start, floor_rms, forms=False)
+    if not effect.is_of_many_numbers or above_floor(found.state, score) < FURTHER:
         return found
     say(f"{name} has many numbers and leaves more than noise: naming without it")
     others = tuple(x for x in among(start.offered) if x != name)
@@ -191,7 +195,7 @@ class SoFar:
     closed: bool = False
     """Whether nothing is left that an effect could gain."""
     in_place_of: Collection[str] = ()
-    """Effects that these have replaced together; each may still do better than one."""
+    """Effects whose place these took together; each may still do better than one."""
 
     @classmethod
     def begun(
@@ -211,6 +215,7 @@ class SoFar:
                 starts.append(fitted_far(state, plain).state)
             ends = (finished(each, score) for each in starts)
             state, _ = min(ends, key=itemgetter(1))
+        # A gap of nothing has no shares; where there is noise a millionth is nothing.
         return cls(state, max(state.power(floor), floor * 1e-6), share)
 
     @property
@@ -264,8 +269,7 @@ def advance(
     little = progress.little_left(floor)
     found = None if little else _before_a_round(progress.state, floor_rms)
     if found is None:
-        why = "no more is left than may stay unnamed"
-        say(why if little else "nothing is left that an effect could gain")
+        say(NO_MORE_LEFT if little else "nothing is left that an effect could gain")
         return replace(progress, closed=True)
     state, score = found
     ranking = rank(state, score, needs=FURTHER if state.added else PAYS)
@@ -275,7 +279,7 @@ def advance(
         if shape_first:
             ranking = tuple(sorted(ranking, key=lambda x: x.effect != SHAPE))
     first = ranking[0]
-    for item in ranking[:4]:
+    for item in ranking[:SAID]:
         say(f"{item.effect} {item.form}: gain {item.gain:.1f}")
     taken = pays(first, state, floor, progress)
     one = Round(state, first.score + first.gain, ranking, taken)
@@ -339,7 +343,7 @@ def _shape_takes_more(
         return False
     gap = before.power(floor)
     most = shape.state.share(before, floor, gap)
-    return first.state.share(before, floor, gap) < most / 2
+    return first.state.share(before, floor, gap) < MOST * most
 
 
 def pays(item: Candidate, state: ModelState, floor: float, progress: SoFar) -> bool:

@@ -12,8 +12,7 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.thresholds import SCALE
 
 MOST_EFFECTS = 4
-"""Effects that are looked for, at most."""
-
+"""Effects that are looked for, at most: a bound on time, as each costs a round."""
 
 WIDER = "makes the gap wider"
 """Why a finalist was declined whose refit went to where a wrong shape hides it."""

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.blocks.linear import low_pass
+from hystbench.doubts import THOUSAND
 from hystbench.gap.records.black_box import ringing
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import LOOSE
@@ -29,9 +30,6 @@ ROWS = 2000
 """Samples of a record that are looked at: neighbours say the same."""
 TEN = 10**0.5
 """A factor that is nearer to ten than to one: less may be the amplitude's."""
-THOUSAND = 1000 / TEN
-"""A factor that is nearer to a thousand than to a hundred: the range of the record
-tells it already (``doubts``)."""
 
 EXCHANGE = (
     "Exchange the two columns in its file, or their names in the header, if they are "
@@ -95,13 +93,13 @@ class _Products(NamedTuple):
 def unlike_the_others(records: Sequence[Record]) -> list[Unlike]:
     """Find records that the others would predict if they were mended.
 
-    Records are left out, fewer than half, until a linear model of the others but one
-    leaves at most half of the rms of that one. Of each that was left out more than
-    half is left as it is, and less than half of that, and of its output, with the
+    Records are dropped, fewer than half, until each that remains is predicted by a
+    linear model of the rest to half of its rms. A dropped one is told if more than half
+    of it is left as it is, and less than half of that, and of its output, with the
     columns exchanged or times a factor. A factor above zero has to be nearer to ten
-    than to one: a nonlinear device has another gain at another amplitude. So it has
-    about another mean, and there even another sign: of a record whose input is, by its
-    mean, outside the range of the others no factor is told.
+    than to one: a nonlinear device has another gain at another amplitude. About another
+    mean its gain may even change sign. So no factor is told where the mean input lies
+    outside the others' range.
 
     Parameters
     ----------
@@ -122,15 +120,18 @@ def unlike_the_others(records: Sequence[Record]) -> list[Unlike]:
     longest = max(record.dt * len(record) for record in records)
     slowest_clock = max(record.dt for record in records)
     lags = np.geomspace(step, max(longest / 3, 2 * step), LOW_PASSES)
+    # Of few samples the fastest is an octave above the slowest.
     modes = np.geomspace(3 / longest, max(0.2 / slowest_clock, 6 / longest), MODES)
     of = [
         _products(x.u, x.y, x.dt, lags, modes, own)
         for x, own in zip(records, rows, strict=True)
     ]
     rest = _alike(of)
+    if not rest:
+        return []
     found = []
     for k, record in enumerate(records):
-        if k in rest or not rest:
+        if k in rest:
             continue
         weights = _model([of[j] for j in rest])
         turned = _products(record.y, record.u, record.dt, lags, modes, rows[k])
@@ -139,6 +140,7 @@ def unlike_the_others(records: Sequence[Record]) -> list[Unlike]:
         about = [records[j].u[rows[j]] for j in rest]
         low, high = min(map(np.min, about)), max(map(np.max, about))
         comparable = low <= np.mean(record.u[rows[k]]) <= high
+        # A factor of a thousand is told already, by the range of the record.
         strange = factor < 0 or TEN <= max(factor, 1 / factor) < THOUSAND
         # Exchanged columns have no free number: they may leave twice the rms.
         turn = LOOSE * exchanged <= times or not (comparable and strange)
