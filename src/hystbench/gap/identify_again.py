@@ -6,9 +6,9 @@ from collections.abc import Callable, Collection
 
 from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.beside_base import BesideBase, leaves_much, stays
+from hystbench.gap.fitting.edit_chain import without
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.freed_record import freed_of_laws, freed_of_slow_law
-from hystbench.gap.naming.with_own_values import without
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model
@@ -21,9 +21,8 @@ def identified_again(
     found: BesideBase,
     named: Named,
     evidence: Evidence,
-    look: Callable[[Model], BesideBase],
+    named_beside: Callable[[Model], BesideBase],
     say: Say,
-    *,
     offered: Collection[str],
 ) -> BesideBase:
     """Name beside a loop that is identified again, where that explains more.
@@ -38,19 +37,18 @@ def identified_again(
     named : Named
         Effects beside it, or beside the same with other numbers.
     evidence : Evidence
-    look : callable
-        Names beside a base.
+    named_beside : callable
+        Gives what is named beside a base.
     say : callable
     offered : collection of str
         Effects that the device may have.
     """
     floor = found.floor.rms
-    latest = _in_turns(
-        found, freed_of_laws(found.base, named, evidence, floor), evidence, look, say
-    )
+    freed = freed_of_laws(found.base, named, evidence, floor)
+    latest = _in_turns(found, freed, evidence, named_beside, say)
     if latest is found and _laws_leave_much(found):
         freed = freed_of_slow_law(found.base, evidence, floor, offered)
-        latest = _in_turns(found, freed, evidence, look, say)
+        latest = _in_turns(found, freed, evidence, named_beside, say)
     return latest
 
 
@@ -64,7 +62,7 @@ def _in_turns(
     found: BesideBase,
     freed: Evidence | None,
     evidence: Evidence,
-    look: Callable[[Model], BesideBase],
+    named_beside: Callable[[Model], BesideBase],
     say: Say,
 ) -> BesideBase:
     """Name beside the loop of a freed record, and free it of what is named then.
@@ -75,9 +73,9 @@ def _in_turns(
     for turn in range(TURNS):
         if freed is None:
             break
-        say("the record of the base shows an effect: naming beside it without")
+        say("the base is identified again without that effect, and naming starts anew")
         base, _ = identified_gpi(freed)
-        again = look(base)
+        again = named_beside(base)
         if turn and stays(latest, again):
             break
         latest = again

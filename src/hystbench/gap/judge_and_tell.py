@@ -83,8 +83,8 @@ def judge_and_tell(
         Of the next experiment; those of the records where none are given.
     """
     say, share = asked.say, asked.unnamed_share
-    host = found.inside or found  # what the effects are in
-    base, start, floor, named = host.base, host.start, found.floor, found.named
+    around = found.inside or found  # what the effects are in
+    base, start, floor, named = around.base, around.start, found.floor, found.named
     left = what_is_left(start, named.state, floor.rms)
     if named.state.added and left.little_named:
         say(f"{LITTLE}: none named")
@@ -129,7 +129,7 @@ def judge_and_tell(
         "base_parameters": base_parameters(base, state),
         "simulator": simulator_mapping(model, start.records),
         "black_box": {"explained_on_folds": judged.box.explained_on_folds},
-        "warnings": [lone_words("fit", after, left.lone)] if left.far_off else [],
+        "warnings": [lone_words("fit", after, left.lone)] if left.lone_matters else [],
     }
     if why_none:
         content["no_experiment"] = why_none

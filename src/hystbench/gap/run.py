@@ -15,7 +15,7 @@ from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.gpi import IdentifiedGpi
 from hystbench.gap.bases.lead import begun_beside, without_leads
-from hystbench.gap.bases.linear import IdentifiedModel, is_identified
+from hystbench.gap.bases.linear import IdentifiedModel, is_identified_linear
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.on_records import compared_records, run_base, start_state
 from hystbench.gap.fitting.own_steps import too_long_steps
@@ -123,8 +123,9 @@ def decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Dec
     """
     vocabulary = asked.vocabulary.in_device(evidence.device_kind)
     asked = replace(asked, vocabulary=vocabulary, say=say_in_words(asked.say))
-    about = base, evidence.input_hold, evidence.quantities, asked.say
-    fit = without_leads(begun_beside(base, evidence.fit), *about)
+    hold, takes = evidence.input_hold, evidence.quantities
+    begun = begun_beside(base, evidence.fit)
+    fit = without_leads(begun, base, hold, takes, asked.say)
     evidence = replace(evidence.deciding, fit=fit)
     first = base
     base, built_in = build_in(base, evidence, vocabulary.fixed, asked.say)
@@ -169,12 +170,14 @@ def hold_out_begun_like_fit(
     They are asked for beside the base, and again beside what was found: the base's own
     error may hide a start. Beside another base a steady motion gets its past.
     """
-    if not is_identified(base):
+    if not is_identified_linear(base):
         return replace(evidence, hold_out=begun_beside(base, evidence.hold_out))
-    about = base, evidence.input_hold, evidence.quantities, say
+    hold, takes = evidence.input_hold, evidence.quantities
     records = evidence.hold_out
     for model in (None, augmented(found.base, found.state)):
-        records = without_leads(records, *about, model, evidence.fit)
+        records = without_leads(
+            records, base, hold, takes, say, found=model, fit=evidence.fit
+        )
     return replace(evidence, hold_out=records)
 
 
@@ -226,7 +229,7 @@ DECISION = "stages/decision.json"
 NAMED = "stages/named.json"
 DECIDED_FILES = ("curves.json", BASE, NAMED, DECISION)
 """What the first of the two writes."""
-IDENTIFIED: dict[str, type[IdentifiedModel | IdentifiedGpi]] = {
+KEPT_BASES: dict[str, type[IdentifiedModel | IdentifiedGpi]] = {
     "identified": IdentifiedModel,
     "hysteresis": IdentifiedGpi,
 }
@@ -250,7 +253,7 @@ def decide_in(
         ],
         **{
             key: base.to_mapping() if isinstance(base, kind) else None
-            for key, kind in IDENTIFIED.items()
+            for key, kind in KEPT_BASES.items()
         },
         "without": list(decided.vocabulary.without),
         "with": list(decided.vocabulary.fixed),
@@ -287,7 +290,7 @@ def _decided_in(folder: Path, evidence: Evidence, base: Model) -> Decided:
     kept, content = read_json(folder / NAMED), read_json(folder / DECISION)
     floor, own = Floor(**kept["floor"]), OwnValues.of_mapping(content["record_values"])
     first = base
-    for key, kind in IDENTIFIED.items():
+    for key, kind in KEPT_BASES.items():
         if kept[key]:
             first = kind.from_mapping(kept[key], f"{folder / NAMED}: {key}")
     leads = zip(begun_beside(first, evidence.fit), kept["leads"], strict=True)

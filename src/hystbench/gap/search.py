@@ -9,14 +9,14 @@ from functools import cache, partial
 from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.gpi import again_words, is_another
 from hystbench.gap.bases.lead import without_leads
-from hystbench.gap.bases.linear import found_with, is_identified
+from hystbench.gap.bases.linear import found_with, is_identified_linear
 from hystbench.gap.bases.roughly_known import roughly_known
 from hystbench.gap.beside_base import BesideBase, leaves_much, stays
 from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.model_score import make_score
-from hystbench.gap.fitting.on_records import start_state
+from hystbench.gap.fitting.on_records import on_records, start_state
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.re_tuning_gain import re_tuned_words
 from hystbench.gap.fitting.refit import finished
@@ -37,11 +37,7 @@ from hystbench.gap.naming.add_effects import NO_MORE_LEFT, Named, add_effects
 from hystbench.gap.naming.begun_otherwise import begun_as_named
 from hystbench.gap.naming.beside_forces import beside_forces
 from hystbench.gap.naming.poles_of_base import named_beside_them, with_poles_named
-from hystbench.gap.naming.with_own_values import (
-    named_apart,
-    offsets_for_paths,
-    on_records,
-)
+from hystbench.gap.naming.with_own_values import named_apart, offsets_for_paths
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.floor import Floor
 from hystbench.model import Model
@@ -49,9 +45,8 @@ from hystbench.quantities import Quantities
 from hystbench.record import Record
 
 NOT_IN_WINDOWS = ("drift", "sensor-nonlinearity", "saturation")
-"""Effects that windows of a free mass cannot tell. An integrator makes a path of its
-own in every window of any error; and each begins at zero wherever the mass is, so that
-no curve over its place has a meaning."""
+"""Effects that windows of a free mass cannot tell. A window begins at zero wherever the
+mass is, so a curve of the place means nothing; and any small error becomes a path."""
 OF_THE_PLACE = "asymmetry"
 """Closed as well where the base may hold a hysteresis: it then stands behind it. Before
 a linear base it bends what drives the mass, as a valve does that opens more one way."""
@@ -88,29 +83,29 @@ def search(
         If the base does not run on the records, or no excitation fits the limits.
     """
     limits = Limits.of(evidence.fit, asked.limits) if asked.limits else None
-    look, say = GapSearch(evidence, asked.sought, quantities), asked.say
-    found = look.beside(base)
-    identified = is_identified(base)
+    gap, say = GapSearch(evidence, asked.sought, quantities), asked.say
+    found = gap.beside(base)
+    identified = is_identified_linear(base)
     shifted = _in_better_time(found) if identified else None
     if shifted is not None:
         say("the input may be taken at another time: naming beside that")
-        again = look.beside(shifted, found.hosts)
-        found = found if stays(found, again) else again
-        say("it is" if found is again else "that explains no more: it is not")
-    found = look.identified_again(found, found.named)
+        other = gap.beside(shifted, found.hosts)
+        found = found if stays(found, other) else other
+        say("it is" if found is other else "that explains no more: it is not")
+    found = gap.identified_again(found, found.named)
     if identified:
-        found = look.of_more_poles(look.begun_otherwise(found))
-    about = None if identified else roughly_known(found.base, evidence.fit)
-    if about is not None and found.may_be_simpler():
+        found = gap.of_more_poles(gap.begun_otherwise(found))
+    rough = None if identified else roughly_known(found.base, evidence.fit)
+    if rough is not None and found.may_be_simpler():
         say("the base's numbers or timing may be off: naming beside that")
-        again = look.beside(about, found.hosts)
-        if stays(found, again, re_tuned=True):
+        other = gap.beside(rough, found.hosts)
+        if stays(found, other, re_tuned=True):
             say("that explains no more: they stay as they are")
             if found.named.state.paths:  # beside other numbers it may be a law
-                found = look.identified_again(found, again.named)
+                found = gap.identified_again(found, other.named)
         else:
-            found = again
-    found = _apart(found, look.asked)
+            found = other
+    found = _apart(found, gap.asked)
     told = judge_and_tell(evidence.name, found, asked, limits)
     more = [told.content["reason"]]
     if is_another(base, found.base):
@@ -119,7 +114,7 @@ def search(
         more.append(found.inside.sentence)
     if identified and (late := in_time_words(found.named.state)):
         more.append(late)
-    if found.base is about:
+    if found.base is rough:
         more.append(f"{NOT_EXACT} ({EXACT})")
         if found.inside is None:
             more[-1] += f": {re_tuned_words(found.start, found.named.state)}"
@@ -141,29 +136,31 @@ class GapSearch:
         offered = self.asked.vocabulary.offered
         if not self.evidence.in_windows:
             return offered
-        closed = (*NOT_IN_WINDOWS, *(() if self.quantities else (OF_THE_PLACE,)))
+        beside = () if self.quantities is not None else (OF_THE_PLACE,)
+        closed = (*NOT_IN_WINDOWS, *beside)
         return tuple(name for name in offered if name not in closed)
 
     def started(
         self, records: tuple[Record, ...], base: Model
     ) -> tuple[ModelState, Floor]:
         """Give a base on records, and their floor."""
-        evidence = self.evidence
-        about = evidence.input_hold, evidence.noise_rms, self.offered
-        return start_state(records, base, *about)
+        hold, noise = self.evidence.input_hold, self.evidence.noise_rms
+        return start_state(records, base, hold, declared=noise, offered=self.offered)
 
     def without_leads(
         self, records: tuple[Record, ...], base: Model, beside: Model
     ) -> tuple[Record, ...]:
         """Leave out the leads that a model shows which was found beside a base."""
-        about = self.evidence.input_hold, self.evidence.quantities, self.asked.say
-        return without_leads(records, base, *about, beside)
+        hold, takes = self.evidence.input_hold, self.evidence.quantities
+        say = self.asked.say
+        return without_leads(records, base, hold, takes, say, found=beside)
 
     def identified_again(self, found: BesideBase, named: Named) -> BesideBase:
         """Name beside a hysteresis that is identified again, where that is better."""
-        look = partial(self.beside, kinds=found.hosts)
-        about = found, named, self.evidence, look, self.asked.say
-        return identified_again(*about, offered=self.offered)
+        named_beside = partial(self.beside, kinds=found.hosts)
+        return identified_again(
+            found, named, self.evidence, named_beside, self.asked.say, self.offered
+        )
 
     def begun_otherwise(self, found: BesideBase) -> BesideBase:
         """Name beside another start of the base, if that may stand for records' paths.
@@ -171,16 +168,15 @@ class GapSearch:
         It does if the other effects are then named, and nothing else.
         """
         state, say = found.named.state, self.asked.say
-        about = state, self.evidence.fit, found.floor.rms
-        begun = begun_as_named(found.base, *about)
+        begun = begun_as_named(found.base, state, self.evidence.fit, found.floor.rms)
         if begun is None:
             return found
         say("the records may begin otherwise: naming beside that")
-        again = self.beside(begun, found.hosts)
+        other = self.beside(begun, found.hosts)
         others = {item.effect for item in state.added} - state.paths
-        stands = {item.effect for item in again.named.state.added} == others
+        stands = {item.effect for item in other.named.state.added} == others
         say("they do" if stands else "that explains something else: they do not")
-        return again if stands else found
+        return other if stands else found
 
     def of_more_poles(self, found: BesideBase) -> BesideBase:
         """Give poles that were named beside an identified base to the base.
@@ -212,23 +208,22 @@ class GapSearch:
         say, share = self.asked.say, self.asked.unnamed_share
         start, floor = self.started(self.evidence.fit, base)
         inside, own = None, NONE
-        identified = is_identified(base)
+        identified = is_identified_linear(base)
 
         @cache
         def in_a_chain(start: ModelState, floor: Floor) -> Named:
             return add_effects(start, floor.rms, self.asked)
 
-        def begun_as(chain: Named) -> tuple[ModelState, Floor]:
-            """Begin without the leads that what was named in a chain shows."""
-            model = augmented(base, chain.state)
+        def begun_so(start: ModelState, floor: Floor) -> tuple[ModelState, Floor]:
+            """Begin without the leads that what is named in a chain shows."""
+            model = augmented(base, in_a_chain(start, floor).state)
             shorter = self.without_leads(start.records, base, model)
-            if shorter is start.records:
-                return start, floor
-            return self.started(shorter, base)
+            whole = shorter is start.records
+            return (start, floor) if whole else self.started(shorter, base)
 
         known = bool(places_between_halves(start.simulation) or found_with(base))
         if known:  # what that effect hides of a start is no reason to try forces
-            start, floor = begun_as(in_a_chain(start, floor))
+            start, floor = begun_so(start, floor)
         # A base of two filters tells that a curve lies between them. One that was found
         # beside an effect tells that there is this effect. So the chain is tried first.
         # So it is beside a given base: forces must beat that.
@@ -237,24 +232,19 @@ class GapSearch:
             enough = known and _why_enough(start, chain.state, floor, share)
             if has_free_form(chain.state):  # it bends to what forces do
                 enough = ""
-            if quantities and (enough or most_inside(chain, floor.rms) < 1):
+            if quantities is not None and (enough or most_inside(chain, floor.rms) < 1):
                 say("no force could gain what matters, so none is tried inside")
                 quantities = None
         if quantities is not None:
             whole = start, floor
-            about = base, *whole, quantities, partial(in_a_chain, *whole), kinds
-            start, floor, inside, own = self.with_forces(*about)
+            start, floor, inside, own = self.with_forces(
+                base, start, floor, quantities, partial(in_a_chain, *whole), kinds
+            )
             if inside is not None and not beats_base(inside, start, floor.rms):
                 say("inside: what stands for the base leaves more than the base does")
                 (start, floor), inside, own = whole, None, NONE
         if inside is not None:
-            beside = beside_forces(inside.named, inside.start, floor.rms, share, say)
-            inside = replace(inside, named=beside)
-            apart = bool(own.records) or not self.evidence.own_offsets
-            if beside.state.paths and not apart:
-                start, named, own = offsets_for_paths(start, beside, floor.rms, say)
-                alone = on_records(inside.start, start.records)
-                inside = replace(inside, start=alone, named=named)
+            start, inside, own = self.with_no_input(start, floor, inside, own)
         # A base that was given is re-tuned where it is a host: that may stand for a
         # chain. So may a free form beside forces.
         if inside is not None and identified and not has_free_form(inside.named.state):
@@ -264,7 +254,7 @@ class GapSearch:
                 return BesideBase(base, start, floor, None, inside, own, inside)
         chain = in_a_chain(start, floor)
         if inside is None and chain.state.added:
-            start, floor = begun_as(chain)
+            start, floor = begun_so(start, floor)
             chain = in_a_chain(start, floor)
         tried = inside
         if inside is not None and not beats_chain(inside, chain, floor.rms, say):
@@ -282,34 +272,52 @@ class GapSearch:
     ) -> tuple[ModelState, Floor, Inside | None, OwnValues]:
         """Look for forces inside the dynamics, beside what is a record's own.
 
-        What is given back first is the base on the records without what was found to be
-        their own. After the first look only such hosts are tried as it has found best.
-        Records get offsets of their own only where a chain leaves much as well. Wrong
-        forces leave much, and an offset would take some of it.
+        After the first look only such hosts are tried as it has found best. Records get
+        offsets of their own only where a chain leaves much as well. Wrong forces leave
+        much, and an offset would take some of it.
+
+        Returns
+        -------
+        start : ModelState
+            The base on the records, without what was found to be their own.
+        floor : Floor
+        inside : Inside or None
+        own : OwnValues
         """
-        identified, say = is_identified(base), self.asked.say
         shorter, whole, own = start.records, (start, floor), NONE
+        say = self.asked.say
 
         @cache
         def most() -> float:
             return most_inside(in_a_chain(), whole[1].rms)
 
-        def again(found: Model) -> bool:
+        def shows_leads(found: Model) -> bool:
             nonlocal shorter
             shorter = self.without_leads(start.records, base, found)
             return shorter is not start.records
 
-        def look(start: ModelState, *more: Callable[[Model], bool]) -> Inside | None:
+        def forces(
+            start: ModelState, again: Callable[[Model], bool] = lambda found: False
+        ) -> Inside | None:
             nonlocal kinds
-            about = base, start, floor.rms, quantities, identified, self.asked, most
-            found = named_inside(*about, *more, kinds=kinds)
+            found = named_inside(
+                base,
+                start,
+                floor.rms,
+                quantities,
+                identified=is_identified_linear(base),
+                asked=self.asked,
+                most=most,
+                again=again,
+                kinds=kinds,
+            )
             kinds = kinds if found is None else (found.host,)
             return found
 
         while True:  # each time fewer records are whole
-            inside = look(start, again)
+            inside = forces(start, shows_leads)
             if inside is not None:
-                again(augmented(inside.base, inside.named.state))
+                shows_leads(augmented(inside.base, inside.named.state))
             if shorter is start.records:
                 break
             start, floor = self.started(shorter, base)
@@ -320,8 +328,21 @@ class GapSearch:
             and self.evidence.own_offsets
             and leaves_much(in_a_chain().state, *whole)
         ):
-            start, inside, own = apart_inside(start, inside, floor.rms, look, say)
+            start, inside, own = apart_inside(start, inside, floor.rms, forces, say)
         return start, floor, inside, own
+
+    def with_no_input(
+        self, start: ModelState, floor: Floor, inside: Inside, own: OwnValues
+    ) -> tuple[ModelState, Inside, OwnValues]:
+        """Name beside forces what the input does not explain: signals, or offsets."""
+        say, share = self.asked.say, self.asked.unnamed_share
+        beside = beside_forces(inside.named, inside.start, floor.rms, share, say)
+        inside = replace(inside, named=beside)
+        if beside.state.paths and self.evidence.own_offsets and not own.records:
+            start, named, own = offsets_for_paths(start, beside, floor.rms, say)
+            alone = on_records(inside.start, start.records)
+            inside = replace(inside, start=alone, named=named)
+        return start, inside, own
 
 
 def _in_better_time(found: BesideBase) -> Model | None:

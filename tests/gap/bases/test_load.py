@@ -19,7 +19,7 @@ from hystbench.gap.bases.linear import (
     IdentifiedModel,
     Linear,
     identified_linear,
-    is_identified,
+    is_identified_linear,
 )
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.bases.spectral import Spectra, fit_ratio, stable
@@ -89,7 +89,7 @@ def test_a_file_that_is_named_linear_was_not_identified(tmp_path):
     Model("linear", known.input, known.output, (block,), free).save(file)
     base, _ = load_base(str(file), evidence(known))
     assert base.free == free
-    assert not is_identified(base)
+    assert not is_identified_linear(base)
 
 
 class TestLinear:

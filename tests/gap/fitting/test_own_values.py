@@ -11,7 +11,7 @@ from scipy.signal import lfilter
 from hystbench.gap.asked import Asked
 from hystbench.gap.cache import Remembered, remembering
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.edit_chain import with_effect, without
 from hystbench.gap.fitting.own_values import (
     NONE,
     Own,
@@ -19,7 +19,7 @@ from hystbench.gap.fitting.own_values import (
     own_values,
     values_of_record,
 )
-from hystbench.gap.naming.with_own_values import SHARED, without
+from hystbench.gap.naming.with_own_values import SHARED
 from hystbench.gap.progress import silent
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import decide_in, show_in

@@ -97,7 +97,10 @@ def test_the_law_may_be_in_either_of_a_slow_and_a_fast_store(powers):
     laws = ["outflow", "sensor-nonlinearity"]
     best = min(
         (
-            chosen(each_alone(host.fitted, score, laws, other=host.other), score.floor)
+            chosen(
+                each_alone(host.fitted, score, laws, other=host.unfitted_start),
+                score.floor,
+            )
             for host in every
         ),
         key=lambda item: item.score,
@@ -118,12 +121,12 @@ def test_stores_in_the_other_order_keep_the_timing_of_a_base():
     both = [
         host
         for host in islice(hosts(start, Quantities(output="level"), True, score), 3)
-        if host.other is not None
+        if host.unfitted_start is not None
     ]
     assert both
     for host in both:
-        assert host.other.chain[0] == host.alone.chain[0] == late
-        assert len(host.other.chain) == len(host.alone.chain)
+        assert host.unfitted_start.chain[0] == host.alone.chain[0] == late
+        assert len(host.unfitted_start.chain) == len(host.alone.chain)
 
 
 def test_overflow_is_named_and_goes_out_again():

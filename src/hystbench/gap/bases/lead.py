@@ -17,7 +17,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.store import Store
 from hystbench.blocks.structure import Structure
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.bases.linear import IdentifiedModel, is_identified
+from hystbench.gap.bases.linear import IdentifiedModel, is_identified_linear
 from hystbench.gap.bases.orders import LEAD
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.pasts import with_pasts
@@ -88,7 +88,7 @@ def without_leads(
         Records that the model is fitted to; by default those given.
     """
     stores = any(isinstance(block, Store) for block in (found or base).chain)
-    if not is_identified(base) or (
+    if not is_identified_linear(base) or (
         (stores or quantities.causality == "storage")
         and begin_alike(records if fit is None else fit)
     ):

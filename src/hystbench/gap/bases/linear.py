@@ -49,8 +49,8 @@ class IdentifiedModel(Model):
     """What it was found together with, which is no part of it."""
 
 
-def is_identified(base: Model) -> bool:
-    """Tell whether a base was identified from the records and may be re-tuned."""
+def is_identified_linear(base: Model) -> bool:
+    """Tell whether a base is linear, was identified and may be re-tuned."""
     return isinstance(base, IdentifiedModel) and bool(base.free)
 
 

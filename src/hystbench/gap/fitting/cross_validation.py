@@ -129,9 +129,7 @@ def _split(model: ModelState, score: Score) -> tuple[FloatArray, float]:
     columns = model.beside_columns
     amplitudes = score.amplitudes(model.residual, columns).values
     rest, inside = score.split(model.residual - columns @ amplitudes)
-    d = max(len(inside), 1)
-    power = max(float(inside @ inside) / d, score.floor)
-    return rest, d * float(np.log(power))
+    return rest, score.of_directions(float(inside @ inside))
 
 
 def _terms(rest: FloatArray, score: Score, held: Used) -> FloatArray:

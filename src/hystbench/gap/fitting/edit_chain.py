@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -86,6 +86,14 @@ def without_effect(state: ModelState, number: int) -> ModelState:
     taken = held_until_smooth(chain, "zero-order") if smooths else tuple(chain)
     left = replace(state, added=rest).rearranged(taken, moved)
     return _without_joint(left, gone.blocks[0] - 1) if gone.blocks[0] else left
+
+
+def without(state: ModelState, names: Collection[str]) -> ModelState:
+    """Take the effects of some names out, where they can be."""
+    for number in reversed(range(len(state.added))):
+        if state.added[number].effect in names and removable(state, number):
+            state = without_effect(state, number)
+    return state
 
 
 def _without_joint(state: ModelState, place: int) -> ModelState:

@@ -62,3 +62,12 @@ def _solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     if not (np.isfinite(matrix).all() and np.isfinite(vector).all()):
         return np.zeros(len(vector))
     return np.asarray(np.linalg.lstsq(matrix, vector, rcond=1e-13)[0] / size)
+
+
+def joined(first: FloatArray, mixed: FloatArray, second: FloatArray) -> FloatArray:
+    """Join products of two tables, shape (..., k, k); np.block takes far longer."""
+    k, size = first.shape[-1], first.shape[-1] + second.shape[-1]
+    out = np.empty((*first.shape[:-2], size, size))
+    out[..., :k, :k], out[..., k:, k:] = first, second
+    out[..., :k, k:], out[..., k:, :k] = mixed, mixed.mT
+    return out

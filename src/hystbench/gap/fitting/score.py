@@ -3,12 +3,13 @@
 The residual of a candidate is split, by an orthonormal basis of what a wrong shape of
 the hysteresis could do, into ``a`` (inside, ``d`` directions) and ``c`` (the rest).
 With ``s_i`` the mean square of ``c`` in record ``i``, ``f`` the noise floor's mean
-square and ``p`` the number of fitted parameters the score is
+square, ``p`` the number of fitted parameters and ``h`` what is charged for moving
+numbers that are held (:class:`Held`), the score is
 
-    sum_i W log(max(s_i, f)) + d log(max(|a|^2 / d, f)) + P p
+    sum_i W log(max(s_i, f)) + d log(max(|a|^2 / d, f)) + P p + h
 
-``W`` is some fifty: a record counts as that many independent samples. So reshaping the
-hysteresis is allowed and is charged, and both terms saturate.
+A record counts as ``W`` independent samples (:func:`record_weight`). So reshaping the
+hysteresis is allowed and is charged, and the first two terms saturate.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.errors import InputError
-from hystbench.gap.fitting.normal_equations import solve
+from hystbench.gap.fitting.normal_equations import joined, solve
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
 from hystbench.record import FloatArray
@@ -149,7 +150,7 @@ class Score:
 
     @cached_property
     def weight(self) -> float:
-        """Independent samples that each record counts as."""
+        """Independent samples that each record counts as, in a fold as in the whole."""
         return record_weight(len(self.sample.positions))
 
     def split(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -247,7 +248,7 @@ class Score:
             normal = np.concatenate([weights, [of_inside, 1.0]]) @ forms
             normal = normal.reshape(k + 1, k + 1)
             matrix = normal[1:, 1:]
-            matrix.flat[:: k + 1] *= 1 + 1e-12
+            matrix.flat[:: k + 1] *= 1 + APART  # alike columns have a solution too
             beta = solve(matrix, normal[1:, 0], positive)
             full = np.concatenate([[1.0], -beta])
         return Amplitudes(-best[1][1 : own + 1] / scale, best[0])
@@ -334,7 +335,7 @@ class Score:
         other = beside.own
         mixed = every[:, :, d:] - across @ other.inside - inside.T @ beside.across
         return Products(
-            _square(grams, mixed, other.grams),
+            joined(grams, mixed, other.grams),
             np.hstack([inside, other.inside]),
         )
 
@@ -370,25 +371,19 @@ class Score:
         return self.weight / (self._counts * np.maximum(squares, self.floor))
 
     def _value(self, squares: FloatArray, power: float, freedom: float) -> float:
-        d = self.directions.shape[1]
         outside = self.weight * float(np.log(np.maximum(squares, self.floor)).sum())
-        inside = d * float(np.log(max(power / d, self.floor))) if d else 0.0
-        return outside + inside + PARAMETER * freedom
+        return outside + self.of_directions(power) + PARAMETER * freedom
+
+    def of_directions(self, power: float) -> float:
+        """Give the term of the directions, whose amplitudes have a sum of squares."""
+        d = self.directions.shape[1]
+        return d * float(np.log(max(power / d, self.floor))) if d else 0.0
 
 
 def _sizes(columns: FloatArray) -> FloatArray:
     """Give the root mean square of columns; one for those that are zero."""
     sizes = np.sqrt(np.einsum("ij,ij->j", columns, columns) / len(columns))
     return np.where(sizes > 0, sizes, 1.0)
-
-
-def _square(first: FloatArray, mixed: FloatArray, second: FloatArray) -> FloatArray:
-    """Join products of two tables, shape (..., k, k); np.block takes far longer."""
-    k, size = first.shape[-1], first.shape[-1] + second.shape[-1]
-    out = np.empty((*first.shape[:-2], size, size))
-    out[..., :k, :k], out[..., k:, k:] = first, second
-    out[..., :k, k:], out[..., k:, :k] = mixed, mixed.mT
-    return out
 
 
 def _place(part: NDArray[np.intp]) -> slice | NDArray[np.intp]:

@@ -23,16 +23,16 @@ class Host:
     """The same, its numbers fitted to the records: what forces are put in."""
     words: str
     """How it stands in place of the base."""
-    other: ModelState | None = None
-    """What forces are put in instead: as good while linear, and not fitted, as a fit
-    would come back."""
+    unfitted_start: ModelState | None = None
+    """A start for forces that is as good while linear. It is not fitted: a fit would
+    lead back to ``fitted``."""
     charge: float = 0.0
     """Charge for numbers of a given base that are fitted though nobody set them
     free."""
     kind: Kind = "coordinate"
     carry: Callable[[ModelState], ModelState] | None = None
-    """Makes a model in the host before this one a model in this. What did best there
-    is fitted on, and no other force is tried anew."""
+    """Turns a model in the previous host into one in this. Its best model is then
+    fitted on; no other force is tried."""
 
     @property
     def counts(self) -> int:

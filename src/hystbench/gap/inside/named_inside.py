@@ -21,6 +21,7 @@ from hystbench.gap.fitting.cross_validation import (
 )
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.model_score import score_of
+from hystbench.gap.fitting.on_records import on_records
 from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
@@ -49,7 +50,7 @@ from hystbench.gap.inside.try_hosts import (
     in_each_host,
 )
 from hystbench.gap.naming.add_effects import Named
-from hystbench.gap.naming.with_own_values import ROUNDS, on_records
+from hystbench.gap.naming.with_own_values import ROUNDS
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.memory import may_have_hysteresis

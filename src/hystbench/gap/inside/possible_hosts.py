@@ -95,9 +95,10 @@ def hosts(
         for host in hosts(_behind(start), *about, timed=True, kinds=kinds):
             state = _in_front(delay, start, host.fitted.state)
             alone = _in_front(delay, start, host.alone)
-            other = host.other and _in_front(delay, start, host.other)
+            other = host.unfitted_start
+            other = other and _in_front(delay, start, other)
             whole = replace(host.fitted, state=state)
-            yield replace(host, alone=alone, fitted=whole, other=other)
+            yield replace(host, alone=alone, fitted=whole, unfitted_start=other)
         # A force that is not linear turns the phase: it may be what looked like timing.
         yield from hosts(_without_timing(start), *about, kinds=kinds)
         return

@@ -61,7 +61,9 @@ class HostTrial:
             found = self._carried(host, host.carry, before)
             return replace(self.of(host, found), before=before)
         self.say(f"inside: {host.words}; forces are tried in it")
-        found = singles(host.fitted, self.offer, self.score, self.say, host.other)
+        found = singles(
+            host.fitted, self.offer, self.score, self.say, host.unfitted_start
+        )
         return self.of(host, found)
 
     def _carried(
@@ -76,7 +78,7 @@ class HostTrial:
         """
         best, *others = sorted(before.found[1:], key=lambda item: item.score)
         of_best = partial(self._offered, names=best.effects)
-        found = singles(host.fitted, of_best, self.score, self.say, host.other)
+        found = singles(host.fitted, of_best, self.score, self.say, host.unfitted_start)
         begun = [Fitted(carry(item.state), item.score) for item in others]
         gentle = gentlest(host.fitted.state)
         return best_of_each([*found, *to_the_end(begun, self.score, gentle)])

@@ -123,15 +123,20 @@ class Leftover:
         return self.slight and not self.foreign
 
     @property
-    def far_off(self) -> bool:
+    def lone_matters(self) -> bool:
         """Whether much of what is left stands in lone samples."""
-        about = 1.0 + self.all_after, max(self.all_before, 1.0)
-        return much_stands_alone(self.lone, *about)
+        return much_stands_alone(
+            self.lone, after=1.0 + self.all_after, before=max(self.all_before, 1.0)
+        )
 
     @property
     def is_new(self) -> bool:
         """Whether more than noise differs from period to period, and little repeats."""
-        if self.unrepeated is None or self.unrepeated <= ABOVE_NOISE or self.far_off:
+        if (
+            self.unrepeated is None
+            or self.unrepeated <= ABOVE_NOISE
+            or self.lone_matters
+        ):
             return False
         repeats = self.all_after - self.unrepeated
         return repeats <= max(ABOVE_NOISE, LOOSE * self.unrepeated)
@@ -139,7 +144,7 @@ class Leftover:
     @property
     def foreign(self) -> str:
         """Say what is left that no effect and no wrong hysteresis does, if any is."""
-        if self.far_off:
+        if self.lone_matters:
             return (
                 f"{100 * self.lone:.0f} % of the power that is left on the fit records "
                 "stands in lone samples, far off the others, which no effect of "

@@ -178,9 +178,8 @@ def confidence(
     """Give the probability that an effect is the one, among those that were tried.
 
     Each finalist counts by how much worse it scores; what stays unexplained speaks
-    against any name. No name is surer than that its numbers are anything but nothing:
-    of a number that is normally distributed, with a standard error of so many times
-    itself, the probability that it is less than twice itself and not below zero.
+    against any name. And no effect is surer than that it is there at all: that its
+    number, normally distributed with that error, is above zero and below twice itself.
 
     Parameters
     ----------

@@ -88,17 +88,17 @@ def add_effects(
     """Add effects to a model for as long as one pays, or until little is left."""
     say = asked.say
     foretell(state, say)
-    found = _path(state, floor_rms, say, asked.unnamed_share)
+    found = _one_by_one(state, floor_rms, say, asked.unnamed_share)
     try:
-        return settled(found, state, floor_rms, say)
+        return looked_over(found, state, floor_rms, say)
     except CallsUsedUp:
         return Named(found.state, found.rounds)
     finally:
         current().reserve = 0
 
 
-def settled(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Named:
-    """Give what a path found, or another where a wrong shape is to go first.
+def looked_over(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Named:
+    """Look over what was added one by one; where a wrong shape is to go first, anew.
 
     Where a wrong shape of the hysteresis takes more of the gap away than the effect
     that scores best, that effect may still be one of several that do without it. So
@@ -107,7 +107,7 @@ def settled(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Name
     cut_short = current().refused()
     if not cut_short and found.deferred and found.state.has_shape:
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
-        found = _path(start, floor_rms, say, found.share, shape_first=True)
+        found = _one_by_one(start, floor_rms, say, found.share, shape_first=True)
     if not cut_short:
         found = _of_few_numbers(found, start, floor_rms, say)
     state, gone = without_what_goes(found.state, floor_rms, found.gap, say)
@@ -131,7 +131,7 @@ def settled(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Name
 def _of_few_numbers(
     found: SoFar, start: ModelState, floor_rms: float, say: Say
 ) -> SoFar:
-    """Give another path where one effect of many numbers leaves more than noise.
+    """Add others one by one where one effect of many numbers leaves more than noise.
 
     So many numbers do much of what several laws of few do together. These are named if
     they score better, each charged as a further effect is.
@@ -144,9 +144,9 @@ def _of_few_numbers(
         return found
     say(f"{name} has many numbers and leaves more than noise: naming without it")
     others = tuple(x for x in among(start.offered) if x != name)
-    other = _path(replace(start, offered=others), floor_rms, say, found.share)
+    other = _one_by_one(replace(start, offered=others), floor_rms, say, found.share)
     other = replace(other, state=replace(other.state, offered=start.offered))
-    # A path ends with numbers that were fitted while other forms were allowed.
+    # They end with numbers that were fitted while other forms were allowed.
     state, value = finished(other.state, score)
     value += FURTHER * max(len(state.added) - 1, 0)
     if value < finished(found.state, score)[1] - SCALE:
@@ -234,7 +234,7 @@ class SoFar:
         )
 
 
-def _path(
+def _one_by_one(
     state: ModelState,
     floor_rms: float,
     say: Say,
@@ -286,7 +286,7 @@ def advance(
     state = progress.state
     if taken:
         assert first.state is not None  # noqa: S101  (for the type checker)
-        state = to_the_end(scanned(first.state, floor_rms), floor)
+        state = with_all_numbers(scanned(first.state, floor_rms), floor)
         if len(state.added) > 1:
             rounds = (*progress.rounds, one)
             state, looks = reconsidered(state, rounds, floor_rms, say)
@@ -296,7 +296,7 @@ def advance(
     )
 
 
-def to_the_end(state: ModelState, floor: float) -> ModelState:
+def with_all_numbers(state: ModelState, floor: float) -> ModelState:
     """Fit all numbers of a model without hysteresis together, the base's own as well.
 
     A linear base was fitted with the gap in it: what an effect bends much may take its

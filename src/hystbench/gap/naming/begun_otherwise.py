@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.blocks.starts import plainest_start, possible_starts
+from hystbench.gap.fitting.edit_chain import without
 from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.naming.with_own_values import without
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.simulation.starting import starting
 from hystbench.model import Model

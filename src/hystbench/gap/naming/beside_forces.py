@@ -58,8 +58,8 @@ def _with_one_beside(
 ) -> Named | None:
     """Add the signal that the input does not explain and that does best, if it pays.
 
-    Forces are fitted anew beside it. It has to matter itself there: else it has only
-    led them out of a place where a fit had stopped. They then go on without it.
+    Forces are refitted beside it. If the signal matters little then, it only freed them
+    from a bad fit: they stay, it goes.
     """
     floor, state = floor_rms**2, named.state
     known = [

@@ -23,11 +23,11 @@ from hystbench.gap.bases.gpi import ORDER, IdentifiedGpi
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.slow import SLOW_SAMPLES
 from hystbench.gap.fitting.augmented_model import beside_blocks
+from hystbench.gap.fitting.edit_chain import without
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate
-from hystbench.gap.naming.with_own_values import without
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.thresholds import ABOVE_NOISE, LOOSE, PAYS
 from hystbench.model import Model
@@ -81,7 +81,7 @@ def freed_of_laws(
     does = with_them - alone
     if _power(does, slow) <= ABOVE_NOISE * floor_rms**2:
         return None
-    return _with(evidence, replace(slow, y=slow.y - does).as_measured)
+    return _with_record(evidence, replace(slow, y=slow.y - does).as_measured)
 
 
 def freed_of_slow_law(
@@ -126,7 +126,7 @@ def freed_of_slow_law(
 
     def stays(size: float, make: Callable[[float], Any]) -> float:
         law = make(size)
-        y = _without(law, slow)
+        y = _freed_of(law, slow)
         loop = identify(slow.u[::every], y[::every], ORDER, starts=1)
         outputs = [law.simulate(loop.simulate(x.u), x.u, x.dt) for x in evidence.fit]
         return _left(evidence.fit, outputs)
@@ -137,10 +137,10 @@ def freed_of_slow_law(
             stays, args=(law,), bounds=bounds, options={"xatol": CLOSE}
         )
         if best.fun < least:
-            least, freed = best.fun, replace(slow, y=_without(law(best.x), slow))
+            least, freed = best.fun, replace(slow, y=_freed_of(law(best.x), slow))
     if _power(slow.y - freed.y, slow) <= ABOVE_NOISE * noise:
         return None
-    return _with(evidence, freed.as_measured)
+    return _with_record(evidence, freed.as_measured)
 
 
 def _left(records: Sequence[Record], outputs: Sequence[FloatArray]) -> float:
@@ -180,7 +180,7 @@ def _heat(time_constant_s: float, one: float, size: float) -> Block:
     return ThermalDrift(coefficient=size * one, time_constant_s=time_constant_s)
 
 
-def _without(law: Any, record: Record) -> FloatArray:
+def _freed_of(law: Any, record: Record) -> FloatArray:
     """Take what a law does off a record's output."""
     y, exact = record.y, ROUNDING * float(np.ptp(record.y))
     for _ in range(ROUNDS):
@@ -190,7 +190,7 @@ def _without(law: Any, record: Record) -> FloatArray:
     return y
 
 
-def _with(evidence: Evidence, freed: Record) -> Evidence:
+def _with_record(evidence: Evidence, freed: Record) -> Evidence:
     """Put a record in the place of the one that a loop is identified from."""
     slow = evidence.slowest
     fit = tuple(freed if record is slow else record for record in evidence.fit)

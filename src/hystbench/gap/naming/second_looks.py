@@ -19,7 +19,8 @@ from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import PAYS, SCALE, SHAPE
 
 CLOSE = 0.6
-"""A rival gains at least this share of the gain of the best of its round."""
+"""A rival gains at least this share of the gain of the best of its round: clearly more
+than half, as what gains less takes another part of the gap. A convention."""
 
 
 def reconsidered(
@@ -72,7 +73,7 @@ def reconsidered(
         best = ranking[0]
         own = next((x for x in ranking if x.effect == item.effect and x.state), None)
         least = now if own is None else min(now, own.score)
-        least = least if is_itself else np.inf  # anything but that
+        least = least if is_itself else np.inf  # if it lost itself, any rival wins
         # A rival of fewer numbers need only score better.
         numbers = min(x.freedom for x in (state, own and own.state) if x)
         fewer = best.state is not None and best.state.freedom < numbers

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,8 +11,9 @@ from hystbench.gap.asked import Asked
 from hystbench.gap.cache import records_digest
 from hystbench.gap.effects.sensor import Drift
 from hystbench.gap.effects.variant import Beside, Values
-from hystbench.gap.fitting.edit_chain import removable, without_effect
+from hystbench.gap.fitting.edit_chain import without
 from hystbench.gap.fitting.model_score import make_score, score_of
+from hystbench.gap.fitting.on_records import on_records
 from hystbench.gap.fitting.own_values import KINDS, NONE, OwnValues, own_values
 from hystbench.gap.fitting.refit import ENOUGH, finished
 from hystbench.gap.fitting.score import Score
@@ -21,7 +22,6 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import ABOVE_NOISE, PARAMETER, PAYS
-from hystbench.record import Record
 
 
 def named_apart(
@@ -124,14 +124,6 @@ def _names(named: Named) -> set[tuple[str, str]]:
 
 SHARED = frozenset({"input-delay", "calibration-error"})
 """Effects that do to all records what each may have of its own."""
-
-
-def without(state: ModelState, effects: Collection[str]) -> ModelState:
-    """Give a model without some effects, where they can be taken out."""
-    for number in reversed(range(len(state.added))):
-        if state.added[number].effect in effects and removable(state, number):
-            state = without_effect(state, number)
-    return state
 
 
 def beside_offsets(state: ModelState, start: ModelState, score: Score) -> ModelState:
@@ -247,8 +239,3 @@ def kinds_of(state: ModelState) -> tuple[str, ...]:
     """Give what may be a record's own: no delay where the base cannot be run again."""
     reruns = all(block.reruns for block in state.chain)
     return KINDS if reruns else tuple(kind for kind in KINDS if kind != "delay")
-
-
-def on_records(state: ModelState, records: tuple[Record, ...]) -> ModelState:
-    """Give a model on other records of the same lengths."""
-    return replace(state, records=records, correction=None).settled()

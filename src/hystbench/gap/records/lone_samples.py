@@ -27,16 +27,16 @@ def usual_deviation(residual: FloatArray) -> float:
 def far_off(residual: FloatArray) -> Mask:
     """Tell which samples of a residual are lone: far off the others.
 
-    A record is held against its own median absolute deviation; one more than half of
-    which is a single value says nothing.
+    A record is held against its own median absolute deviation. If more than half of a
+    record has one value, no sample is lone.
 
     Parameters
     ----------
     residual : ndarray, shape (n,)
     """
-    about = np.abs(residual - np.median(residual))
-    usual = usual_deviation(residual)
-    return np.asarray((usual > 0) & (about > FAR_DEVIATIONS * usual))
+    off = np.abs(residual - np.median(residual))
+    usual = TO_SIGMA * float(np.median(off))
+    return np.asarray((usual > 0) & (off > FAR_DEVIATIONS * usual))
 
 
 def lone_share(residuals: Sequence[FloatArray]) -> float:
