@@ -25,6 +25,7 @@ from pathlib import Path
 from time import perf_counter, process_time
 
 from benchmarks.timing import peak_mib, write_table
+from hystbench.gap.asked import Asked
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.model_score import make_score
@@ -99,7 +100,7 @@ def close(evidence: Evidence, model: str) -> str:
     """Find what the model lacks, without the page; give its names."""
     base, _ = load_base(model, evidence)
     with tempfile.TemporaryDirectory() as out:
-        found = closed_gap(evidence, base)
+        found = closed_gap(evidence, base, Asked())
         found.write(Path(out, "gap"), report=False)
     content = found.outcome.content
     named = "+".join(item["name"] for item in content["effects"])

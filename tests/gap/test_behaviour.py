@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from hystbench.device_kinds import DEVICE_KINDS
+from hystbench.gap.asked import Asked
 from hystbench.gap.effects import effects
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import decide_in, show_in
@@ -141,7 +142,7 @@ def test_what_a_device_cannot_have_is_not_tried_and_told(circuit):
 
 def test_as_two_jobs_it_is_the_same(circuit, tmp_path):
     evidence, model, out = circuit
-    decide_in(tmp_path, evidence, model)
+    decide_in(tmp_path, evidence, model, Asked())
     show_in(tmp_path, evidence, model)
     one, two = (
         json.loads((folder / "gap.json").read_text()) for folder in (out, tmp_path)

@@ -14,6 +14,7 @@ import pytest
 from hystbench.challenge.case import make_case
 from hystbench.challenge.plant.effects import IN_ACTUATOR
 from hystbench.challenge.spec import CaseSpec, kind_of
+from hystbench.gap.asked import Asked
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state
@@ -88,7 +89,7 @@ def verdict(names, family, offered=None):
     """What the search says, round after round: the word, and the effects by name."""
     records, base = hidden(names, family)
     start, floor = start_state(records, base, offered=offered)
-    state = naming.add_effects(start, floor.rms).state
+    state = naming.add_effects(start, floor.rms, Asked()).state
     left = what_is_left(start, state, floor.rms)
     bound = floor.method == "upper-bound"
     unnamed = what_is_unnamed(start, state, floor.rms)

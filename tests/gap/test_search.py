@@ -9,6 +9,7 @@ from hystbench.blocks.curve import finer
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.errors import InputError
 from hystbench.gap import search as search_module
+from hystbench.gap.asked import Asked
 from hystbench.gap.bases.linear import CURVE, IdentifiedModel
 from hystbench.gap.beside_base import BesideBase
 from hystbench.gap.effects import effects
@@ -114,7 +115,9 @@ def decided(alike, *names, base=None, limits=None):
     plain, start, floor, found = alike
     named = rounds_of(start, found, *names)
     base = plain if base is None else base
-    return judge_and_tell("made", in_a_chain(base, start, floor, named), limits=limits)
+    return judge_and_tell(
+        "made", in_a_chain(base, start, floor, named), Asked(), limits
+    )
 
 
 def test_the_next_experiment_keeps_within_the_limits_that_were_asked(alike):
@@ -199,7 +202,9 @@ def test_rivals_beside_what_is_new_in_every_record_are_told_apart_without_it(ali
         for name in ("drive-lag", "sensor-lag")
     }
     named = rounds_of(start, lags, "drive-lag", "sensor-lag")
-    beside = judge_and_tell("made", in_a_chain(base, start, floor, named)).experiment
+    beside = judge_and_tell(
+        "made", in_a_chain(base, start, floor, named), Asked(), None
+    ).experiment
     plain = decided(alike, "drive-lag", "sensor-lag").experiment
     assert beside.left_out == ()
     assert beside.excitation.words == plain.excitation.words
@@ -253,7 +258,7 @@ def test_what_the_simulation_misses_by_its_steps_is_measured():
     base = Model("rig", CURRENT, DISPLACEMENT, chain)
     start, floor = start_state(measured(chain, 0.02), base, "band-limited", 0.02)
     beside = in_a_chain(base, start, floor, Named(start))
-    found = judge_and_tell("made", beside).content["fit"]
+    found = judge_and_tell("made", beside, Asked(), None).content["fit"]
     missed = []
     for one in start.records:
         fine = finer(one.u, 64)
@@ -265,7 +270,7 @@ def test_what_the_simulation_misses_by_its_steps_is_measured():
     base = Model("rig", CURRENT, DISPLACEMENT, gain)
     start, floor = start_state(measured(gain, 0.02), base, "band-limited", 0.02)
     beside = in_a_chain(base, start, floor, Named(start))
-    found = judge_and_tell("made", beside).content["fit"]
+    found = judge_and_tell("made", beside, Asked(), None).content["fit"]
     assert found["step_error"] == pytest.approx(0.0, abs=1e-9)
 
 

@@ -46,16 +46,11 @@ def identified_again(
     floor = found.floor.rms
     freed = freed_of_laws(found.base, named, evidence, floor)
     latest = _in_turns(found, freed, evidence, named_beside, say)
-    if latest is found and _laws_leave_much(found):
+    laws = without(found.named.state, found.named.state.paths)  # a path is no law
+    if latest is found and leaves_much(laws, found.start, found.floor):
         freed = freed_of_slow_law(found.base, evidence, floor, offered)
         latest = _in_turns(found, freed, evidence, named_beside, say)
     return latest
-
-
-def _laws_leave_much(found: BesideBase) -> bool:
-    """Tell whether laws leave more of the gap than a name may; a path is no law."""
-    state = found.named.state
-    return leaves_much(without(state, state.paths), found.start, found.floor)
 
 
 def _in_turns(

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hystbench.blocks.calls import USED_UP, current
-from hystbench.gap.asked import USUAL, Asked
+from hystbench.gap.asked import Asked
 from hystbench.gap.beside_base import BesideBase
 from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.experiment.tell_apart import Experiment, tell_apart
@@ -47,7 +47,6 @@ from hystbench.gap.naming.ladder import FitResult, contributions, rungs
 from hystbench.gap.records.black_box import BlackBox, black_box
 from hystbench.gap.records.floor import Floor, unrepeated
 from hystbench.gap.records.lone_samples import lone_share, lone_words
-from hystbench.gap.records.scored_samples import Compared
 from hystbench.model import Model
 
 
@@ -66,10 +65,7 @@ class Decision(FitResult):
 
 
 def judge_and_tell(
-    dataset: str,
-    found: BesideBase,
-    asked: Asked = USUAL,
-    limits: Limits | None = None,
+    dataset: str, found: BesideBase, asked: Asked, limits: Limits | None
 ) -> Decision:
     """Locate the gap, and give the verdict on what was named.
 
@@ -79,7 +75,7 @@ def judge_and_tell(
         Its name.
     found : BesideBase
     asked : Asked
-    limits : Limits, optional
+    limits : Limits or None
         Of the next experiment; those of the records where none are given.
     """
     say, share = asked.say, asked.unnamed_share
@@ -97,7 +93,8 @@ def judge_and_tell(
         lone=lone_share([item.residual[item.record.counted] for item in after]),
         unrepeated=unrepeated(after, floor.rms),
     )
-    judged = _judged(start, named, left, floor, before, found.own, share)
+    box = black_box(before, floor.rms)
+    judged = _judged(start, named, left, floor, box, found.own, share)
     effects = _effects(named, model, left, floor, judged.trust)
     if judged.verdict == "named" and (doubt := likelier_wrong(effects)):
         judged = judged._replace(verdict="unnamed", reason=f"{doubt}; {judged.reason}")
@@ -128,7 +125,7 @@ def judge_and_tell(
         "next_experiment": None if experiment is None else experiment.mapping(),
         "base_parameters": base_parameters(base, state),
         "simulator": simulator_mapping(model, start.records),
-        "black_box": {"explained_on_folds": judged.box.explained_on_folds},
+        "black_box": {"explained_on_folds": box.explained_on_folds},
         "warnings": [lone_words("fit", after, left.lone)] if left.lone_matters else [],
     }
     if why_none:
@@ -139,7 +136,7 @@ def judge_and_tell(
         base,
         state,
         floor,
-        judged.box,
+        box,
         ladder,
         found.own,
         model=model,
@@ -156,7 +153,6 @@ class _Judged(NamedTuple):
     reason: str
     trust: float
     unnamed: Unnamed
-    box: BlackBox
 
 
 def _judged(
@@ -164,25 +160,24 @@ def _judged(
     named: Named,
     left: Leftover,
     floor: Floor,
-    before: Sequence[Compared],
+    box: BlackBox,
     own: OwnValues,
     share: float,
 ) -> _Judged:
     """Give the verdict on what was named, and say why."""
     state = named.state
-    box = black_box(before, floor.rms)
     unnamed = what_is_unnamed(start, state, floor.rms, share)
     bound = floor.method == "upper-bound"
     size_tells = bound or left.is_new or unnamed.follows_nothing
     verdict, why = judge(
         left,
-        bool(state.added),
-        box.explained_on_folds,
-        bool(start.free),
-        bound,
-        not state.added and size_tells and size_follows(state),
-        unnamed,
-        what_mends(start.records),
+        named=bool(state.added),
+        explained_by_box=box.explained_on_folds,
+        retuned=bool(start.free),
+        floor_is_upper_bound=bound,
+        size_follows=not state.added and size_tells and size_follows(state),
+        unnamed=unnamed,
+        mends=what_mends(start.records),
     )
     beside = f"beside {own.words} of some records' own" if own.records else ""
     if verdict == "no-gap" and own.scales and own.share > share:
@@ -197,7 +192,7 @@ def _judged(
     )
     trust = unnamed.trust(left.may_be_of_base)
     reason = "; ".join(part for part in parts if part)
-    return _Judged(verdict, reason, trust, unnamed, box)
+    return _Judged(verdict, reason, trust, unnamed)
 
 
 def _effects(

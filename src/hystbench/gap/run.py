@@ -12,7 +12,7 @@ import numpy as np
 
 from hystbench.command_files import writes
 from hystbench.files import read_json, whole_folder, write_columns, write_json
-from hystbench.gap.asked import USUAL, Asked
+from hystbench.gap.asked import Asked
 from hystbench.gap.bases.gpi import IdentifiedGpi
 from hystbench.gap.bases.lead import begun_beside, without_leads
 from hystbench.gap.bases.linear import IdentifiedModel, is_identified_linear
@@ -90,7 +90,7 @@ def will_write(
 
 
 def closed_gap(
-    evidence: Evidence, base: Model, asked: Asked = USUAL, place: str = "model"
+    evidence: Evidence, base: Model, asked: Asked, place: str = "model"
 ) -> Closed:
     """Find what the base lacks, and show on hold-out records how the gap shrinks.
 
@@ -182,39 +182,22 @@ def hold_out_begun_like_fit(
 
 
 def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> None:
-    """Write gap.json, model.yaml and the hold-out records before and after.
-
-    Parameters
-    ----------
-    folder : Path
-    records : tuple of Record
-        The hold-out records.
-    outcome : Outcome
-    """
+    """Write gap.json, model.yaml and the hold-out records before and after."""
     names = ("time_s", "measured", "before", "after")
     for record, outputs in zip(records, outcome.outputs, strict=True):
         signals = (record.time, record.y, *outputs)
         columns = {name: x.tolist() for name, x in zip(names, signals, strict=True)}
+        # Nine digits are more than any instrument has, and half of a double's bytes.
         write_columns(folder / "holdout" / f"{record.name}.csv", columns, 9)
     outcome.model.save(folder / "model.yaml")
     write_json(folder / "gap.json", outcome.content)
 
 
 def write_next_experiment(decision: Decision, channel: Channel, path: Path) -> str:
-    """Write the excitation that tells likely effects apart, or tell why there is none.
+    """Write the excitation that tells likely effects apart; say if there is none.
 
-    Parameters
-    ----------
-    decision : Decision
-    channel : Channel
-        The input's.
-    path : Path
-        A CSV file, or an archive by its suffix ``.npz``.
-
-    Returns
-    -------
-    str
-        A line that tells what was done.
+    The channel is the input's; the path that of a CSV file, or of an archive by its
+    suffix ``.npz``.
     """
     if decision.experiment is None:
         needless = "no effects that were tried need to be told apart"
@@ -236,9 +219,7 @@ KEPT_BASES: dict[str, type[IdentifiedModel | IdentifiedGpi]] = {
 """Kinds of bases that are kept as they were first, by key."""
 
 
-def decide_in(
-    folder: Path, evidence: Evidence, base: Model, asked: Asked = USUAL
-) -> Decision:
+def decide_in(folder: Path, evidence: Evidence, base: Model, asked: Asked) -> Decision:
     """Decide on the fit records; write the decision and the curves to a folder."""
     writes(*(folder / name for name in DECIDED_FILES))
     decision, decided = decide(evidence, base, asked)
@@ -270,14 +251,8 @@ def decide_in(
 def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     """Read the hold-out records; write gap.json, model.yaml and holdout/.
 
-    They choose nothing: a model that is worse there than the base is taken back.
-
-    Parameters
-    ----------
-    folder : Path
-        With what :func:`decide_in` wrote.
-    evidence : Evidence
-    base : Model
+    They choose nothing: a model that is worse there than the base is taken back. The
+    folder holds what :func:`decide_in` wrote.
     """
     will_write(folder, evidence, DECISIVE)
     evidence, shown = show(evidence, _decided_in(folder, evidence, base))

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, partial
 
-from hystbench.gap.asked import USUAL, Asked
+from hystbench.gap.asked import Asked
 from hystbench.gap.bases.gpi import again_words, is_another
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import found_with, is_identified_linear
@@ -58,7 +58,7 @@ EXACT = "write 'free: []' in a model file that is exact"
 def search(
     evidence: Evidence,
     base: Model,
-    asked: Asked = USUAL,
+    asked: Asked,
     quantities: Quantities | None = None,
 ) -> Decision:
     """Locate the gap, name what is missing and add it.

@@ -33,10 +33,6 @@ STEPS = 12
 def behind_a_slow_drive(evidence: Evidence) -> tuple[Evidence, float] | None:
     """Give the fit records with what such a drive makes of their inputs.
 
-    Parameters
-    ----------
-    evidence : Evidence
-
     Returns
     -------
     tuple or None

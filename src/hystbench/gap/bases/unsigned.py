@@ -34,10 +34,6 @@ zero."""
 def with_signs(evidence: Evidence) -> Evidence | None:
     """Give the output of the fit records a sign, where the sensor may not show it.
 
-    Parameters
-    ----------
-    evidence : Evidence
-
     Returns
     -------
     Evidence or None

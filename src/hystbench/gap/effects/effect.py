@@ -227,12 +227,7 @@ class Effect(ABC):
         return None
 
     def stored(self, filled: Filled) -> Iterator[Changed]:
-        """Offer other numbers of stores in series.
-
-        Parameters
-        ----------
-        filled : Filled
-        """
+        """Offer other numbers of stores in series."""
         yield from ()
 
     def around(self, passed: Passed) -> Iterator[Law]:

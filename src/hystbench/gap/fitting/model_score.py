@@ -117,11 +117,7 @@ def floor_with_steps(noise_rms: float, error: float | None) -> float:
 def above_floor(state: ModelState, score: Score) -> float:
     """Tell how much could be gained in the score if all went that is no noise or step.
 
-    Parameters
-    ----------
-    state : ModelState
-    score : Score
-        Its floor is that of the noise.
+    The score's own floor is that of the noise.
     """
     floor = floor_with_steps(float(np.sqrt(score.floor)), step_error(state)) ** 2
     whole = replace(score, floor=floor)

@@ -301,11 +301,6 @@ def scanned(state: ModelState, floor_rms: float) -> ModelState:
     What a simulator of relays or of rounded numbers gives is a staircase of what it
     takes: the slope over a small step says nothing, and a refit stays where it began.
 
-    Parameters
-    ----------
-    state : ModelState
-    floor_rms : float
-
     Returns
     -------
     ModelState

@@ -46,11 +46,6 @@ class Outcome:
 def score_hold_out(fitted: FitResult, records: tuple[Record, ...]) -> Outcome:
     """Compare base and model on hold-out records.
 
-    Parameters
-    ----------
-    fitted : FitResult
-    records : tuple of Record
-
     Raises
     ------
     InputError

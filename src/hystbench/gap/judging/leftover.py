@@ -194,10 +194,6 @@ def size_follows(state: ModelState) -> bool:
     means in each record: levels that differ only between records are not seen. An F
     test at 5 % tells chance, for as many samples as are independent; of noise as slow
     as a record it lets more pass. A share that would be nothing of a gap is none here.
-
-    Parameters
-    ----------
-    state : ModelState
     """
     signals: list[list[FloatArray]] = [[] for _ in range(4)]
     for record, y in zip(state.records, state.exact, strict=True):

@@ -8,7 +8,7 @@ from operator import itemgetter
 
 from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
 from hystbench.blocks.forced import ForcedDynamics
-from hystbench.gap.asked import USUAL, Asked
+from hystbench.gap.asked import Asked
 from hystbench.gap.effects import among
 from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.in_stages import fitted_far
@@ -80,11 +80,7 @@ class Named:
         return replace(self, state=self.rounds[0].before, gone=(*self.gone, *gone))
 
 
-def add_effects(
-    state: ModelState,
-    floor_rms: float,
-    asked: Asked = USUAL,
-) -> Named:
+def add_effects(state: ModelState, floor_rms: float, asked: Asked) -> Named:
     """Add effects to a model for as long as one pays, or until little is left."""
     say = asked.say
     foretell(state, say)
@@ -281,7 +277,7 @@ def advance(
     first = ranking[0]
     for item in ranking[:SAID]:
         say(f"{item.effect} {item.form}: gain {item.gain:.1f}")
-    taken = pays(first, state, floor, progress)
+    taken = pays(first, state, floor, progress.gap, progress.share)
     one = Round(state, first.score + first.gain, ranking, taken)
     state = progress.state
     if taken:
@@ -346,7 +342,9 @@ def _shape_takes_more(
     return first.state.share(before, floor, gap) < MOST * most
 
 
-def pays(item: Candidate, state: ModelState, floor: float, progress: SoFar) -> bool:
+def pays(
+    item: Candidate, state: ModelState, floor: float, gap: float, needed: float
+) -> bool:
     """Tell whether an effect is to be added.
 
     The first has only to pay. A further one must take more than may stay unnamed as
@@ -357,7 +355,7 @@ def pays(item: Candidate, state: ModelState, floor: float, progress: SoFar) -> b
         return False
     if not state.added:
         return True
-    share = item.state.share(state, floor, progress.gap)
+    share = item.state.share(state, floor, gap)
     if is_shape_that_matters(item.effect, item.gain, share):
         return True
-    return item.gain > FURTHER and share > progress.share
+    return item.gain > FURTHER and share > needed

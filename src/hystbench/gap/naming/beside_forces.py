@@ -9,7 +9,7 @@ from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import finished, finished_to_the_end
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.naming.add_effects import Named, SoFar, names, pays
+from hystbench.gap.naming.add_effects import Named, names, pays
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.naming.removal import without_what_goes
 from hystbench.gap.naming.rounds import Round
@@ -71,7 +71,7 @@ def _with_one_beside(
         return None
     ranking = rank(state, make_score(state, floor_rms), known, needs=FURTHER)
     first = ranking[0]
-    if not pays(first, state, floor, SoFar(state, gap, share)):
+    if not pays(first, state, floor, gap, share):
         return None
     assert first.state is not None  # noqa: S101  (for the type checker)
     one = Round(state, first.score + first.gain, ranking, True)

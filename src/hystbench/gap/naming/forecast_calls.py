@@ -33,10 +33,6 @@ def calls_of_a_round(state: ModelState) -> int:
     What the grids ask is counted. What comes behind them depends on what is found
     there, and is estimated by typical numbers.
 
-    Parameters
-    ----------
-    state : ModelState
-
     Returns
     -------
     int

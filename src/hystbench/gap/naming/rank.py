@@ -82,18 +82,9 @@ def rank(
         Finalists first, then the others, then those that declined.
     """
     known = tuple(among(state.offered).values()) if known is None else tuple(known)
-    have = {item.effect for item in state.added}
     now = score_of(state, score)
     places = {effect.name: effect.place for effect in known}
-    why_not = {name: "added already" for name in places if name in have}
-    if SHAPE in places and _loop_is_free(state):
-        why_not.setdefault(SHAPE, FITTED_WITH_IT)
-    looks: list[Seen] = []
-    for effect in known:
-        if effect.name not in why_not:
-            trials, why = seen(effect, state, score)
-            looks += trials
-            why_not |= {effect.name: why} if why else {}
+    looks, why_not = _first_looks(known, state, score)
     worth = needs * (1 - BEHIND)
     found, refused = on_all_records(
         looks, now, lambda most: max(min(_near(most), most * (1 - BEHIND)), worth)
@@ -113,13 +104,11 @@ def rank(
         # The same law from another start is no other law: the better one counts.
         if all(one[:-1] != other[:-1] for other in own):
             own.append(one)
+    enough = now - max((now - best) * (1 - BEHIND), worth)
     likely = [
         trial
         for number, trial in enumerate(of_effect.values())
-        if (
-            number < FINALISTS
-            and trial.score < now - max((now - best) * (1 - BEHIND), worth)
-        )
+        if (number < FINALISTS and trial.score < enough)
         or (trial.variant.effect == SHAPE and now - trial.score > PAYS)
     ]
     shown = {trial.variant.effect for trial in likely}
@@ -157,20 +146,49 @@ def rank(
     if not folds:
         candidates = by_all_their_laws(candidates)
         return tuple(beyond_simpler_laws(candidates, state, score))
-    candidates = in_order(
-        _not_cut_short(item, state) for item in first_on_folds(candidates, state, score)
-    )
-    # Folds may put one first that was not simulated exactly.
+    candidates = _first_exact(candidates, exact, state, score, now)
+    candidates = beyond_simpler_laws(by_all_their_laws(candidates), state, score)
+    return tuple(simplest_of_a_tie(candidates, exact, needs))
+
+
+def _first_looks(
+    known: Sequence[Effect], state: ModelState, score: Score
+) -> tuple[list[Seen], dict[str, str]]:
+    """Try effects on some samples; tell why not, by name."""
+    looks: list[Seen] = []
+    names, have = [item.name for item in known], {x.effect for x in state.added}
+    why_not = {name: "added already" for name in names if name in have}
+    if SHAPE in names and _loop_is_free(state):
+        why_not.setdefault(SHAPE, FITTED_WITH_IT)
+    for effect in known:
+        if effect.name not in why_not:
+            trials, why = seen(effect, state, score)
+            looks += trials
+            why_not |= {effect.name: why} if why else {}
+    return looks, why_not
+
+
+def _first_exact(
+    candidates: Sequence[Candidate],
+    exact: list[str],
+    state: ModelState,
+    score: Score,
+    now: float,
+) -> list[Candidate]:
+    """Judge candidates on folds till the first one was simulated exactly as well.
+
+    What is simulated here is added to ``exact``.
+    """
+    found = first_on_folds(candidates, state, score)
+    candidates = in_order(_not_cut_short(item, state) for item in found)
     while candidates[0].effect not in exact and candidates[0].held_back:
         first = candidates.pop(0)
         exact.append(first.effect)
         again = on_folds(exactly(first, score, now), state, score)
         # Behind it there may now be one that could not be the first before.
-        candidates = in_order(
-            first_on_folds(in_order([again, *candidates]), state, score)
-        )
-    candidates = beyond_simpler_laws(by_all_their_laws(candidates), state, score)
-    return tuple(simplest_of_a_tie(candidates, exact, needs))
+        found = first_on_folds(in_order([again, *candidates]), state, score)
+        candidates = in_order(found)
+    return candidates
 
 
 def _near(gain: float) -> float:
@@ -308,14 +326,7 @@ def does_without_itself(
 ) -> bool:
     """Tell whether a model fits alike without what makes an effect that effect.
 
-    Parameters
-    ----------
-    state : ModelState
-    item : Added
-        The effect.
-    value : float
-        What the model scores.
-    score : Score
+    ``value`` is what it scores with it.
     """
     bare = effects()[item.effect].without_itself([state.chain[k] for k in item.blocks])
     if bare is None:

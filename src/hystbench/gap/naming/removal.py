@@ -48,13 +48,13 @@ def without_what_goes(
     gone : tuple of TakenOut
         In the order in which they went.
     """
-    looks: list[Callable[[ModelState], Without | None]] = []
+    rules: list[Callable[[ModelState], Without | None]] = []
     if gap is not None:
-        looks.append(partial(needless, floor_rms=floor_rms, gap=gap))
-    looks.append(partial(unknown, floor_rms=floor_rms))
+        rules.append(partial(needless, floor_rms=floor_rms, gap=gap))
+    rules.append(partial(unknown, floor_rms=floor_rms))
     gone: list[TakenOut] = []
-    for look in looks:
-        while len(state.added) > 1 and (found := look(state)) is not None:
+    for rule in rules:
+        while len(state.added) > 1 and (found := rule(state)) is not None:
             one, state = found
             say(f"{one.name} goes: {one.reason}")
             gone.append(one)

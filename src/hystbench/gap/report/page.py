@@ -36,10 +36,6 @@ def write_report(folder: str | Path) -> Path:
     The page stands alone: pictures are inside, there is no script, and nothing is
     fetched. It reads gap.json, model.yaml, the tables in holdout/ and curves.json.
 
-    Parameters
-    ----------
-    folder : str or Path
-
     Returns
     -------
     Path

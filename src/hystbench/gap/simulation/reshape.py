@@ -54,11 +54,6 @@ Maker = Callable[[Block, Signals, Signals, ScoredSamples | None], list[Signals]]
 def reshapings(simulation: Simulation, sample: ScoredSamples) -> FloatArray:
     """Give what reshaping the hysteresis could add to the output.
 
-    Parameters
-    ----------
-    simulation : Simulation
-    sample : ScoredSamples
-
     Returns
     -------
     ndarray, shape (scored samples, k)
