@@ -244,7 +244,7 @@ class GapSearch:
                 say("inside: what stands for the base leaves more than the base does")
                 (start, floor), inside, own = whole, None, NONE
         if inside is not None:
-            start, inside, own = self.with_no_input(start, floor, inside, own)
+            start, inside, own = self.not_of_the_input(start, floor, inside, own)
         # A base that was given is re-tuned where it is a host: that may stand for a
         # chain. So may a free form beside forces.
         if inside is not None and identified and not has_free_form(inside.named.state):
@@ -331,7 +331,7 @@ class GapSearch:
             start, inside, own = apart_inside(start, inside, floor.rms, forces, say)
         return start, floor, inside, own
 
-    def with_no_input(
+    def not_of_the_input(
         self, start: ModelState, floor: Floor, inside: Inside, own: OwnValues
     ) -> tuple[ModelState, Inside, OwnValues]:
         """Name beside forces what the input does not explain: signals, or offsets."""

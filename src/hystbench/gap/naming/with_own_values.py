@@ -71,20 +71,13 @@ def named_apart(
     least = score_of(named.state, score) - (0.0 if paths else PAYS)
     if least <= score.least(start.freedom + 1):
         return found  # noise alone, and what is their own charged, scores no less
-    kinds = kinds_of(start)
     # A path is charged half a number in each record or more, an offset a whole one.
     half = PARAMETER * len(start.records) / 2 if paths else 0.0
 
     def charge(own: OwnValues) -> float:
         return own.charge - (half if own.kinds == ("offset",) else 0.0)
 
-    # Beside a delay, a gain or an offset that all records share it would not be seen
-    # that each has its own.
-    states = dict.fromkeys((named.state, without(named.state, SHARED), start))
-    models = [(state, kinds) for state in states]
-    if paths:
-        # A path follows an offset, so that it may stand for that of each record.
-        models.append((beside_offsets(named.state, start, score), ("offset",)))
+    models = _models_beside_which(named.state, start, score)
     likely = _likely(start, models, score, least, charge)
     # Beside more than that they cannot be told from what the simulator does wrong.
     most = max(ABOVE_NOISE * square, share * start.power(square))
@@ -114,8 +107,22 @@ def named_apart(
         if same:
             break  # naming has told all that it can
         told = on_records(again.state, start.records)
-        likely = _likely(start, [(told, kinds)], score, least, charge)
+        likely = _likely(start, [(told, kinds_of(start))], score, least, charge)
     return found
+
+
+def _models_beside_which(
+    state: ModelState, start: ModelState, score: Score
+) -> list[tuple[ModelState, tuple[str, ...]]]:
+    """Give models beside which a record's own may show, with the kinds looked for.
+
+    Beside a delay, a gain or an offset that all records share it would not be seen that
+    each has its own. A path follows an offset, so that it may stand for each one's.
+    """
+    models = dict.fromkeys((state, without(state, SHARED), start), kinds_of(start))
+    if state.paths:
+        models[beside_offsets(state, start, score)] = ("offset",)
+    return list(models.items())
 
 
 def _names(named: Named) -> set[tuple[str, str]]:
