@@ -86,6 +86,9 @@ class Record:
         over them; scores leave them out.
     past : int
         How many of these were put before the record: what came just before it.
+    injected : ndarray, shape (n,), optional
+        What an observer adds to the input, in its unit, so that a simulated motion
+        follows the measured one.
     """
 
     name: str
@@ -102,10 +105,12 @@ class Record:
     decay_s: float | None = None
     lead: int = 0
     past: int = 0
+    injected: FloatArray | None = None
 
     def __post_init__(self) -> None:
         """Freeze the arrays: a record is evidence."""
-        for array in (self.u, self.y, self.simulated, self.interpolated):
+        arrays = self.u, self.y, self.simulated, self.interpolated, self.injected
+        for array in arrays:
             if array is not None:
                 array.setflags(write=False)
 
@@ -132,6 +137,11 @@ class Record:
             return self
         alone = self.cut(slice(self.past, None))
         return replace(alone, period_samples=self.period_samples)
+
+    @property
+    def driven(self) -> FloatArray:
+        """What drives a model of it: the input, with what an observer adds."""
+        return self.u if self.injected is None else self.u + self.injected
 
     @property
     def counted(self) -> Mask:
@@ -178,8 +188,9 @@ class Record:
         whole = blake2b(json.dumps(about).encode(), digest_size=16)
         for array in (self.u, self.y, self.simulated):
             whole.update(b"none" if array is None else array.tobytes())
-        if self.interpolated is not None:
-            whole.update(self.interpolated.tobytes())
+        for extra in (self.interpolated, self.injected):
+            if extra is not None:
+                whole.update(extra.tobytes())
         return whole.hexdigest()
 
     def cut(self, kept: slice) -> Record:
@@ -190,7 +201,7 @@ class Record:
         kept : slice
             Samples in a row, or every n-th of them.
         """
-        simulated, lost = self.simulated, self.interpolated
+        simulated, lost, injected = self.simulated, self.interpolated, self.injected
         u = self.u[kept].copy()
         first, _, step = kept.indices(len(self))
         return replace(
@@ -201,6 +212,7 @@ class Record:
             period_samples=None,
             simulated=None if simulated is None else simulated[kept].copy(),
             interpolated=None if lost is None else lost[kept].copy(),
+            injected=None if injected is None else injected[kept].copy(),
             lead=min(len(range(first, self.lead, step)), len(u)),
             past=min(len(range(first, self.past, step)), len(u)),
         )

@@ -28,10 +28,12 @@ from hystbench.gap.judge_and_tell import Decision
 from hystbench.gap.naming.built_in import BuiltIn, build_in
 from hystbench.gap.naming.forecast_calls import reserve_calls
 from hystbench.gap.naming.ladder import FitResult, Rung
+from hystbench.gap.observed import model_without_damper, with_observer
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.black_box import black_box
 from hystbench.gap.records.evidence import Evidence, check_units
 from hystbench.gap.records.floor import Floor
+from hystbench.gap.records.observer import observed
 from hystbench.gap.search import search
 from hystbench.gap.vocabulary import Vocabulary, say_in_words, with_device
 from hystbench.model import Model
@@ -119,14 +121,25 @@ def closed_gap(
 def decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Decided]:
     """Put in what is asked for, and find what the fit records say is missing.
 
-    The search is given no other records.
+    The search is given no other records. Where nothing can be named beside a linear
+    base that was identified, an observer is tried.
     """
     vocabulary = asked.vocabulary.in_device(evidence.device_kind)
     asked = replace(asked, vocabulary=vocabulary, say=say_in_words(asked.say))
+    found = _decide(evidence.deciding, base, asked)
+    unsettled = found[0].content["verdict"] == "unnamed"
+    if not unsettled or not is_identified_linear(base) or vocabulary.fixed:
+        return found
+    return with_observer(evidence.deciding, _decide, asked) or found
+
+
+def _decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Decided]:
+    """Find what is missing on records as they are."""
+    vocabulary = asked.vocabulary
     hold, takes = evidence.input_hold, evidence.quantities
     begun = begun_beside(base, evidence.fit)
     fit = without_leads(begun, base, hold, takes, asked.say)
-    evidence = replace(evidence.deciding, fit=fit)
+    evidence = replace(evidence, fit=fit)
     first = base
     base, built_in = build_in(base, evidence, vocabulary.fixed, asked.say)
     quantities = quantities_if_linear(base, evidence)
@@ -156,8 +169,11 @@ def show(
     outcome : Outcome
     """
     own = say_in_words(say)
+    evidence = observed(evidence, decided.damper)
     evidence = hold_out_begun_like_fit(evidence, decided.first, decided.fitted, own)
     outcome = show_on_hold_out(decided, evidence)
+    model = model_without_damper(outcome.model, decided.damper)
+    outcome = replace(outcome, model=model)
     measured = tuple(record.as_measured for record in evidence.hold_out)
     return replace(evidence, hold_out=measured), outcome
 
@@ -239,6 +255,7 @@ def decide_in(folder: Path, evidence: Evidence, base: Model, asked: Asked) -> De
         "without": list(decided.vocabulary.without),
         "with": list(decided.vocabulary.fixed),
         "built_in": None if built_in is None else built_in.mapping(),
+        "damper": decided.damper,
     }
     with whole_folder(folder, DECIDED_FILES) as fresh:
         write_json(fresh / "curves.json", decision.curves)
@@ -263,6 +280,7 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
 def _decided_in(folder: Path, evidence: Evidence, base: Model) -> Decided:
     """Give back what :func:`decide_in` wrote."""
     kept, content = read_json(folder / NAMED), read_json(folder / DECISION)
+    evidence = observed(evidence, kept["damper"])
     floor, own = Floor(**kept["floor"]), OwnValues.of_mapping(content["record_values"])
     first = base
     for key, kind in KEPT_BASES.items():
@@ -281,4 +299,5 @@ def _decided_in(folder: Path, evidence: Evidence, base: Model) -> Decided:
     vocabulary = vocabulary.in_device(evidence.device_kind)
     built_in = BuiltIn.of_mapping(kept["built_in"]) if kept["built_in"] else None
     fitted = FitResult(base, state, floor, box, rungs, own)
-    return Decided(first, fitted, content, vocabulary, built_in)
+    about = first, fitted, content, vocabulary, built_in
+    return Decided(*about, kept["damper"])

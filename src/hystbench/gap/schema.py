@@ -287,6 +287,14 @@ SCHEMA = _object(
     calls_used_up=_object({"bound": {"type": "integer"}, "sentence": WORDS}),
     warnings=NAMES,
     no_experiment=WORDS,
+    observer=_object(
+        {
+            "damper": NUMBER,
+            "free_run_left": NUMBER,
+            "errors_grow": NUMBER,
+            "sentence": WORDS,
+        }
+    ),
 )
 
 _NOTHING: dict[str, Any] = {"array": [], "string": ""}

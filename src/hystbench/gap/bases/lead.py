@@ -140,7 +140,7 @@ def _without(record: Record, base: Model, asked: Model, most: float) -> Record:
     lead = len(free)
     if lead == 0:
         return record
-    rest = record.y - asked.begun_on(record).simulate(record.u, record.dt)
+    rest = record.y - asked.begun_on(record).simulate(record.driven, record.dt)
     first, behind = rest[:lead], rest[lead:][record.counted[lead:]]
     measured = record.counted[:lead]
     first, free = first[measured], free[measured]
@@ -173,7 +173,8 @@ def _free_motion(model: Model, record: Record, most: float) -> FloatArray:
         elif isinstance(block, Store):
             order += 1
     model = model.begun_once()
-    u = np.concatenate([np.full(order, record.u[0]), record.u])
+    driven = record.driven
+    u = np.concatenate([np.full(order, driven[0]), driven])
     now = model.simulate(u, record.dt)
     size = np.std(record.u) or np.max(np.abs(record.u)) or 1.0
     motion = np.zeros((len(record), order))

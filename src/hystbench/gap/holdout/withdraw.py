@@ -57,6 +57,8 @@ class Decided:
     """What the user put in or left out, which is told."""
     built_in: BuiltIn | None
     """None where no effect was put in."""
+    damper: float = 0.0
+    """Of the observer that it was decided with; zero without one."""
 
 
 def show_on_hold_out(decided: Decided, evidence: Evidence) -> Outcome:

@@ -207,7 +207,7 @@ def _solved_for(
     found: list[list[tuple[float, float, Begun]]] = [[] for _ in outputs]
     for unit in units:
         rough = replace(unit, **roughly)
-        moved = [started(rough, r).motion(r.u, r.dt, ()) for r in records]
+        moved = [started(rough, r).motion(r.driven, r.dt, ()) for r in records]
         other = beside(unit)
         for output, own in zip(outputs, found, strict=True):
             seen: Any = {"output": output, "hold": hold}

@@ -76,7 +76,7 @@ class Simulation:
 
     @cached_property
     def _at(self) -> dict[int, Signals]:
-        return {0: tuple(record.u for record in self.records)}
+        return {0: tuple(record.driven for record in self.records)}
 
     @cached_property
     def output(self) -> Signals:
@@ -154,7 +154,9 @@ class Simulation:
         for places in self._begun_alike(self.chain):
             records = [self.records[k] for k in places]
             steps = [self._begun(chain, records[0]) for chain in (self.chain, *chains)]
-            us, dts = zip(*((record.u, record.dt) for record in records), strict=True)
+            us, dts = zip(
+                *((record.driven, record.dt) for record in records), strict=True
+            )
             every = zip(*through_near(steps, us, dts), strict=True)
             found.update(zip(places, map(np.column_stack, every), strict=True))
         return tuple(found[k] for k in range(len(self.records)))

@@ -1,0 +1,205 @@
+"""Deciding with an observer: where a free run of a model tells nothing of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.gap.asked import Asked
+from hystbench.gap.bases.linear import IdentifiedModel, with_its_numbers_free
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.effect import Effect
+from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.on_records import on_records
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.uncertainty import on_more_samples, standard_errors
+from hystbench.gap.holdout.withdraw import Decided
+from hystbench.gap.inside.one_coordinate import best_host, one_coordinate
+from hystbench.gap.judge_and_tell import Decision
+from hystbench.gap.naming.ladder import FitResult
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.observer import observed, observer_for
+from hystbench.gap.records.scored_samples import ScoredSamples
+from hystbench.gap.vocabulary import Vocabulary
+from hystbench.model import Model
+from hystbench.units import sized
+
+
+def with_observer(
+    evidence: Evidence,
+    decide: Callable[[Evidence, Model, Asked], tuple[Decision, Decided]],
+    asked: Asked,
+) -> tuple[Decision, Decided] | None:
+    """Decide anew beside an observer, where a free run may go astray.
+
+    That stands if forces are named then, and a free run of the model tells nothing.
+
+    Parameters
+    ----------
+    evidence : Evidence
+        Without its hold-out records. Nothing was named on them as they are.
+    decide : callable
+        Decides on records beside a base.
+    asked : Asked
+
+    Returns
+    -------
+    tuple of Decision and Decided, or None
+        None where it does not stand, or no force moves the device.
+    """
+    damper, say = observer_for(evidence), asked.say
+    if damper is None:
+        return None
+    own = observed(evidence, damper)
+    mass = mass_on_a_spring(own)
+    if mass is None:
+        return None
+    say("a free run may go astray: naming forces beside an observer")
+    forces = replace(asked, vocabulary=of_forces(asked.vocabulary))
+    decision, decided = decide(own, mass, forces)
+    if decision.content["verdict"] != "named":
+        say("beside an observer none is named")
+        return None
+    free = FreeRun(decision, damper)
+    if not free.tells_nothing:
+        say("a free run speaks against what is named beside an observer")
+        return None
+    content = told(decided.content, evidence, damper, free)
+    decided = replace(
+        decided, content=content, vocabulary=asked.vocabulary, damper=damper
+    )
+    return replace(decision, content=content), decided
+
+
+def mass_on_a_spring(evidence: Evidence) -> Model | None:
+    """Give the mass that moves nearest to what fit records show; None where none does.
+
+    It stands for the base: an order that is chosen by what friction or a stop leaves,
+    with an observer beside it, would be too high.
+    """
+    floor = np.finfo(float).tiny
+    score = Score.plain(ScoredSamples.of(evidence.fit), floor)
+    about = evidence.fit, evidence.quantities, evidence.input_hold
+    best = best_host(one_coordinate(*about), score)
+    if best is None:
+        return None
+    name, channels = "linear", (evidence.input, evidence.output)
+    model = IdentifiedModel(name, *channels, best.state.chain)
+    return with_its_numbers_free(model)
+
+
+def of_forces(vocabulary: Vocabulary) -> Vocabulary:
+    """Leave out what does not act inside a mechanism.
+
+    An observer acts on the mass. What lies before the mass or behind it would change
+    the observer's force, which was measured.
+    """
+    closed = {*vocabulary.without, *vocabulary.fixed}
+    elsewhere = tuple(
+        name
+        for name, effect in effects().items()
+        if type(effect).in_mechanism is Effect.in_mechanism and name not in closed
+    )
+    return replace(vocabulary, without=(*vocabulary.without, *elsewhere))
+
+
+class FreeRun:
+    """What a model that was found beside an observer does without one, on fit records.
+
+    Parameters
+    ----------
+    found : FitResult
+    damper : float
+        Of the observer.
+    """
+
+    def __init__(self, found: FitResult, damper: float) -> None:
+        """Run it, and with each of its numbers off by its standard error."""
+        state, self.noise = found.state, found.floor.rms**2
+        alone = tuple(replace(record, injected=None) for record in state.records)
+        chain = without_damper(state.chain, damper)
+        free = on_records(state.with_chain(chain), alone)
+        self.left = max(free.power(self.noise), 0.0)
+        """Mean square that it leaves above the noise."""
+        errors = _errors(state, found.floor.rms)
+        self.growth = _moved(free, errors) / _moved(state, errors)
+        """How many times as much, in power, its errors do as beside the observer."""
+
+    @property
+    def tells_nothing(self) -> bool:
+        """Whether an error as large as noise, beside the observer, may be all of it."""
+        return self.left <= self.growth * self.noise
+
+
+def _errors(state: ModelState, floor_rms: float) -> dict[int, float]:
+    """Give standard errors of the free numbers that the records tell of."""
+    finer = on_more_samples(state)
+    errors = standard_errors(finer, make_score(finer, floor_rms, forms=False))
+    return {k: float(x) for k, x in enumerate(errors) if np.isfinite(x)}
+
+
+def _moved(state: ModelState, errors: dict[int, float]) -> float:
+    """Sum the mean squares by which small changes move a model, one at a time."""
+    with np.errstate(over="ignore", invalid="ignore"):  # it may run away
+        return float(
+            sum(
+                np.mean((state.moved({k: error}).left - state.left) ** 2)
+                for k, error in errors.items()
+            )
+        )
+
+
+def without_damper(chain: tuple[Block, ...], damper: float) -> tuple[Block, ...]:
+    """Take the damper of an observer out of the mass that a chain holds."""
+    return tuple(
+        replace(block, damping=max(block.damping - damper, 0.0))
+        if isinstance(block, Mechanism)
+        else block
+        for block in chain
+    )
+
+
+def model_without_damper(model: Model, damper: float) -> Model:
+    """Take the damper of an observer out of a model."""
+    if damper == 0.0:
+        return model
+    return replace(model, chain=without_damper(model.chain, damper))
+
+
+def told(
+    content: Mapping[str, Any], evidence: Evidence, damper: float, free: FreeRun
+) -> dict[str, Any]:
+    """Say in gap.json's content that an observer was at work."""
+    unit = evidence.output.unit
+    rate = "" if evidence.quantities.output == "velocity" else " s"
+    left = sized(float(np.sqrt(free.left)), unit)
+    words = (
+        f"by an observer: a damper of {damper:.3g} {evidence.input.unit}{rate}/{unit} "
+        "draws every simulated motion to the measured one. Without it errors grow to "
+        f"{np.sqrt(free.growth):.2g} times the size: a free run of the model leaves "
+        f"{left} rms of the fit records above the noise floor"
+    )
+    numbers = {
+        name: {
+            key: max(value - damper, 0.0) if name.endswith(".damping") else value
+            for key, value in row.items()
+        }
+        for name, row in content["base_parameters"].items()
+    }
+    return {
+        **content,
+        "base_parameters": numbers,
+        "observer": {
+            "damper": damper,
+            "free_run_left": float(np.sqrt(free.left)),
+            "errors_grow": float(np.sqrt(free.growth)),
+            "sentence": words,
+        },
+        "reason": f"{content['reason']}; {words}",
+    }

@@ -1,0 +1,95 @@
+"""Records whose simulated motion is drawn to the measured one, as an observer does.
+
+A controller may keep a machine where friction or a stop would throw it about. Simulated
+from its recorded force alone, without the controller, it goes another way after a small
+error. An observer [1]_ adds ``d (v - w)`` to the force, v the measured velocity and w
+the simulated one. Here it is done in two parts: ``d v`` goes into the records
+(:attr:`Record.injected`), and ``d w`` is a damper in the model. Simulating the
+controller [2]_ does the same where it is known.
+
+References
+----------
+.. [1] D. G. Luenberger, "An introduction to observers", IEEE Transactions on Automatic
+   Control 16 (1971) 596-602.
+.. [2] M. Gautier, A. Janot, P.-O. Vandanjon, "A new closed-loop output error method for
+   parameter identification of robot dynamics", IEEE Transactions on Control Systems
+   Technology 21 (2013) 428-444.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.free_mass import decay_of_free_mass
+from hystbench.record import FloatArray, Record
+
+NEIGHBOURS, DEGREE = 3, 4
+"""Samples on either side through which a polynomial gives the velocity."""
+
+
+def observer_for(evidence: Evidence) -> float | None:
+    """Give the damper of an observer that is as strong as what moves the device.
+
+    Its force on a model that stands still is as large as the recorded one, rms.
+
+    Parameters
+    ----------
+    evidence : Evidence
+
+    Returns
+    -------
+    float or None
+        In the input's unit per unit of velocity. None where the input is no force, or
+        the output neither a position nor a velocity.
+    """
+    about = evidence.quantities
+    if about.causality != "force to motion":
+        return None
+    if about.output not in ("position", "velocity"):
+        return None
+    force, motion = (
+        np.mean([np.mean(x**2) for x in each])
+        for each in (
+            [record.u for record in evidence.fit],
+            [_velocity(record, about.output) for record in evidence.fit],
+        )
+    )
+    return float(np.sqrt(force / motion)) if force and motion else None
+
+
+def observed(evidence: Evidence, damper: float) -> Evidence:
+    """Give records that an observer of such a damper has added its force to.
+
+    Parameters
+    ----------
+    evidence : Evidence
+        Its output is a position or a velocity.
+    damper : float
+        In the input's unit per unit of velocity; zero gives the records as they are.
+    """
+    if damper == 0.0:
+        return evidence
+    output = evidence.quantities.output
+    every = (*evidence.fit, *evidence.hold_out)
+    found = [replace(x, injected=damper * _velocity(x, output)) for x in every]
+    if evidence.in_windows:  # an unknown velocity dies out sooner
+        driven = [replace(x, u=x.driven) for x in found]
+        decay = decay_of_free_mass(driven, evidence.quantities)
+        if decay is not None:
+            found = [replace(x, decay_s=decay) for x in found]
+    fit, hold_out = found[: len(evidence.fit)], found[len(evidence.fit) :]
+    return replace(evidence, fit=tuple(fit), hold_out=tuple(hold_out))
+
+
+def _velocity(record: Record, output: str) -> FloatArray:
+    """Give the measured velocity, by polynomials where the position was measured."""
+    if output == "velocity":
+        return record.y
+    from scipy.signal import savgol_filter  # late: few searches need it
+
+    window = 2 * NEIGHBOURS + 1
+    slope = savgol_filter(record.y, window, DEGREE, deriv=1, delta=record.dt)
+    return np.asarray(slope)

@@ -1,0 +1,198 @@
+"""A machine that a controller keeps from going astray, found beside an observer.
+
+The plant is written here: a mass between two stops, small steps of symplectic Euler.
+"""
+
+import json
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from hystbench.gap import run
+from hystbench.gap.asked import Asked
+from hystbench.gap.bases.linear import IdentifiedModel
+from hystbench.gap.fitting.on_records import run_base
+from hystbench.gap.fitting.state import Free
+from hystbench.gap.observed import FreeRun, with_observer
+from hystbench.gap.records.floor import Floor
+from hystbench.gap.records.observer import observed, observer_for
+from hystbench.gap.vocabulary import Vocabulary
+from hystbench.model import Model, load_model
+from hystbench.quantities import Quantities
+from hystbench.record import Channel, Record
+from tests.gap.made import evidence_of
+from tests.gap.searched import among
+from tests.gap.small import block, state_of
+
+DT, FINE = 5e-4, 20
+MASS, DAMPING, SPRING = 1e-5, 4e-4, 2.3  # N s2/mm, N s/mm, N/mm
+GAP, CONTACT = 0.9, 15.0  # mm, N/mm
+NOISE = 8.0  # mm/s
+FORCE, VELOCITY = Channel("force", "N"), Channel("velocity", "mm/s")
+
+
+def machine(reference, gain=4.0, rate_gain=0.004):
+    """Force of a controller of position and speed, and the velocity that it makes."""
+    h, fine = DT / FINE, np.repeat(reference, FINE)
+    slope = np.gradient(fine, h)
+    force, velocity = np.empty(len(fine)), np.empty(len(fine))
+    q = v = 0.0
+    for k, (wanted, rate) in enumerate(zip(fine.tolist(), slope.tolist(), strict=True)):
+        f = gain * (wanted - q) + rate_gain * (rate - v)
+        beyond = max(q - GAP, 0.0) + min(q + GAP, 0.0)
+        force[k], velocity[k] = f, v
+        v += h * (f - SPRING * q - CONTACT * beyond - DAMPING * v) / MASS
+        q += h * v
+    # What is slow against the sampling rate: its means over a sample.
+    return tuple(x.reshape(-1, FINE).mean(axis=1) for x in (force, velocity))
+
+
+def smooth(seed, count=1200):
+    """A sum of sines that begins at rest."""
+    rng, time = np.random.default_rng(seed), np.arange(count) * DT
+    sines = sum(
+        np.sin(2 * np.pi * f * time + rng.uniform(0, 6)) for f in rng.uniform(8, 90, 9)
+    )
+    return 0.55 * sines * np.minimum(time / 0.05, 1.0) ** 2
+
+
+@pytest.fixture(scope="module")
+def kept_in_place():
+    rng, records = np.random.default_rng(5), []
+    for seed, use in ((1, "fit"), (2, "fit"), (3, "hold-out")):
+        u, v = machine(smooth(seed))
+        y = v + NOISE * rng.standard_normal(len(v))
+        about = FORCE, VELOCITY, "twin", use
+        records.append(Record(f"run-{seed}", DT, u, y, *about))
+    told = "band-limited", NOISE, "force", "velocity"
+    return evidence_of("kept in place", records, *told)
+
+
+def left(model, records):
+    outputs = run_base(model, records, "band-limited")
+    pairs = zip(records, outputs, strict=True)
+    return np.sqrt(np.mean([np.mean((x.y - y) ** 2) for x, y in pairs]))
+
+
+def true_model(damper=0.0):
+    numbers = {"mass": MASS, "damping": DAMPING + damper, "stiffness": SPRING}
+    mass = block("mechanism", output="velocity", **numbers)
+    stop = block("stop", gap=GAP, contact_stiffness=CONTACT)
+    return Model("true", FORCE, VELOCITY, (mass, stop))
+
+
+def test_beside_an_observer_the_true_machine_leaves_noise_and_alone_it_does_not(
+    kept_in_place,
+):
+    damper = observer_for(kept_in_place)
+    own = observed(kept_in_place, damper)
+    assert left(true_model(), kept_in_place.fit) > 2 * NOISE
+    assert left(true_model(damper), own.fit) < 1.1 * NOISE
+
+
+@pytest.fixture(scope="module")
+def decided(kept_in_place):
+    asked = Asked(vocabulary=among("stop", "stiffness-hardening", "slider-with-gap"))
+    return with_observer(kept_in_place.deciding, run._decide, asked)
+
+
+def test_the_stop_is_named_with_its_numbers(kept_in_place, decided):
+    _, shown = run.show(kept_in_place, decided[1])
+    content, model = shown.content, shown.model
+    assert content["verdict"] == "named"
+    (effect,) = content["effects"]
+    assert (effect["name"], effect["place"]) == ("stop", "inside")
+    found = {name: x["value"] for name, x in effect["parameters"].items()}
+    true = {"gap": GAP, "contact_stiffness": CONTACT}
+    assert found == pytest.approx(true, rel=0.03)
+    # The damper is in no number that a user gets.
+    assert model.value("mechanism.damping") == pytest.approx(DAMPING, abs=1e-4)
+    told = content["base_parameters"]["mechanism.damping"]["after"]
+    assert told == pytest.approx(model.value("mechanism.damping"))
+    assert content["gap"]["after"] < 1.2 * NOISE
+    assert content["observer"]["sentence"] in content["reason"]
+    assert content["observer"]["errors_grow"] > 2
+    assert content["asked"]["without"] == list(decided[1].vocabulary.without)
+
+
+def test_both_jobs_of_the_workflow_give_the_same(
+    kept_in_place, decided, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(run, "decide", lambda *args: decided)
+    base = decided[0].base
+    run.decide_in(tmp_path, kept_in_place.deciding, base, Asked())
+    run.show_in(tmp_path, kept_in_place, base)
+    _, shown = run.show(kept_in_place, decided[1])
+    again = json.loads((tmp_path / "gap.json").read_text())
+    assert again["gap"]["after"] == pytest.approx(shown.content["gap"]["after"])
+    assert again["observer"] == shown.content["observer"]
+    number = load_model(tmp_path / "model.yaml").value("mechanism.damping")
+    assert number == pytest.approx(shown.model.value("mechanism.damping"))
+
+
+@pytest.mark.parametrize(
+    ("verdict", "fixed", "identified", "tries"),
+    [
+        ("unnamed", (), True, True),
+        ("named", (), True, False),
+        ("no-gap", (), True, False),
+        ("unnamed", ("stop",), True, False),
+        ("unnamed", (), False, False),
+    ],
+)
+def test_it_is_tried_where_nothing_is_named_beside_an_identified_base(
+    kept_in_place, monkeypatch, verdict, fixed, identified, tries
+):
+    first = SimpleNamespace(content={"verdict": verdict}), None
+    tried = []
+    monkeypatch.setattr(run, "_decide", lambda *args: first)
+    monkeypatch.setattr(run, "with_observer", lambda *args: tried.append(args))
+    chain = (block("mechanism", mass=1.0, damping=1.0, stiffness=1.0),)
+    kind = IdentifiedModel if identified else Model
+    base = kind("base", FORCE, VELOCITY, chain, free=("mechanism.mass",))
+    asked = Asked(vocabulary=Vocabulary.of(fixed=fixed))
+    assert run.decide(kept_in_place, base, asked) is first
+    assert bool(tried) == tries
+
+
+def test_a_free_run_that_repeats_itself_speaks_against_a_model(kept_in_place):
+    """Nothing grows in a mass that is damped much: what it leaves is its own error."""
+    mass = block(
+        "mechanism", mass=1e-5, damping=0.03, stiffness=SPRING, output="velocity"
+    )
+    rng, records = np.random.default_rng(2), []
+    for one in kept_in_place.fit:
+        noise = 0.01 * rng.standard_normal(len(one))
+        records.append(replace(one, y=mass.simulate(one.u, one.u, one.dt) + noise))
+    free = (Free(0, "damping"), Free(0, "stiffness"))
+
+    def run_of(mass):
+        state = state_of((mass,), tuple(records), free=free)
+        return FreeRun(SimpleNamespace(state=state, floor=Floor(0.01, "stated")), 0.0)
+
+    assert run_of(mass).tells_nothing
+    assert not run_of(replace(mass, stiffness=1.3 * SPRING)).tells_nothing
+
+
+def test_only_a_force_that_moves_something_is_observed(kept_in_place):
+    for takes, gives in (("position", "force"), ("force", "acceleration")):
+        other = replace(kept_in_place, quantities=Quantities(takes, gives))
+        assert observer_for(other) is None
+
+
+def test_a_velocity_is_taken_from_a_position():
+    time, rate = np.arange(400) * DT, 2 * np.pi * 40
+    swing = np.sin(rate * time)
+    about = Channel("force", "N"), Channel("position", "mm"), "twin"
+    one = Record("swing", DT, 3.0 * swing, swing, *about)
+    given = evidence_of("swing", [one], "linear", None, "force", "position")
+    (fit,) = observed(given, 2.0).fit
+    velocity = rate * np.cos(rate * time)
+    assert fit.injected == pytest.approx(2.0 * velocity, abs=1e-2 * rate)
+    assert observer_for(given) == pytest.approx(3.0 / rate, rel=0.01)
+    np.testing.assert_array_equal(fit.driven, fit.u + fit.injected)
+    thinned = fit.cut(slice(10, 90, 2))
+    np.testing.assert_array_equal(thinned.injected, fit.injected[10:90:2])
+    assert fit.digest != one.digest
