@@ -512,3 +512,27 @@ def test_a_number_that_the_records_do_not_tell_stays():
     assert value <= score_of(state, score)
     assert found.chain[1].gap == pytest.approx(0.5, rel=0.1)
     assert found.chain[1].contact_stiffness == pytest.approx(9.0, rel=0.1)
+
+
+def test_a_base_far_off_is_re_tuned_down_to_the_noise():
+    """The quick simulation of its mode lacks something else where the mode goes."""
+    random, dt, noise = np.random.default_rng(3), 1 / 600, 0.01
+    time, square = np.arange(3000) * dt, (2 * np.pi * 80) ** 2
+
+    def mode(numerator, *denominator):
+        numbers = {"numerator": [numerator], "denominator": list(denominator)}
+        return block("transfer-function", hold="band-limited", **numbers)
+
+    true = mode(1.1 * square, 0.935, 84.4, 1.03 * square)
+    base = mode(square, 1.0, 80.4, square)
+    tones = zip(random.uniform(20, 200, 25), random.uniform(0, 6, 25), strict=True)
+    u = sum(np.sin(2 * np.pi * f * time + phase) for f, phase in tones)
+    y = true.simulate(u, u, dt) + noise * random.standard_normal(len(time))
+    free = tuple(
+        Free(0, name, k, 0.1 * value, 0.9 * value, 1.1 * value, given=value)
+        for name in ("numerator", "denominator")
+        for k, value in enumerate(getattr(base, name))
+    )
+    state = state_of((base,), (record(u, y, dt=dt),), free=free)
+    found, _ = finished(state, plain_score(state, noise**2))
+    assert np.sqrt(np.mean(found.squares)) < 1.2 * noise
