@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -766,6 +767,34 @@ def test_what_a_chain_needs_more_counts_against_it(monkeypatch, chain, gain, bet
         lambda _, found, *__: gain if found is inside.named.state else 0.0,
     )
     assert beats_chain(inside, named, NOISE) == better
+
+
+@pytest.mark.parametrize(
+    ("chain", "forces", "form", "stands"),
+    [
+        (1, 2, "", False),
+        (1, 1, "", True),
+        (2, 2, "", True),
+        (1, 2, "winding path", True),
+    ],
+)
+def test_fewer_effects_of_a_chain_stand_where_they_leave_as_little(
+    monkeypatch, chain, forces, form, stands
+):
+    """Forces gain on folds here, whatever they are. A path is no fewer effect."""
+    state = transfer((mass(30.0),))
+    named = "drift" if form else "eddy-diffusion"
+    law = Added(named, "sensor", form, (), {}, 1.0)
+    force = Added("friction", "inside", "", (), {}, 1.0)
+    gap = SimpleNamespace(power=lambda floor: 100 * state.power(floor))
+    before = SimpleNamespace(before=gap)
+    inside = Inside(None, state, Named(replace(state, added=(force,) * forces), ()), "")
+    given = Named(replace(state, added=(law,) * chain), (before,))
+    monkeypatch.setattr(
+        "hystbench.gap.inside.named_inside.gain_held_back",
+        lambda _, found, *__: 1000.0 if found is inside.named.state else 0.0,
+    )
+    assert beats_chain(inside, given, NOISE) == stands
 
 
 def test_a_stop_on_both_sides_without_a_clearance_is_a_spring_and_no_stop():

@@ -285,13 +285,16 @@ def beats_chain(
 
     They have to lower the score on folds by as much as any effect; what either has to
     pay for each effect more than the other counts. Both models are refitted without
-    those records. Beside a law of many numbers no folds are asked: it is enough that no
-    more effects of few numbers leave as little.
+    those records. Of two that leave as little no folds are asked: fewer effects of few
+    numbers stand, and beside a law of many numbers as many.
     """
     state, chain = inside.named.state, named.state
     if _in_fewer_numbers(inside, named, floor_rms**2):
         say("inside: laws of few numbers leave as little as a chain of many")
         return True
+    if _in_fewer_effects(inside, named, floor_rms**2):
+        say("inside: a chain of fewer effects leaves as little")
+        return False
     score = Score.plain(state.sample, floor_rms**2)
     # What the chain changes elsewhere says nothing of where forces show.
     about = score, shows_in_one_record(inside.start, state, score)
@@ -314,6 +317,16 @@ def _in_fewer_numbers(inside: Inside, named: Named, floor: float) -> bool:
         return False
     gap = max(named.rounds[0].before.power(floor), floor)
     return chain.share(state, floor, gap) < AS_GOOD
+
+
+def _in_fewer_effects(inside: Inside, named: Named, floor: float) -> bool:
+    """Tell whether a chain of fewer effects of few numbers leaves as little."""
+    state, chain = inside.named.state, named.state
+    many = has_free_form(chain) or any(x.is_of_many_numbers for x in chain.added)
+    if many or not 0 < len(chain.added) < len(state.added) + inside.counts:
+        return False
+    gap = max(named.rounds[0].before.power(floor), floor)
+    return state.share(chain, floor, gap) < AS_GOOD
 
 
 def quantities_if_linear(base: Model, evidence: Evidence) -> Quantities | None:
