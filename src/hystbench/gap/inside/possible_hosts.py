@@ -31,6 +31,7 @@ from hystbench.gap.fitting.least_squares import Fitted, fitted
 from hystbench.gap.fitting.on_records import free_within
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.inside.first_order import both_readings, of_first_order
 from hystbench.gap.inside.given_hosts import as_given, held_about, is_seen_moving
 from hystbench.gap.inside.host import Host, Kind
 from hystbench.gap.inside.host_places import host_of, host_places, own_numbers
@@ -41,10 +42,8 @@ from hystbench.gap.inside.one_coordinate import (
     best_host,
     free_masses,
     likeliest,
-    masses,
     one_coordinate,
     same_as,
-    span_and_step,
 )
 from hystbench.gap.inside.stores import store_hosts
 from hystbench.gap.inside.timing import in_front, with_free_timing
@@ -119,8 +118,8 @@ def hosts(
             words = "a model of one coordinate stands in place of the linear base"
             if wanted("coordinate"):
                 yield Host(best.state, best, words)
-                if quantities.output not in MOTIONS:
-                    yield from _read_otherwise(best.state, score, words)
+                if quantities.output not in MOTIONS and of_first_order(start):
+                    yield from both_readings(best.state, score)
                 if not timed:
                     yield from _in_time(best, score)
             if wanted("loose mass"):
@@ -161,28 +160,6 @@ def _of_two_modes(state: ModelState | None) -> bool:
         isinstance(block, Structure) and len(block.stiffness) > 1
         for block in state.chain
     )
-
-
-def _read_otherwise(state: ModelState, score: Score, words: str) -> Iterator[Host]:
-    """Give the other reading of a motion of first order, where nobody tells what moves.
-
-    A mass whose velocity is seen, as a current in a coil, and a spring that pulls a
-    damper have one equation. A law of the velocity is a friction in the first, and a
-    law of the place a stiffness in the second.
-    """
-    block, records, hold = state.chain[0], state.records, state.hold
-    if not isinstance(block, Mechanism):
-        return
-    _, step = span_and_step(records)
-    if block.output == "velocity" and block.stiffness == 0.0:
-        other = masses(records, ("position",), hold)
-    elif block.output == "position" and block.mass < step * block.damping:
-        other = free_masses(records, "velocity", hold)
-    else:
-        return
-    best = likeliest(other, score)
-    if best is not None:
-        yield Host(best.state, best, words)
 
 
 def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
