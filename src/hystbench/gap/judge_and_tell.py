@@ -103,7 +103,8 @@ def judge_and_tell(
     where = locate(before, floor, contributed)
     if where[0].share_of_gap_power >= LEAST_SHARE:
         say(where[0].sentence)
-    moved = beside_level(where, [(item.effect, item.place) for item in state.added])
+    places = [(item.effect, item.place) for item in state.added]
+    moved = beside_level(where, places, closed=left.share <= share)
     moved = "" if judged.verdict == "no-gap" else moved
     reason = "; ".join(part for part in (judged.reason, moved) if part)
     experiment, why_none = tell_apart(base, named, start.records, floor.rms, limits)

@@ -25,7 +25,13 @@ def hypothesis(score, left, *effects):
 
 
 def host(counts=0, kind="coordinate"):
-    about = {"words": "", "fitted": None, "unfitted_start": None, "charge": 0.0, "carry": None}
+    about = {
+        "words": "",
+        "fitted": None,
+        "unfitted_start": None,
+        "charge": 0.0,
+        "carry": None,
+    }
     return SimpleNamespace(counts=counts, kind=kind, **about)
 
 

@@ -13,9 +13,12 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.input_delay import InputDelay
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
+from hystbench.gap.bases.dead_time import behind_a_dead_time
 from hystbench.gap.bases.orders import (
     HIGHEST,
+    MANY,
     ROUNDS,
     Found,
     Orders,
@@ -38,6 +41,7 @@ from hystbench.model import Model
 LINEAR = "linear"
 """Name of the base that is identified as a linear model."""
 NO_SIGN, SLOW, CURVE = "sensor-nonlinearity", "slew-limit", "static curve"
+LATE = "input-delay"
 """What a linear model is found together with: effects, and a curve of no name yet."""
 
 
@@ -99,9 +103,11 @@ def identified_linear(evidence: Evidence) -> Linear:
     """Find the linear model that simulates the fit records best.
 
     The model is of input and output. One of an output with a sign is tried too if the
-    output is never below zero, one behind a drive that goes no faster than a rate, and
-    one behind a static curve. Any is taken if it leaves less than a quarter of the
-    power on folds, and a static curve inside does not leave less than a quarter of its.
+    output is never below zero, one behind a drive that goes no faster than a rate, one
+    behind a dead time if order 5 or more was needed, and one behind a static curve. Any
+    is taken if it leaves less than a quarter of the power on folds, and a static curve
+    inside does not leave less than a quarter of its. Behind a dead time it is enough
+    if each pole that is spared would have lowered the error by no more than 2 %.
 
     Parameters
     ----------
@@ -118,7 +124,11 @@ def identified_linear(evidence: Evidence) -> Linear:
     for effect, words, without, other in _found_beside(evidence, plain):
         found = linear_of(other)
         between = plain.split_rms**2 < LOOSE * found.fit_rms**2
-        if found.fold_rms**2 < LOOSE * best.fold_rms**2 and not between:
+        spared = max(_poles(best.model) - _poles(found.model), 0)
+        most = math.sqrt(LOOSE) * best.fold_rms
+        if effect == LATE and spared:  # each pole more would have to pay
+            most = best.fold_rms / (1 - NUMBER_PAYS) ** spared
+        if found.fold_rms < most and not between:
             note = (
                 f"{found.note}, {words} ({without} {plain.fold_rms:.4g} {unit} on "
                 "folds)"
@@ -167,9 +177,18 @@ def _found_beside(
         slow, rate = slowed
         words = f"behind a drive of {rate:.4g} {evidence.input.unit}/s at most"
         yield SLOW, words, "without that limit", slow
+    if _poles(plain.model) >= MANY and (dead := behind_a_dead_time(evidence)):
+        late, seconds = dead
+        yield LATE, f"behind a dead time of {seconds:.4g} s", "without that", late
     curved = behind_a_curve(evidence, plain.model.chain, plain.fit_rms)
     if curved is not None:
         yield CURVE, "behind a static curve", "without that curve", curved
+
+
+def _poles(model: Model) -> int:
+    """Count the poles of the transfer functions in a chain."""
+    parts = (block for block in model.chain if isinstance(block, TransferFunction))
+    return sum(len(block.denominator) - 1 for block in parts)
 
 
 def linear_of(evidence: Evidence) -> Linear:
@@ -179,7 +198,7 @@ def linear_of(evidence: Evidence) -> Linear:
     to 6 are fitted to the spectra first, then by least squares on simulation with the
     dataset's hold, without the first tenth of each record, and with an offset of each
     record where its zero is not physical. Where order 5 or more is needed, modes are
-    added one by one, up to order 12. The order is the lowest of which no other one
+    added one by one, up to order 20. The order is the lowest of which no other one
     lowers both errors by more than 2 %, that on folds of the fit records and that on
     all of them, of those that do better on folds than a constant. Then the numerator is
     shortened by the same rule, and the input may come up to a sample early or late.

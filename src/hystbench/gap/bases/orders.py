@@ -25,7 +25,7 @@ from hystbench.record import FloatArray, Mask
 
 #: Highest order that is tried, of all poles at once, and with modes added one by one.
 HIGHEST = 6
-HIGHEST_WITH_MODES = 12
+HIGHEST_WITH_MODES = 20
 #: Static stiffness of a free mass over what brakes it: none, in windows of any length.
 UNHELD = 1e-9
 #: Order from which on a further mode is looked for: two modes and a lag do not do.

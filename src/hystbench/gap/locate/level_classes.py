@@ -48,7 +48,9 @@ IN_A_CHAIN = (
 """Those of them that do so in a chain as well."""
 
 
-def beside_level(views: Sequence[View], named: Sequence[tuple[str, str]]) -> str:
+def beside_level(
+    views: Sequence[View], named: Sequence[tuple[str, str]], closed: bool = False
+) -> str:
     """Hold the named effects against how modes move with the level.
 
     That is seen without any of their laws.
@@ -59,6 +61,9 @@ def beside_level(views: Sequence[View], named: Sequence[tuple[str, str]]) -> str
     named : sequence of (str, str)
         The named effects and their places. A force moves a mode inside the dynamics
         alone.
+    closed : bool
+        Whether they leave nothing that matters. Of a mode that none of them moves
+        nothing is said then: it was the gap that seemed to move it.
 
     Returns
     -------
@@ -74,6 +79,7 @@ def beside_level(views: Sequence[View], named: Sequence[tuple[str, str]]) -> str
             for name, place in named
             if name in effects and (place == "inside" or name in IN_A_CHAIN)
         ]
-        who = " and ".join(fit) or "no named effect"
-        told.append(f"a mode moves with the level as of {words}: {who} can do so")
+        who = " and ".join(fit) or ("" if closed else "no named effect")
+        if who:
+            told.append(f"a mode moves with the level as of {words}: {who} can do so")
     return "; ".join(told)
