@@ -45,7 +45,7 @@ def behind_a_dead_time(evidence: Evidence) -> tuple[Evidence, float] | None:
     steps = {record.dt for record in evidence.fit}
     if len(steps) != 1 or not records:
         return None
-    gram = sum(_products(record) for record in records)
+    gram = np.sum([_products(record) for record in records], axis=0)
     errors = np.array([_error(gram, late) for late in range(LONGEST)])
     as_good = np.flatnonzero(errors <= (1 + AS_GOOD) * errors.min())
     late = int(as_good[0])
