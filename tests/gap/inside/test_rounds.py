@@ -220,7 +220,7 @@ def spring_found_once(host, spring, key):
     """What records are when forces are looked for, and a look that finds a spring."""
     seen = []
 
-    def look(base, start, *_, kinds):
+    def look(base, start, *_, kinds, **__):
         seen.append([getattr(record, key) for record in start.records])
         if len(seen) > 1:
             assert kinds == ("given",)

@@ -92,7 +92,7 @@ def test_what_would_still_pay_is_tried_in_the_place_of_what_was_added(
 
     monkeypatch.setattr(add_effects, "reconsidered", looked)
     found = SoFar(state, 1.0, rounds=tuple(rounds))
-    add_effects.settled(found, rounds[0].before, NOISE, silent)
+    add_effects.looked_over(found, rounds[0].before, NOISE, silent)
     assert asked == ([{"eddy-diffusion"}] if tried else [])
 
 
@@ -110,7 +110,7 @@ def test_where_an_effect_gives_way_all_are_tried_once_more(monkeypatch):
 
     monkeypatch.setattr(add_effects, "reconsidered", looked)
     found = SoFar(state, 1.0, rounds=tuple(rounds))
-    add_effects.settled(found, rounds[0].before, NOISE, silent)
+    add_effects.looked_over(found, rounds[0].before, NOISE, silent)
     assert asked[0] == {"eddy-diffusion"}
     assert asked[1] > {"creep", "drive-lag"}
     assert len(asked) == 2
@@ -151,7 +151,7 @@ def test_another_shape_is_fitted_to_what_it_is_to_take():
     first = Candidate(trial.variant.effect, "material", score=value, state=state)
     rounds = (Round(start, value + 50.0, (first,), True),)
     found = replace(SoFar.begun(start, 0.006), state=state, rounds=rounds)
-    named = add_effects.settled(found, start, 0.006, silent).state
+    named = add_effects.looked_over(found, start, 0.006, silent).state
     assert [item.effect for item in named.added] == ["hysteresis-shape"]
     gap = start.power(0.006**2)
     assert state.power(0.006**2) > 0.1 * gap
