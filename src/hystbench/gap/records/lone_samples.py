@@ -15,6 +15,8 @@ MEND = f"If they are no motion of the device, {MAKE_MISSING}"
 
 FAR_DEVIATIONS = 8.0
 """Robust standard deviations: of normal noise no sample is so far off."""
+NEIGHBOURS = 50
+"""Samples on either side of one, that it is held against too."""
 TO_SIGMA = 1.4826
 """Standard deviation of normal noise over its median absolute deviation."""
 
@@ -27,7 +29,8 @@ def usual_deviation(residual: FloatArray) -> float:
 def far_off(residual: FloatArray) -> Mask:
     """Tell which samples of a residual are lone: far off the others.
 
-    A record is held against its own median absolute deviation. If more than half of a
+    A record is held against its own median absolute deviation, and a sample against
+    that of its neighbours too: noise may grow with the motion. If more than half of a
     record has one value, no sample is lone.
 
     Parameters
@@ -36,7 +39,11 @@ def far_off(residual: FloatArray) -> Mask:
     """
     off = np.abs(residual - np.median(residual))
     usual = TO_SIGMA * float(np.median(off))
-    return np.asarray((usual > 0) & (off > FAR_DEVIATIONS * usual))
+    far = np.asarray((usual > 0) & (off > FAR_DEVIATIONS * usual))
+    for k in np.flatnonzero(far).tolist():
+        about = off[max(k - NEIGHBOURS, 0) : k + NEIGHBOURS + 1]
+        far[k] = off[k] > FAR_DEVIATIONS * TO_SIGMA * float(np.median(about))
+    return far
 
 
 def lone_share(residuals: Sequence[FloatArray]) -> float:
