@@ -226,6 +226,16 @@ class Effect(ABC):
         """
         return None
 
+    def simpler(self, block: Any) -> Iterator[Law]:
+        """Give laws of fewer numbers than that of a block inside, begun as it is.
+
+        Parameters
+        ----------
+        block : Block
+            Of this effect.
+        """
+        yield from ()
+
     def stored(self, filled: Filled) -> Iterator[Changed]:
         """Offer other numbers of stores in series."""
         yield from ()

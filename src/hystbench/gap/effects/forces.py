@@ -111,6 +111,21 @@ class Friction(Effect):
             }
             yield Law("smooth Stribeck", SmoothFriction(**own), tuple(own))
 
+    def simpler(self, block: Any) -> Iterator[Law]:
+        """One without Stribeck's excess, as large as it is near rest."""
+        if not getattr(block, "static_excess", 0.0):
+            return
+        largest = block.coulomb + block.static_excess
+        if isinstance(block, SmoothFriction):
+            own = {"coulomb": largest, "velocity_scale": block.velocity_scale}
+            yield Law("smooth", SmoothFriction(**own), tuple(own))
+        else:
+            own = {
+                "coulomb": largest,
+                "presliding_distance": block.presliding_distance,
+            }
+            yield Law("Coulomb", FrictionForce(**own), tuple(own))
+
     def vanishing(self, form: str, block: Any) -> Iterator[tuple[Block, str]]:
         """One that grows with the velocity without an end is a linear damper."""
         if isinstance(block, SmoothFriction) and block.stribeck_velocity == 0.0:

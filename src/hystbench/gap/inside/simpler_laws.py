@@ -1,0 +1,65 @@
+"""Simpler laws of effects that were found together.
+
+A law of many numbers, found before the effect beside it was there, may have stood for
+both. Beside that effect it keeps what it stood for, and its fit ends in a worse place
+than a simpler law's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.law import Law
+from hystbench.gap.fitting.least_squares import Fitted, fitted_to_the_end
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.choose import best_of_each
+
+
+def with_simpler_laws(
+    best: Fitted, found: Sequence[Fitted], score: Score
+) -> list[Fitted]:
+    """Add a hypothesis of several effects with a simpler law of each.
+
+    Parameters
+    ----------
+    best : Fitted
+    found : sequence of Fitted
+        All that were tried; the host alone first.
+    score : Score
+
+    Returns
+    -------
+    list of Fitted
+        Of each set of effects the best.
+    """
+    if len(best.effects) < 2:
+        return list(found)
+    simpler = [fitted_to_the_end(state, score) for state in _begun(best.state)]
+    return best_of_each([*found, *simpler])
+
+
+def _begun(state: ModelState) -> Iterator[ModelState]:
+    """Put simpler laws in the place of those that effects act by inside."""
+    for number, added in enumerate(state.added):
+        if added.place != "inside" or len(added.blocks) != 1:
+            continue
+        (place,) = added.blocks
+        for law in effects()[added.effect].simpler(state.chain[place]):
+            yield _with(state, number, place, law)
+
+
+def _with(state: ModelState, number: int, place: int, law: Law) -> ModelState:
+    chain, every = list(state.chain), list(state.added)
+    chain[place] = law.block
+    fewer = sum(x.block == place for x in state.free) - len(law.free)
+    own = (x for x in state.free if x.block != place or x.parameter in law.free)
+    added = every[number]
+    every[number] = added._replace(
+        form=law.form,
+        values={name: getattr(law.block, name) for name in law.free},
+        charge=added.charge - fewer,
+    )
+    return replace(state, chain=tuple(chain), free=tuple(own), added=tuple(every))
