@@ -177,10 +177,10 @@ def told(
 ) -> dict[str, Any]:
     """Say in gap.json's content that an observer was at work."""
     unit = evidence.output.unit
-    rate = "" if evidence.quantities.output == "velocity" else " s"
+    moved = f"/({unit})" if evidence.quantities.output == "velocity" else f" s/{unit}"
     left = sized(float(np.sqrt(free.left)), unit)
     words = (
-        f"by an observer: a damper of {damper:.3g} {evidence.input.unit}{rate}/{unit} "
+        f"by an observer: a damper of {damper:.3g} {evidence.input.unit}{moved} "
         "draws every simulated motion to the measured one. Without it errors grow to "
         f"{np.sqrt(free.growth):.2g} times the size: a free run of the model leaves "
         f"{left} rms of the fit records above the noise floor"
