@@ -128,7 +128,8 @@ class FreeRun:
         self.left = max(free.power(self.noise), 0.0)
         """Mean square that it leaves above the noise."""
         errors = _errors(state, found.floor.rms)
-        self.growth = _moved(free, errors) / _moved(state, errors)
+        beside = _moved(state, errors)
+        self.growth = _moved(free, errors) / beside if beside > 0.0 else 1.0
         """How many times as much, in power, its errors do as beside the observer."""
 
     @property
