@@ -187,7 +187,7 @@ def test_stores_stand_for_a_given_tank_and_their_fit_counts_as_an_effect():
     record = tanks(root=True, height=np.inf)
     start = given_tank(record, hold="zero-order")
     score = Score.plain(start.sample, NOISE**2)
-    one, *_ = hosts(start, Quantities(output="level"), False, score)
+    one = next(hosts(start, Quantities(output="level"), False, score))
     assert one.counts == 1
     # Until something is named in it, it does what the base does.
     (store,) = one.alone.chain
