@@ -46,6 +46,18 @@ def limited():
     return device(RATE)
 
 
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory):
+    return Remembered(tmp_path_factory.mktemp("kept"), print)
+
+
+@pytest.fixture(scope="module")
+def loaded(limited, kept):
+    """The base, with the note about it; it is kept."""
+    with remembering(kept):
+        return load_base("linear", limited)
+
+
 def test_the_rate_is_that_of_the_drive(limited):
     found = behind_a_slow_drive(limited)
     assert found is not None
@@ -59,8 +71,8 @@ def test_without_a_limit_there_is_none():
     assert behind_a_slow_drive(device(1e3)) is None
 
 
-def test_the_base_is_what_is_behind_the_drive(limited):
-    model, note = load_base("linear", limited)
+def test_the_base_is_what_is_behind_the_drive(loaded):
+    model, note = loaded
     assert "behind a drive of" in note
     assert "without that limit" in note
     lag = model.chain[0]
@@ -69,12 +81,12 @@ def test_the_base_is_what_is_behind_the_drive(limited):
     assert lag.numerator[-1] / lag.denominator[-1] == pytest.approx(3.0, rel=0.01)
 
 
-def test_the_limit_is_named_and_no_force_looked_for(limited, monkeypatch):
+def test_the_limit_is_named_and_no_force_looked_for(limited, loaded, monkeypatch):
     def look(*_):
         raise AssertionError("forces were looked for")
 
     monkeypatch.setattr(search_module, "named_inside", look)
-    base = load_base("linear", limited)[0].with_hold("linear")
+    base = loaded[0].with_hold("linear")
     found = search(
         *("made", limited.fit, base, "linear"),
         vocabulary=among("slew-limit", "drive-lag", "drive-saturation", "friction"),
@@ -86,7 +98,8 @@ def test_the_limit_is_named_and_no_force_looked_for(limited, monkeypatch):
     assert rate == pytest.approx(RATE, rel=0.02)
 
 
-def test_a_base_that_was_kept_is_found_beside_the_same(limited, tmp_path):
-    with remembering(Remembered(tmp_path, print)):
-        first, again = (load_base("linear", limited)[0] for _ in range(2))
-    assert found_with(first) == found_with(again) == "slew-limit"
+def test_a_base_that_was_kept_is_found_beside_the_same(limited, loaded, kept):
+    with remembering(kept):
+        again, _ = load_base("linear", limited)
+    assert kept.found
+    assert found_with(loaded[0]) == found_with(again) == "slew-limit"
