@@ -47,7 +47,7 @@ def answer(vocabulary, noise, fades=0.0, damping=DAMPING, spring=SPRING):
 
 def test_a_force_that_fades_beside_a_known_spring_is_creep_and_no_hysteresis():
     """A loop of Bouc and Wen's has one number more, and comes near."""
-    offered = ("creep", "hysteretic-force", "drag")
+    offered = ("creep", "hysteretic-force")
     content = answer(offered, 5e-4, FADES).outcome.content
     (found,) = content["effects"]
     assert (found["name"], found["place"]) == ("creep", "inside")

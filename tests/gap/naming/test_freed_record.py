@@ -145,6 +145,13 @@ def test_a_base_that_was_given_is_not_identified(heated):
     assert freed_of_laws(given, found.named, evidence, found.floor.rms) is None
 
 
+@pytest.fixture
+def one_range(monkeypatch):
+    """Try creep in one range of time constants, as each is tried alike."""
+    monkeypatch.setattr(freed_record, "CREEPS", freed_record.CREEPS[:1])
+
+
+@pytest.mark.usefixtures("one_range")
 def test_creep_that_hides_all_laws_is_named(monkeypatch):
     evidence, _ = stack()
     base, _ = load_base("gpi", evidence)
@@ -199,11 +206,10 @@ def test_a_law_that_acts_where_nothing_was_measured_leaves_the_record(heated):
     assert freed_of_laws(base, found.named, missing, found.floor.rms) is None
 
 
-def test_a_loop_that_fits_its_record_is_freed_of_nothing(monkeypatch):
+@pytest.mark.usefixtures("one_range")
+def test_a_loop_that_fits_its_record_is_freed_of_nothing():
     evidence = rod(0.0)
     base, _ = load_base("gpi", evidence)
-    # One range of time constants, in which the bound on what is left decides.
-    monkeypatch.setattr(freed_record, "CREEPS", freed_record.CREEPS[:1])
     assert freed_of_slow_law(base, evidence, NOISE, LAWS.offered) is None
     creeping, _ = stack()
     base, _ = load_base("gpi", creeping)
@@ -213,6 +219,7 @@ def test_a_loop_that_fits_its_record_is_freed_of_nothing(monkeypatch):
     assert freed_of_slow_law(base, creeping, NOISE, ("drift",)) is None
 
 
+@pytest.mark.usefixtures("one_range")
 def test_heat_that_hides_all_laws_is_named(heated, monkeypatch):
     evidence, base = heated
     monkeypatch.setattr(identify_again, "freed_of_laws", lambda *_: None)
