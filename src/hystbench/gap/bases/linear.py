@@ -27,7 +27,6 @@ from hystbench.gap.bases.orders import (
     with_plainest_start,
 )
 from hystbench.gap.bases.slow_drive import behind_a_slow_drive
-from hystbench.gap.bases.spectral import fit_ratio
 from hystbench.gap.bases.split_linear import ENOUGH, best_split, chain_of, is_bent
 from hystbench.gap.bases.static_curve import behind_a_curve
 from hystbench.gap.bases.sums import Sum, impedance, static
@@ -303,7 +302,7 @@ def _halves(
     task, spectra = _errors(everything, found), everything.spectra
     free_run = replace(found[-1].task, scale=spectra.scale)
     ratios = [
-        free_run.refined(fit_ratio(spectra, order, zeros), everything.whole, ROUNDS)
+        free_run.refined(everything.begun(order, zeros), everything.whole, ROUNDS)
         for order in range(2, HIGHEST + 1)
         for zeros in (order - 1, order)
     ]

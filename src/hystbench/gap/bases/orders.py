@@ -136,13 +136,24 @@ class Orders:
         """Time constant of a mass that nothing holds, if the records are of one."""
         return next((x.decay_s for x in self.evidence.fit if x.decay_s), None)
 
+    @cached_property
+    def _begun(self) -> dict[tuple[int, int], Ratio]:
+        return {}
+
+    def begun(self, order: int, zeros: int) -> Ratio:
+        """Fit a ratio to the spectra; it is kept, as halves begin with it too."""
+        key = order, zeros
+        if key not in self._begun:
+            self._begun[key] = fit_ratio(self.spectra, order, zeros)
+        return self._begun[key]
+
     def of(self, order: int, zeros: int) -> Found:
         """Fit one order to all records, and from there to each fold's.
 
         Of a mass that nothing holds one pole stays at zero.
         """
         if self.decay_s is None:
-            first = fit_ratio(self.spectra, order, zeros)
+            first = self.begun(order, zeros)
         else:
             brake = 1 / (self.decay_s * self.spectra.scale)
             first = with_poles(self.spectra, brake * np.array([UNHELD, 1.0]), zeros)
@@ -158,7 +169,7 @@ class Orders:
 
     def roughly(self, zeros: int) -> tuple[OutputError, Ratio]:
         """Fit a mode and a lag by a few steps, where what is beside them is sought."""
-        first = fit_ratio(self.spectra, ROUGH, zeros)
+        first = self.begun(ROUGH, zeros)
         evidence = self.evidence
         task = OutputError(evidence.fit, evidence.input_hold, self.spectra.scale)
         task = with_plainest_start(task, first)

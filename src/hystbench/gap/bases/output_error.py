@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Protocol, TypeVar
 
 import numpy as np
@@ -105,10 +106,23 @@ class OutputError:
             for record in self.records
         ]
 
+    @cached_property
+    def _latest(self) -> list[tuple[Ratio, list[FloatArray]]]:
+        """The ratio that was looked at last, with what it leaves."""
+        return []
+
     def left(self, ratio: Ratio) -> list[FloatArray]:
-        """Give what a ratio leaves of each output."""
+        """Give what a ratio leaves of each output; not to be written to.
+
+        It is kept, as a step that pays is looked at again: the next begins there.
+        """
+        for known, left in self._latest:
+            if ratio.simulates_as(known):
+                return left
         simulated = self.simulate(ratio)
-        return [r.y - y for r, y in zip(self.records, simulated, strict=True)]
+        left = [r.y - y for r, y in zip(self.records, simulated, strict=True)]
+        self._latest[:] = [(ratio, left)]
+        return left
 
     def squares(self, ratio: Ratio, masks: Sequence[Mask]) -> float:
         """Sum of squares of the error over the masked samples.

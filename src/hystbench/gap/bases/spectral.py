@@ -109,7 +109,8 @@ class Rational:
 
     def at(self, s: ComplexArray) -> ComplexArray:
         """Give its values."""
-        return np.asarray(np.polyval(self.b[::-1], s) / below(self.a, s))
+        up = _by_horner(np.full(s.shape, self.b[-1], np.complex128), self.b[:-1], s)
+        return up / below(self.a, s)
 
     def block(self, scale: float, hold: Hold, start: str) -> TransferFunction:
         """Write it as a block, the last coefficient of whose denominator is one."""
@@ -129,6 +130,11 @@ class Ratio(Rational):
 
     offset: float
     cost: float
+
+    def simulates_as(self, other: Ratio) -> bool:
+        """Tell whether it has another's numbers: the same arrays, but for the cost."""
+        same = self.a is other.a and self.b is other.b
+        return same and self.offset == other.offset
 
 
 def fit_ratio(spectra: Spectra, order: int, zeros: int) -> Ratio:
@@ -262,7 +268,8 @@ class _Problem:
     def solved(self, a: FloatArray) -> Ratio:
         """Give the best numerator and constant for a denominator."""
         triangles = [
-            _triangle(*self._linear(lines, a), lines.y) for lines in self.spectra.lines
+            _triangle(*self._linear(lines, 1 / below(a, lines.s)), lines.y)
+            for lines in self.spectra.lines
         ]
         found, cost = _least(triangles)
         b, moved = found[: self.zeros + 1], found[-1]
@@ -272,8 +279,8 @@ class _Problem:
         """Take a round of Sanathanan and Koerner, or of Gauss and Newton from there."""
         triangles = []
         for lines in self.spectra.lines:
-            linear, transients = self._linear(lines, a)
             weight = 1 / below(a, lines.s)
+            linear, transients = self._linear(lines, weight)
             powers = lines.powers[:, : self.order]
             if now is None:
                 moved = powers * (weight * lines.y)[:, None]
@@ -294,10 +301,9 @@ class _Problem:
         return change if now is None else a - change
 
     def _linear(
-        self, lines: RecordSpectrum, a: FloatArray
+        self, lines: RecordSpectrum, weight: ComplexArray
     ) -> tuple[ComplexArray, ComplexArray]:
         """Columns of numerator and constant, and those of the transient."""
-        weight = 1 / below(a, lines.s)
         weighted = lines.powers[:, : self.order + 1] * weight[:, None]
         own = weighted[:, : self.zeros + 1] * lines.u[:, None]
         return np.column_stack([own, weighted[:, 0] * lines.constant]), weighted
@@ -305,7 +311,18 @@ class _Problem:
 
 def below(a: FloatArray, s: ComplexArray) -> ComplexArray:
     """Give the values of a denominator."""
-    return cast(ComplexArray, np.polyval(np.append(a, 1.0)[::-1], s))
+    return _by_horner(np.ones(s.shape, np.complex128), a, s)
+
+
+def _by_horner(found: ComplexArray, a: FloatArray, s: ComplexArray) -> ComplexArray:
+    """Go on from the highest power's coefficient to the others, which ascend; in place.
+
+    As polyval does, without an array for each step: many are short.
+    """
+    for number in a[::-1].tolist():
+        found *= s
+        found += number
+    return found
 
 
 def _transformed(
