@@ -10,6 +10,7 @@ other's work.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -95,9 +96,12 @@ def fitted(
         times = np.exp(np.clip(point, -100, 100))
         return np.where(logs, values * times, values + point * sizes)
 
+    @lru_cache(maxsize=2)  # slopes are asked for where the residual was
+    def at(point: bytes) -> ModelState:
+        return state.at(dict(enumerate(values_at(np.frombuffer(point)).tolist())))
+
     def moved(point: FloatArray) -> ModelState:
-        values = dict(enumerate(values_at(point).tolist()))
-        return state.at(values) if point.any() else state
+        return at(point.tobytes()) if point.any() else state
 
     def residual(point: FloatArray) -> FloatArray:
         try:

@@ -320,7 +320,8 @@ class ModelState:
         for k, wanted in values.items():
             free = self.free[k]
             block, own = self.chain[free.block], new.setdefault(free.block, {})
-            value = float(np.clip(wanted, *self.range_of(free)))
+            low, high = self.range_of(free)
+            value = min(max(float(wanted), low), high)
             if free.element is None:
                 own[free.parameter] = value
             else:
