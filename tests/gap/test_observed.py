@@ -95,7 +95,7 @@ def test_beside_an_observer_the_true_machine_leaves_noise_and_alone_it_does_not(
 @pytest.fixture(scope="module")
 def decided(kept_in_place):
     asked = Asked(vocabulary=among("stop", "stiffness-hardening", "slider-with-gap"))
-    return with_observer(kept_in_place.deciding, run._decide, asked)
+    return with_observer(kept_in_place.deciding, run._decide, asked, None)
 
 
 def test_the_stop_is_named_with_its_numbers(kept_in_place, decided):
@@ -120,16 +120,39 @@ def test_the_stop_is_named_with_its_numbers(kept_in_place, decided):
 def test_both_jobs_of_the_workflow_give_the_same(
     kept_in_place, decided, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(run, "decide", lambda *args: decided)
-    base = decided[0].base
-    run.decide_in(tmp_path, kept_in_place.deciding, base, Asked())
-    run.show_in(tmp_path, kept_in_place, base)
+    plain = replace(decided[1], damper=0.0)
+    both = decided[0], replace(decided[1], plain=plain)
+    monkeypatch.setattr(run, "decide", lambda *args: both)
+    first = true_model()
+    run.decide_in(tmp_path, kept_in_place.deciding, first, Asked())
+    kept = run._decided_in(tmp_path, kept_in_place, decided[0].base)
+    assert kept.first == decided[1].first
+    assert (kept.damper, kept.plain.damper) == (decided[1].damper, 0.0)
+    assert kept.plain.fitted.base.chain == plain.fitted.base.chain
+    run.show_in(tmp_path, kept_in_place, decided[0].base)
     _, shown = run.show(kept_in_place, decided[1])
     again = json.loads((tmp_path / "gap.json").read_text())
     assert again["gap"]["after"] == pytest.approx(shown.content["gap"]["after"])
     assert again["observer"] == shown.content["observer"]
     number = load_model(tmp_path / "model.yaml").value("mechanism.damping")
     assert number == pytest.approx(shown.model.value("mechanism.damping"))
+
+
+def test_what_was_decided_without_it_stands_where_names_are_taken_back(
+    kept_in_place, decided, monkeypatch
+):
+    plain = replace(decided[1], damper=0.0)
+
+    def shown(given, evidence):
+        taken = {"names": ["stop"]} if given.damper else None
+        return run.Outcome(true_model(), {"withdrawn": taken}, [])
+
+    monkeypatch.setattr(run, "show_on_hold_out", shown)
+    _, outcome = run.show(kept_in_place, replace(decided[1], plain=plain))
+    assert outcome.content["withdrawn"] is None
+    # Without one to fall back on, what was taken back is told.
+    _, outcome = run.show(kept_in_place, decided[1])
+    assert outcome.content["withdrawn"]["names"] == ["stop"]
 
 
 @pytest.mark.parametrize(
@@ -172,8 +195,8 @@ def test_a_free_run_that_repeats_itself_speaks_against_a_model(kept_in_place):
         state = state_of((mass,), tuple(records), free=free)
         return FreeRun(SimpleNamespace(state=state, floor=Floor(0.01, "stated")), 0.0)
 
-    assert run_of(mass).tells_nothing
-    assert not run_of(replace(mass, stiffness=1.3 * SPRING)).tells_nothing
+    assert run_of(mass).may_be_grown_noise
+    assert not run_of(replace(mass, stiffness=1.3 * SPRING)).may_be_grown_noise
 
 
 def test_only_a_force_that_moves_something_is_observed(kept_in_place):
@@ -196,3 +219,22 @@ def test_a_velocity_is_taken_from_a_position():
     thinned = fit.cut(slice(10, 90, 2))
     np.testing.assert_array_equal(thinned.injected, fit.injected[10:90:2])
     assert fit.digest != one.digest
+
+
+def test_a_motion_that_is_counted_against_the_force_is_drawn_the_other_way(
+    kept_in_place,
+):
+    turned = [replace(x, y=-x.y) for x in kept_in_place.fit]
+    other = replace(kept_in_place, fit=tuple(turned))
+    damper = observer_for(kept_in_place)
+    assert observer_for(other) == pytest.approx(damper)
+    both = (observed(given, damper).fit for given in (kept_in_place, other))
+    for mine, its in zip(*both, strict=True):
+        np.testing.assert_allclose(mine.injected, its.injected)
+
+
+def test_a_staircase_holds_the_mean_over_its_step(kept_in_place):
+    held = replace(kept_in_place, input_hold="zero-order")
+    (one, *_), (other, *_) = observed(kept_in_place, 2.0).fit, observed(held, 2.0).fit
+    between = (one.injected[:-1] + one.injected[1:]) / 2
+    np.testing.assert_allclose(other.injected[:-1], between)

@@ -10,6 +10,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.errors import InputError
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.linear import IdentifiedModel, with_its_numbers_free
 from hystbench.gap.effects import effects
@@ -35,10 +36,12 @@ def with_observer(
     evidence: Evidence,
     decide: Callable[[Evidence, Model, Asked], tuple[Decision, Decided]],
     asked: Asked,
+    plain: Decided,
 ) -> tuple[Decision, Decided] | None:
     """Decide anew beside an observer, where a free run may go astray.
 
-    That stands if forces are named then, and a free run of the model tells nothing.
+    That stands if forces are named then, inside the mass alone, and a free run does not
+    speak against them: it leaves no more than grown noise may.
 
     Parameters
     ----------
@@ -47,6 +50,8 @@ def with_observer(
     decide : callable
         Decides on records beside a base.
     asked : Asked
+    plain : Decided
+        What was decided on them, which stands where hold-out records take names back.
 
     Returns
     -------
@@ -63,25 +68,26 @@ def with_observer(
     say("a free run may go astray: naming forces beside an observer")
     forces = replace(asked, vocabulary=of_forces(asked.vocabulary))
     decision, decided = decide(own, mass, forces)
-    if decision.content["verdict"] != "named":
+    elsewhere = any(item.place != "inside" for item in decision.state.added)
+    if decision.content["verdict"] != "named" or elsewhere:
         say("beside an observer none is named")
         return None
-    free = FreeRun(decision, damper)
-    if not free.tells_nothing:
+    free = FreeRun(decision, damper, evidence.fit[0].decay_s)
+    if not free.may_be_grown_noise:
         say("a free run speaks against what is named beside an observer")
         return None
     content = told(decided.content, evidence, damper, free)
-    decided = replace(
-        decided, content=content, vocabulary=asked.vocabulary, damper=damper
-    )
-    return replace(decision, content=content), decided
+    decision = replace(decision, content=content, experiment=None)
+    user = asked.vocabulary
+    about = decided.first, decision, content, user, None
+    return decision, Decided(*about, damper=damper, plain=plain)
 
 
 def mass_on_a_spring(evidence: Evidence) -> Model | None:
     """Give the mass that moves nearest to what fit records show; None where none does.
 
-    It stands for the base: an order that is chosen by what friction or a stop leaves,
-    with an observer beside it, would be too high.
+    It stands for the base. The order of the identified one is not used, as friction or
+    a stop may have raised it.
     """
     floor = np.finfo(float).tiny
     score = Score.plain(ScoredSamples.of(evidence.fit), floor)
@@ -117,24 +123,30 @@ class FreeRun:
     found : FitResult
     damper : float
         Of the observer.
+    decay_s : float, optional
+        With which an unknown velocity dies out without it, in windows of a free mass.
     """
 
-    def __init__(self, found: FitResult, damper: float) -> None:
+    def __init__(
+        self, found: FitResult, damper: float, decay_s: float | None = None
+    ) -> None:
         """Run it, and with each of its numbers off by its standard error."""
         state, self.noise = found.state, found.floor.rms**2
-        alone = tuple(replace(record, injected=None) for record in state.records)
-        chain = without_damper(state.chain, damper)
-        free = on_records(state.with_chain(chain), alone)
+        alone = tuple(
+            replace(record, injected=None, decay_s=decay_s) for record in state.records
+        )
+        chain, sample = without_damper(state.chain, damper), ScoredSamples.of(alone)
+        free = on_records(replace(state, chain=chain, sample=sample), alone)
         self.left = max(free.power(self.noise), 0.0)
         """Mean square that it leaves above the noise."""
         errors = _errors(state, found.floor.rms)
         beside = _moved(state, errors)
         self.growth = _moved(free, errors) / beside if beside > 0.0 else 1.0
-        """How many times as much, in power, its errors do as beside the observer."""
+        """Power that the errors of its numbers make, over that beside the observer."""
 
     @property
-    def tells_nothing(self) -> bool:
-        """Whether an error as large as noise, beside the observer, may be all of it."""
+    def may_be_grown_noise(self) -> bool:
+        """Whether an error as large as the noise, grown, may be all it leaves."""
         return self.left <= self.growth * self.noise
 
 
@@ -147,13 +159,15 @@ def _errors(state: ModelState, floor_rms: float) -> dict[int, float]:
 
 def _moved(state: ModelState, errors: dict[int, float]) -> float:
     """Sum the mean squares by which small changes move a model, one at a time."""
-    with np.errstate(over="ignore", invalid="ignore"):  # it may run away
-        return float(
-            sum(
-                np.mean((state.moved({k: error}).left - state.left) ** 2)
-                for k, error in errors.items()
-            )
-        )
+    total = 0.0
+    for k, error in errors.items():
+        try:
+            moved = state.moved({k: error})
+        except InputError:
+            continue  # beyond what the block accepts
+        with np.errstate(over="ignore", invalid="ignore"):  # it may run away
+            total += float(np.mean((moved.left - state.left) ** 2))
+    return total
 
 
 def without_damper(chain: tuple[Block, ...], damper: float) -> tuple[Block, ...]:
@@ -196,6 +210,8 @@ def told(
     return {
         **content,
         "base_parameters": numbers,
+        "next_experiment": None,
+        "no_experiment": "none is computed beside an observer",
         "observer": {
             "damper": damper,
             "free_run_left": float(np.sqrt(free.left)),

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -130,7 +131,7 @@ def decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Dec
     unsettled = found[0].content["verdict"] == "unnamed"
     if not unsettled or not is_identified_linear(base) or vocabulary.fixed:
         return found
-    return with_observer(evidence.deciding, _decide, asked) or found
+    return with_observer(evidence.deciding, _decide, asked, found[1]) or found
 
 
 def _decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Decided]:
@@ -168,6 +169,14 @@ def show(
         without what was put before others.
     outcome : Outcome
     """
+    found = _shown(evidence, decided, say)
+    if decided.plain is not None and found[1].content["withdrawn"]:
+        return _shown(evidence, decided.plain, say)
+    return found
+
+
+def _shown(evidence: Evidence, decided: Decided, say: Say) -> tuple[Evidence, Outcome]:
+    """Compare one decision with the hold-out records."""
     own = say_in_words(say)
     evidence = observed(evidence, decided.damper)
     evidence = hold_out_begun_like_fit(evidence, decided.first, decided.fitted, own)
@@ -239,17 +248,31 @@ def decide_in(folder: Path, evidence: Evidence, base: Model, asked: Asked) -> De
     """Decide on the fit records; write the decision and the curves to a folder."""
     writes(*(folder / name for name in DECIDED_FILES))
     decision, decided = decide(evidence, base, asked)
-    built_in = decided.built_in
-    kept = {
-        "floor": asdict(decision.floor),
-        "leads": [record.lead for record in decision.state.records],
-        "state": state_mapping(decision.state),
+    kept, plain = _kept(decided), decided.plain
+    if plain is not None:  # its base is a linear model
+        more = {"content": plain.content, "base": plain.fitted.base.to_mapping()}
+        kept["plain"] = _kept(plain) | more
+    with whole_folder(folder, DECIDED_FILES) as fresh:
+        write_json(fresh / "curves.json", decision.curves)
+        decision.base.save(fresh / BASE)
+        write_json(fresh / NAMED, kept)
+        write_json(fresh / DECISION, decided.content)
+    return decision
+
+
+def _kept(decided: Decided) -> dict[str, Any]:
+    """Give what a decision is made again from, but for its base and its content."""
+    fitted, built_in = decided.fitted, decided.built_in
+    return {
+        "floor": asdict(fitted.floor),
+        "leads": [record.lead for record in fitted.state.records],
+        "state": state_mapping(fitted.state),
         "rungs": [
             {"name": item.name, "state": state_mapping(item.state)}
-            for item in decision.rungs
+            for item in fitted.rungs
         ],
         **{
-            key: base.to_mapping() if isinstance(base, kind) else None
+            key: decided.first.to_mapping() if isinstance(decided.first, kind) else None
             for key, kind in KEPT_BASES.items()
         },
         "without": list(decided.vocabulary.without),
@@ -257,12 +280,6 @@ def decide_in(folder: Path, evidence: Evidence, base: Model, asked: Asked) -> De
         "built_in": None if built_in is None else built_in.mapping(),
         "damper": decided.damper,
     }
-    with whole_folder(folder, DECIDED_FILES) as fresh:
-        write_json(fresh / "curves.json", decision.curves)
-        decision.base.save(fresh / BASE)
-        write_json(fresh / NAMED, kept)
-        write_json(fresh / DECISION, decided.content)
-    return decision
 
 
 def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
@@ -280,12 +297,29 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
 def _decided_in(folder: Path, evidence: Evidence, base: Model) -> Decided:
     """Give back what :func:`decide_in` wrote."""
     kept, content = read_json(folder / NAMED), read_json(folder / DECISION)
+    place = str(folder / NAMED)
+    decided = _decided_again(kept, content, evidence, base, place)
+    if plain := kept.get("plain"):
+        alone = Model.from_mapping(plain["base"], f"{place}: plain: base")
+        again = _decided_again(plain, plain["content"], evidence, alone, place)
+        decided = replace(decided, plain=again)
+    return decided
+
+
+def _decided_again(
+    kept: dict[str, Any],
+    content: dict[str, Any],
+    evidence: Evidence,
+    base: Model,
+    place: str,
+) -> Decided:
+    """Make a decision again from what was kept of it."""
     evidence = observed(evidence, kept["damper"])
     floor, own = Floor(**kept["floor"]), OwnValues.of_mapping(content["record_values"])
     first = base
     for key, kind in KEPT_BASES.items():
         if kept[key]:
-            first = kind.from_mapping(kept[key], f"{folder / NAMED}: {key}")
+            first = kind.from_mapping(kept[key], f"{place}: {key}")
     leads = zip(begun_beside(first, evidence.fit), kept["leads"], strict=True)
     fit = tuple(replace(record, lead=lead) for record, lead in leads)
     fit = own.taken_off(fit, evidence.input_hold)

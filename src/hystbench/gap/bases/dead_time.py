@@ -16,9 +16,11 @@ from hystbench.gap.thresholds import AS_GOOD
 from hystbench.record import FloatArray, Record
 
 ORDER = 20
-"""Of the model in differences: more than a linear base has at most."""
+"""Of the model in differences: as many poles as a linear base may have."""
 LONGEST = 100
-"""Sampling intervals of the longest dead time that is tried."""
+"""Sampling intervals: a dead time that is tried is shorter."""
+ROWS = 100_000
+"""Samples that are multiplied at a time."""
 SHORTEST = 2
 """Of the shortest: a sample is how records are stamped."""
 
@@ -47,6 +49,7 @@ def behind_a_dead_time(evidence: Evidence) -> tuple[Evidence, float] | None:
         return None
     gram = np.sum([_products(record) for record in records], axis=0)
     errors = np.array([_error(gram, late) for late in range(LONGEST)])
+    errors = np.maximum(errors, 0.0)  # below that is rounding
     as_good = np.flatnonzero(errors <= (1 + AS_GOOD) * errors.min())
     late = int(as_good[0])
     if late < SHORTEST:
@@ -63,15 +66,19 @@ def _products(record: Record) -> FloatArray:
     Shape (k, k), with k = ORDER + LONGEST + ORDER + 2.
     """
     first, n = LONGEST + ORDER, len(record)
-    own = np.column_stack(
-        [
-            *(record.y[first - k : n - k] for k in range(1, ORDER + 1)),
-            *(record.u[first - k : n - k] for k in range(LONGEST + ORDER)),
-            np.ones(n - first),
-            record.y[first:],
-        ]
-    )
-    return np.asarray(own.T @ own)
+    total = np.zeros((2 * ORDER + LONGEST + 2,) * 2)
+    for begin in range(first, n, ROWS):
+        end = min(begin + ROWS, n)
+        own = np.column_stack(
+            [
+                *(record.y[begin - k : end - k] for k in range(1, ORDER + 1)),
+                *(record.u[begin - k : end - k] for k in range(LONGEST + ORDER)),
+                np.ones(end - begin),
+                record.y[begin:end],
+            ]
+        )
+        total += own.T @ own
+    return total
 
 
 def _error(gram: FloatArray, late: int) -> float:

@@ -125,7 +125,8 @@ def identified_linear(evidence: Evidence) -> Linear:
         between = plain.split_rms**2 < LOOSE * found.fit_rms**2
         spared = max(_poles(best.model) - _poles(found.model), 0)
         most = math.sqrt(LOOSE) * best.fold_rms
-        if effect == LATE and spared:  # each pole more would have to pay
+        if effect == LATE and best is plain and spared:
+            # Each pole more would have to pay.
             most = best.fold_rms / (1 - NUMBER_PAYS) ** spared
         if found.fold_rms < most and not between:
             note = (

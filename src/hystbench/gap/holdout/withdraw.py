@@ -59,6 +59,9 @@ class Decided:
     """None where no effect was put in."""
     damper: float = 0.0
     """Of the observer that it was decided with; zero without one."""
+    plain: Decided | None = None
+    """What stands where hold-out records take that back: decided without an observer,
+    and with nothing named."""
 
 
 def show_on_hold_out(decided: Decided, evidence: Evidence) -> Outcome:

@@ -23,7 +23,7 @@ from hystbench.gap.inside.one_coordinate import (
 )
 
 NO_MASS = 1e-3
-"""Sampling intervals in which a mass follows that is none."""
+"""Time constant of the spring's mass, in sampling intervals: too short to show."""
 
 
 def of_first_order(start: ModelState) -> bool:
@@ -53,7 +53,6 @@ def both_readings(state: ModelState, score: Score) -> Iterator[Host]:
         damping=mass.mass,
         stiffness=mass.damping,
         output="position",
-        start="rest" if mass.start == "rest" else "settled",
     )
     own = ("mass", "damping")
     free = (

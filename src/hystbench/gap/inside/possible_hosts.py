@@ -118,10 +118,10 @@ def hosts(
             words = "a model of one coordinate stands in place of the linear base"
             if wanted("coordinate"):
                 yield Host(best.state, best, words)
-                if quantities.output not in MOTIONS and of_first_order(start):
-                    yield from both_readings(best.state, score)
                 if not timed:
                     yield from _in_time(best, score)
+                if quantities.output not in MOTIONS and of_first_order(start):
+                    yield from both_readings(best.state, score)
             if wanted("loose mass"):
                 yield from _loose(best.state, score, words)
             # Two masses that both swing are a structure that is driven at its joint.

@@ -27,13 +27,16 @@ from hystbench.gap.records.free_mass import decay_of_free_mass
 from hystbench.record import FloatArray, Record
 
 NEIGHBOURS, DEGREE = 3, 4
-"""Samples on either side through which a polynomial gives the velocity."""
+"""Samples on either side, and degree, of the polynomial that gives the velocity: nearer
+to a fast motion than the parabola by which a free mass is known, and more noisy."""
 
 
 def observer_for(evidence: Evidence) -> float | None:
     """Give the damper of an observer that is as strong as what moves the device.
 
-    Its force on a model that stands still is as large as the recorded one, rms.
+    Its force on a model that stands still is as large as the recorded one, rms about
+    the mean. So it can hold the model where the recorded force would move it away, and
+    hides no more of it than that.
 
     Parameters
     ----------
@@ -51,7 +54,7 @@ def observer_for(evidence: Evidence) -> float | None:
     if about.output not in ("position", "velocity"):
         return None
     force, motion = (
-        np.mean([np.mean(x**2) for x in each])
+        np.mean([np.var(x) for x in each])
         for each in (
             [record.u for record in evidence.fit],
             [_velocity(record, about.output) for record in evidence.fit],
@@ -74,7 +77,12 @@ def observed(evidence: Evidence, damper: float) -> Evidence:
         return evidence
     output = evidence.quantities.output
     every = (*evidence.fit, *evidence.hold_out)
-    found = [replace(x, injected=damper * _velocity(x, output)) for x in every]
+    force = [damper * _velocity(x, output) for x in every]
+    if evidence.input_hold == "zero-order":  # the mean over the interval it is held for
+        force = [np.append((x[:-1] + x[1:]) / 2, x[-1]) for x in force]
+    if _pushes_back(evidence):
+        force = [-x for x in force]
+    found = [replace(x, injected=own) for x, own in zip(every, force, strict=True)]
     if evidence.in_windows:  # an unknown velocity dies out sooner
         driven = [replace(x, u=x.driven) for x in found]
         decay = decay_of_free_mass(driven, evidence.quantities)
@@ -82,6 +90,15 @@ def observed(evidence: Evidence, damper: float) -> Evidence:
             found = [replace(x, decay_s=decay) for x in found]
     fit, hold_out = found[: len(evidence.fit)], found[len(evidence.fit) :]
     return replace(evidence, fit=tuple(fit), hold_out=tuple(hold_out))
+
+
+def _pushes_back(evidence: Evidence) -> bool:
+    """Tell whether force and motion are counted against each other.
+
+    The force gives power to what it moves: on average that is above zero.
+    """
+    output = evidence.quantities.output
+    return sum(float(np.vdot(x.u, _velocity(x, output))) for x in evidence.fit) < 0.0
 
 
 def _velocity(record: Record, output: str) -> FloatArray:
