@@ -28,6 +28,7 @@ from hystbench.gap.fitting.uncertainty import (
 from hystbench.gap.judging.effect_rows import (
     effect_mapping,
     not_tried,
+    paths_no_surer,
     ranking_rows,
     simulator_mapping,
 )
@@ -204,7 +205,7 @@ def _effects(
     finer = on_more_samples(state)
     score = make_score(finer, floor.rms, forms=False)
     errors, of_beside = standard_errors(finer, score), beside_errors(finer, score)
-    return [
+    rows = [
         effect_mapping(
             item,
             state,
@@ -218,6 +219,7 @@ def _effects(
         | {"blocks": blocks_of(item, state, model)}
         for number, item in enumerate(state.added)
     ]
+    return paths_no_surer(rows, state.paths)
 
 
 def _predicts_nothing(state: ModelState) -> str:

@@ -16,7 +16,11 @@ from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.parameters import at_ends, base_parameters
 from hystbench.gap.fitting.state import Added, Free
-from hystbench.gap.judging.effect_rows import effect_mapping, ranking_rows
+from hystbench.gap.judging.effect_rows import (
+    effect_mapping,
+    paths_no_surer,
+    ranking_rows,
+)
 from hystbench.gap.judging.leftover import Leftover
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook, in_order
@@ -387,3 +391,15 @@ def test_a_force_of_zero_is_at_no_end_even_where_the_law_ends_there():
     free = (Free(1, "damping_ratio", low=0.0, high=2.0),)
     state = state_of(chain, measured(chain, NOISE), free=free, added=(added,))
     assert at_ends(state) == ""
+
+
+@pytest.mark.parametrize(
+    ("laws", "path", "told"),
+    [((0.001,), 0.9, 0.001), ((0.2, 0.95), 0.9, 0.9), ((), 0.9, 0.9)],
+)
+def test_a_path_is_no_surer_than_the_laws_beside_it(laws, path, told):
+    rows = [{"name": f"law {k}", "confidence": sure} for k, sure in enumerate(laws)]
+    rows.append({"name": "drift", "confidence": path})
+    *others, last = paths_no_surer(rows, {"drift"})
+    assert others == rows[:-1]
+    assert last["confidence"] == told

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -88,6 +88,30 @@ def simulator_mapping(model: Model, records: Sequence[Record]) -> dict[str, Any]
         "runs_again": all(block.reruns for block in model.chain),
         "sampling_interval_s": records[0].dt,
     }
+
+
+def paths_no_surer(
+    rows: Sequence[dict[str, Any]], paths: Collection[str]
+) -> list[dict[str, Any]]:
+    """Give effects of which a path is no surer than the surest law beside it.
+
+    A path bends to whatever a wrong law leaves.
+
+    Parameters
+    ----------
+    rows : sequence of dict
+        Effects as gap.json has them.
+    paths : collection of str
+        Names of those that are a path of each record's own.
+    """
+    laws = [row["confidence"] for row in rows if row["name"] not in paths]
+    most = max(laws, default=1.0)
+    return [
+        row | {"confidence": min(row["confidence"], most)}
+        if row["name"] in paths
+        else row
+        for row in rows
+    ]
 
 
 def ranking_rows(named: Named) -> list[dict[str, Any]]:
