@@ -193,7 +193,9 @@ def test_a_free_run_that_repeats_itself_speaks_against_a_model(kept_in_place):
 
     def run_of(mass):
         state = state_of((mass,), tuple(records), free=free)
-        return FreeRun(SimpleNamespace(state=state, floor=Floor(0.01, "stated")), 0.0)
+        return FreeRun.of(
+            SimpleNamespace(state=state, floor=Floor(0.01, "stated")), 0.0
+        )
 
     assert run_of(mass).may_be_grown_noise
     assert not run_of(replace(mass, stiffness=1.3 * SPRING)).may_be_grown_noise

@@ -1,9 +1,9 @@
-"""Deciding with an observer: where a free run of a model tells nothing of it."""
+"""Deciding beside an observer, where a free run of a model may go astray."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -72,15 +72,19 @@ def with_observer(
     if decision.content["verdict"] != "named" or elsewhere:
         say("beside an observer none is named")
         return None
-    free = FreeRun(decision, damper, evidence.fit[0].decay_s)
+    free = FreeRun.of(decision, damper, evidence.fit[0].decay_s)
     if not free.may_be_grown_noise:
         say("a free run speaks against what is named beside an observer")
         return None
     content = told(decided.content, evidence, damper, free)
     decision = replace(decision, content=content, experiment=None)
-    user = asked.vocabulary
-    about = decided.first, decision, content, user, None
-    return decision, Decided(*about, damper=damper, plain=plain)
+    return decision, replace(
+        decided,
+        content=content,
+        vocabulary=asked.vocabulary,
+        damper=damper,
+        plain=plain,
+    )
 
 
 def mass_on_a_spring(evidence: Evidence) -> Model | None:
@@ -115,34 +119,44 @@ def of_forces(vocabulary: Vocabulary) -> Vocabulary:
     return replace(vocabulary, without=(*vocabulary.without, *elsewhere))
 
 
+@dataclass(frozen=True)
 class FreeRun:
     """What a model that was found beside an observer does without one, on fit records.
 
-    Parameters
-    ----------
-    found : FitResult
-    damper : float
-        Of the observer.
-    decay_s : float, optional
-        With which an unknown velocity dies out without it, in windows of a free mass.
+    All are mean squares.
     """
 
-    def __init__(
-        self, found: FitResult, damper: float, decay_s: float | None = None
-    ) -> None:
-        """Run it, and with each of its numbers off by its standard error."""
-        state, self.noise = found.state, found.floor.rms**2
+    noise: float
+    left: float
+    """What it leaves above the noise."""
+    growth: float
+    """What the errors of its numbers do, over what they do beside the observer."""
+
+    @classmethod
+    def of(
+        cls, found: FitResult, damper: float, decay_s: float | None = None
+    ) -> FreeRun:
+        """Run a model, and run it with each of its numbers off by its standard error.
+
+        Parameters
+        ----------
+        found : FitResult
+        damper : float
+            Of the observer.
+        decay_s : float, optional
+            With which an unknown velocity dies out without it, in windows of a free
+            mass.
+        """
+        state, noise = found.state, found.floor.rms**2
         alone = tuple(
             replace(record, injected=None, decay_s=decay_s) for record in state.records
         )
         chain, sample = without_damper(state.chain, damper), ScoredSamples.of(alone)
         free = on_records(replace(state, chain=chain, sample=sample), alone)
-        self.left = max(free.power(self.noise), 0.0)
-        """Mean square that it leaves above the noise."""
         errors = _errors(state, found.floor.rms)
         beside = _moved(state, errors)
-        self.growth = _moved(free, errors) / beside if beside > 0.0 else 1.0
-        """Power that the errors of its numbers make, over that beside the observer."""
+        growth = _moved(free, errors) / beside if beside > 0.0 else 1.0
+        return cls(noise, max(free.power(noise), 0.0), growth)
 
     @property
     def may_be_grown_noise(self) -> bool:
@@ -173,11 +187,16 @@ def _moved(state: ModelState, errors: dict[int, float]) -> float:
 def without_damper(chain: tuple[Block, ...], damper: float) -> tuple[Block, ...]:
     """Take the damper of an observer out of the mass that a chain holds."""
     return tuple(
-        replace(block, damping=max(block.damping - damper, 0.0))
+        replace(block, damping=_alone(block.damping, damper))
         if isinstance(block, Mechanism)
         else block
         for block in chain
     )
+
+
+def _alone(damping: float, damper: float) -> float:
+    """Give a mass's own damping; it is none where a fit came below the damper."""
+    return max(damping - damper, 0.0)
 
 
 def model_without_damper(model: Model, damper: float) -> Model:
@@ -202,7 +221,7 @@ def told(
     )
     numbers = {
         name: {
-            key: max(value - damper, 0.0) if name.endswith(".damping") else value
+            key: _alone(value, damper) if name.endswith(".damping") else value
             for key, value in row.items()
         }
         for name, row in content["base_parameters"].items()

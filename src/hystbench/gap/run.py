@@ -333,5 +333,4 @@ def _decided_again(
     vocabulary = vocabulary.in_device(evidence.device_kind)
     built_in = BuiltIn.of_mapping(kept["built_in"]) if kept["built_in"] else None
     fitted = FitResult(base, state, floor, box, rungs, own)
-    about = first, fitted, content, vocabulary, built_in
-    return Decided(*about, kept["damper"])
+    return Decided(first, fitted, content, vocabulary, built_in, kept["damper"])

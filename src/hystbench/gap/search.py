@@ -230,8 +230,6 @@ class GapSearch:
         if known or (quantities is not None and not identified):
             chain = in_a_chain(start, floor)
             enough = known and _why_enough(start, chain.state, floor, share)
-            if has_free_form(chain.state):  # it bends to what forces do
-                enough = ""
             if quantities is not None and (enough or most_inside(chain, floor.rms) < 1):
                 say("no force could gain what matters, so none is tried inside")
                 quantities = None
@@ -246,8 +244,8 @@ class GapSearch:
         if inside is not None:
             start, inside, own = self.not_of_the_input(start, floor, inside, own)
         # A base that was given is re-tuned where it is a host: that may stand for a
-        # chain. So may a free form beside forces.
-        if inside is not None and identified and not has_free_form(inside.named.state):
+        # chain.
+        if inside is not None and identified:
             enough = _why_enough(inside.start, inside.named.state, floor, share)
             if enough:
                 say(f"inside: {enough}, so no chain of effects is tried")
@@ -383,8 +381,11 @@ def _why_enough(
     """Say why no further effect could gain what matters; or nothing.
 
     It would have to take more than may stay unnamed, as in a chain, and the noise would
-    have to be the lesser part of what is left.
+    have to be the lesser part of what is left. What a free form leaves says nothing: it
+    bends to what other effects do.
     """
+    if has_free_form(state):
+        return ""
     square = floor.rms**2
     before, after = start.power(square), state.power(square)
     if after < square:

@@ -11,18 +11,19 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.blocks.input_delay import InputDelay
+from hystbench.gap.bases.orders import HIGHEST_WITH_MODES
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.thresholds import AS_GOOD
 from hystbench.record import FloatArray, Record
 
-ORDER = 20
+ORDER = HIGHEST_WITH_MODES
 """Of the model in differences: as many poles as a linear base may have."""
 LONGEST = 100
 """Sampling intervals: a dead time that is tried is shorter."""
-ROWS = 100_000
-"""Samples that are multiplied at a time."""
 SHORTEST = 2
 """Of the shortest: a sample is how records are stamped."""
+ROWS = 100_000
+"""Samples that are multiplied at a time."""
 
 
 def behind_a_dead_time(evidence: Evidence) -> tuple[Evidence, float] | None:

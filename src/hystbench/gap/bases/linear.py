@@ -39,8 +39,8 @@ from hystbench.model import Model
 
 LINEAR = "linear"
 """Name of the base that is identified as a linear model."""
-NO_SIGN, SLOW, CURVE = "sensor-nonlinearity", "slew-limit", "static curve"
-LATE = "input-delay"
+NO_SIGN, SLOW, LATE = "sensor-nonlinearity", "slew-limit", "input-delay"
+CURVE = "static curve"
 """What a linear model is found together with: effects, and a curve of no name yet."""
 
 

@@ -159,17 +159,24 @@ def has_free_form(state: ModelState) -> bool:
     return any(x.form in effects()[x.effect].free_forms for x in state.added)
 
 
+def bends(state: ModelState) -> bool:
+    """Tell whether a free form, as a path is, or a law of many numbers is in a model.
+
+    Both bend to much of what is there.
+    """
+    return has_free_form(state) or any(x.is_of_many_numbers for x in state.added)
+
+
 def most_inside(chain: Named, floor_rms: float) -> float:
     """Give how many effects inside could do better than what a chain has found.
 
     They have to lower its score by what an effect has to gain, and by what a further
     effect has to for each that the chain does not have. Where the chain leaves so
-    little that nothing can, they have to be fewer. A free form, as a path is, and a law
-    of many numbers bend to much of what is there: they say nothing of what could do
-    better.
+    little that nothing can, they have to be fewer. What bends to much of what is there
+    says nothing of what could do better.
     """
     state = chain.state
-    if has_free_form(state) or any(x.is_of_many_numbers for x in state.added):
+    if bends(state):
         return np.inf
     score = Score.plain(state.sample, floor_rms**2)
     left = score_of(state, score) - score.least(state.freedom)

@@ -28,8 +28,8 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.as_late import with_others_as_late
 from hystbench.gap.inside.choose import (
     as_rounds,
+    bends,
     chosen,
-    has_free_form,
     may_gain,
     not_taken,
     way_to,
@@ -312,24 +312,24 @@ def beats_chain(
 def _in_fewer_numbers(inside: Inside, named: Named, floor: float) -> bool:
     """Tell whether as few effects, none of many numbers, leave as little of the gap."""
     state, chain = inside.named.state, named.state
-    here, there = (
-        any(x.is_of_many_numbers for x in own.added) for own in (state, chain)
-    )
+    many = any(x.is_of_many_numbers for x in chain.added)
     few = len(state.added) + inside.counts <= len(chain.added)
-    if here or has_free_form(state) or not there or not few:
-        return False
-    gap = max(named.rounds[0].before.power(floor), floor)
-    return chain.share(state, floor, gap) < AS_GOOD
+    return many and few and not bends(state) and _no_better(chain, state, named, floor)
 
 
 def _in_fewer_effects(inside: Inside, named: Named, floor: float) -> bool:
     """Tell whether a chain of fewer effects of few numbers leaves as little."""
     state, chain = inside.named.state, named.state
-    many = has_free_form(chain) or any(x.is_of_many_numbers for x in chain.added)
-    if many or not 0 < len(chain.added) < len(state.added) + inside.counts:
-        return False
+    fewer = 0 < len(chain.added) < len(state.added) + inside.counts
+    return fewer and not bends(chain) and _no_better(state, chain, named, floor)
+
+
+def _no_better(
+    state: ModelState, other: ModelState, named: Named, floor: float
+) -> bool:
+    """Tell whether a model takes no more of the gap than another one does as well."""
     gap = max(named.rounds[0].before.power(floor), floor)
-    return state.share(chain, floor, gap) < AS_GOOD
+    return state.share(other, floor, gap) < AS_GOOD
 
 
 def quantities_if_linear(base: Model, evidence: Evidence) -> Quantities | None:

@@ -23,7 +23,12 @@ TO_SIGMA = 1.4826
 
 def usual_deviation(residual: FloatArray) -> float:
     """Give the standard deviation that a residual has but for lone samples."""
-    return TO_SIGMA * float(np.median(np.abs(residual - np.median(residual))))
+    return _deviation(np.abs(residual - np.median(residual)))
+
+
+def _deviation(off: FloatArray) -> float:
+    """Give the standard deviation of normal noise that is so far off its median."""
+    return TO_SIGMA * float(np.median(off))
 
 
 def far_off(residual: FloatArray) -> Mask:
@@ -38,11 +43,11 @@ def far_off(residual: FloatArray) -> Mask:
     residual : ndarray, shape (n,)
     """
     off = np.abs(residual - np.median(residual))
-    usual = TO_SIGMA * float(np.median(off))
+    usual = _deviation(off)
     far = np.asarray((usual > 0) & (off > FAR_DEVIATIONS * usual))
     for k in np.flatnonzero(far).tolist():
         about = off[max(k - NEIGHBOURS, 0) : k + NEIGHBOURS + 1]
-        far[k] = off[k] > FAR_DEVIATIONS * TO_SIGMA * float(np.median(about))
+        far[k] = off[k] > FAR_DEVIATIONS * _deviation(about)
     return far
 
 

@@ -53,13 +53,8 @@ def observer_for(evidence: Evidence) -> float | None:
         return None
     if about.output not in ("position", "velocity"):
         return None
-    force, motion = (
-        np.mean([np.var(x) for x in each])
-        for each in (
-            [record.u for record in evidence.fit],
-            [_velocity(record, about.output) for record in evidence.fit],
-        )
-    )
+    force = np.mean([np.var(x.u) for x in evidence.fit])
+    motion = np.mean([np.var(_velocity(x, about.output)) for x in evidence.fit])
     return float(np.sqrt(force / motion)) if force and motion else None
 
 
@@ -75,30 +70,23 @@ def observed(evidence: Evidence, damper: float) -> Evidence:
     """
     if damper == 0.0:
         return evidence
-    output = evidence.quantities.output
+    output, count = evidence.quantities.output, len(evidence.fit)
     every = (*evidence.fit, *evidence.hold_out)
-    force = [damper * _velocity(x, output) for x in every]
+    motion = [_velocity(x, output) for x in every]
+    # A force gives power to what it moves: else the two are counted against each other.
+    pairs = zip(evidence.fit, motion[:count], strict=True)
+    sign = -1.0 if sum(float(np.vdot(x.u, v)) for x, v in pairs) < 0.0 else 1.0
+    force = [sign * damper * v for v in motion]
     if evidence.input_hold == "zero-order":  # the mean over the interval it is held for
         force = [np.append((x[:-1] + x[1:]) / 2, x[-1]) for x in force]
-    if _pushes_back(evidence):
-        force = [-x for x in force]
     found = [replace(x, injected=own) for x, own in zip(every, force, strict=True)]
     if evidence.in_windows:  # an unknown velocity dies out sooner
         driven = [replace(x, u=x.driven) for x in found]
         decay = decay_of_free_mass(driven, evidence.quantities)
         if decay is not None:
             found = [replace(x, decay_s=decay) for x in found]
-    fit, hold_out = found[: len(evidence.fit)], found[len(evidence.fit) :]
-    return replace(evidence, fit=tuple(fit), hold_out=tuple(hold_out))
-
-
-def _pushes_back(evidence: Evidence) -> bool:
-    """Tell whether force and motion are counted against each other.
-
-    The force gives power to what it moves: on average that is above zero.
-    """
-    output = evidence.quantities.output
-    return sum(float(np.vdot(x.u, _velocity(x, output))) for x in evidence.fit) < 0.0
+    fit, hold_out = tuple(found[:count]), tuple(found[count:])
+    return replace(evidence, fit=fit, hold_out=hold_out)
 
 
 def _velocity(record: Record, output: str) -> FloatArray:
