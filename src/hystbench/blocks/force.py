@@ -34,8 +34,6 @@ class Motion(NamedTuple):
     acceleration: FloatArray
     force: FloatArray
     """Sum of the forces inside."""
-    shown: FloatArray | None = None
-    """The output of what moved so, where it is known already."""
 
 
 class Dynamics(HeldBlock):
@@ -45,15 +43,15 @@ class Dynamics(HeldBlock):
         """Raise InputError if no force can act inside."""
 
     @abstractmethod
-    def motions(
+    def outputs(
         self,
         signals: Signals,
         dts: Sequence[float],
         forces: tuple[Force, ...],
         others: OthersOnRecords,
         pieces: float = 1.0,
-    ) -> list[list[Motion]]:
-        """Compute how the coordinate moves, and how others with numbers near do.
+    ) -> list[Signals]:
+        """Compute the output with forces inside, and those of others with numbers near.
 
         Parameters
         ----------
@@ -69,29 +67,26 @@ class Dynamics(HeldBlock):
 
         Returns
         -------
-        list of list of Motion
-            Its own by record, then those of each of the others.
+        list of sequence of ndarray, shape (n,)
+            Its own by record, then those of each of the others; NaN from where one has
+            run away.
         """
 
     @abstractmethod
-    def given(self, motion: Motion) -> FloatArray:
-        """Give the output of a motion."""
+    def motion(
+        self, z: FloatArray, dt: float, forces: tuple[Force, ...], pieces: float = 1.0
+    ) -> Motion:
+        """Compute how the coordinate moves in one record."""
 
     @abstractmethod
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
         """Say what it does at one sample with forces inside."""
 
-    def motion(
-        self, z: FloatArray, dt: float, forces: tuple[Force, ...], pieces: float = 1.0
-    ) -> Motion:
-        """Compute how the coordinate moves in one record, as :meth:`motions` does."""
-        return self.motions((z,), (dt,), forces, (), pieces)[0][0]
-
     def driven(
         self, z: FloatArray, dt: float, forces: tuple[Force, ...], pieces: float = 1.0
     ) -> FloatArray:
         """Compute the output with forces inside; NaN from where it has run away."""
-        return self.given(self.motion(z, dt, forces, pieces))
+        return self.outputs((z,), (dt,), forces, (), pieces)[0][0]
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output without a force inside."""
@@ -258,12 +253,7 @@ class Driven:
         self, signals: Signals, dts: Sequence[float], others: OthersOnRecords
     ) -> list[Signals]:
         """Compute the outputs, and those of others with numbers near."""
-        motions = self.host.motions(signals, dts, self.forces, others, self.pieces)
-        hosts = (self.host, *(other.host for other, _ in others))
-        return [
-            tuple(x.shown if x.shown is not None else host.given(x) for x in own)
-            for host, own in zip(hosts, motions, strict=True)
-        ]
+        return self.host.outputs(signals, dts, self.forces, others, self.pieces)
 
     def step(self, sampling: Sampling) -> Step:
         """Say what both do at one sample, as :meth:`Block.step` does."""

@@ -36,14 +36,15 @@ class DriveLines:
     """What drives near motions: straight lines, one record behind another."""
 
     values: FloatArray
-    """Corners of the lines, shape (motions, count)."""
+    """Corners of the lines, shape (motions, count), or (1, count) if all have them."""
     before: FloatArray
     """What was for ever before each record, shape (motions, records)."""
     ends: NDArray[np.int64]
     """Where each record ends."""
-    begins: NDArray[np.int64]
-    shown: list[slice]
-    """Corners at the samples of each record."""
+    fine: int
+    """Lines from one sample to the next."""
+    samples: tuple[int, ...]
+    """Of each record, without those of what was before it."""
     step: float
     """Seconds from one corner to the next."""
     parts: int
@@ -51,57 +52,66 @@ class DriveLines:
     ramp: float
     """One for straight lines, zero for a staircase."""
 
-    @property
-    def count(self) -> int:
-        """Corners of all records."""
-        return int(self.values.shape[1])
-
     def move(
         self,
         drives: FloatArray,
         tables: FloatArray,
         laws: FloatArray,
-        motion: FloatArray,
-    ) -> FloatArray:
+        starts: FloatArray,
+        shown: FloatArray,
+        of_first: FloatArray,
+    ) -> list[Signals]:
         """Move modes that feel each other by the forces at one place alone.
 
         Parameters
         ----------
-        drives : ndarray, shape (motions, count)
+        drives : ndarray, shape (motions, count) or (1, count)
         tables : ndarray
             Of :func:`tables_of`.
         laws : ndarray, shape (motions, forces, 7)
-        motion : ndarray, shape (motions, count, 2 modes)
-            Positions and velocities; is filled from the first row of each record on.
+        starts : ndarray, shape (motions, records, 2 modes)
+            Positions and velocities at the beginning of each record.
+        shown : ndarray, shape (motions, 2 modes + 2)
+            Weights of positions, velocities, forces and drive in the output of each.
+        of_first : ndarray, shape (rows, 2 modes + 2)
+            Those of outputs that the first motion shows in place of its own.
 
         Returns
         -------
-        ndarray, shape (motions, count)
-            The sum of the forces.
+        list of sequence of ndarray, shape (n,)
+            By record: the outputs of the first motion, then the one of each other.
         """
-        near, numbers = len(tables) - 1, tables.shape[1]
+        near, numbers = len(tables) - 1, tables.shape[1] + shown.shape[1]
         beside = np.zeros((numbers, kernels.padded(near)))
-        beside[:, :near] = tables[1:].T
-        force = np.zeros(drives.shape)
+        beside[: tables.shape[1], :near] = tables[1:].T
+        beside[tables.shape[1] :, :near] = shown[1:].T
+        lengths = np.diff(self.ends, prepend=0)
+        told = np.cumsum((lengths - 1) // self.fine + 1).tolist()
+        found = np.empty((len(of_first) + near, told[-1]))
         kernels.call(
             "hb_structure",
-            self.count,
+            int(self.ends[-1]),
             len(self.ends),
             self.ends.ctypes.data,
-            motion.shape[2] // 2,
+            shown.shape[1] // 2 - 1,
             near,
             self.parts,
             self.step,
             self.ramp,
-            tables[0],
+            self.fine,
+            np.append(tables[0], shown[0]),
             beside,
             laws.shape[1],
             laws,
             drives,
-            motion,
-            force,
+            drives.shape[1] if len(drives) > 1 else 0,
+            starts,
+            len(of_first),
+            of_first,
+            found,
         )
-        return force
+        its = [slice(end - n, end) for end, n in zip(told, self.samples, strict=True)]
+        return [tuple(own[at] for at in its) for own in found]
 
 
 class ForcedDynamics(Dynamics):
@@ -126,20 +136,42 @@ class ForcedDynamics(Dynamics):
         return True
 
     @abstractmethod
-    def _moved(
-        self, every: Sequence[Driven], drives: Sequence[Signals], dt: float
-    ) -> list[list[Motion]]:
-        """Move near motions through records of one interval, none of them empty."""
+    def weights(self) -> FloatArray:
+        """Give the weights of q and q' of all modes, of forces and drive in the output.
 
-    def motions(
+        Shape (2 modes + 2,).
+        """
+
+    @abstractmethod
+    def _of_motion(self, forces: tuple[Force, ...]) -> FloatArray:
+        """Give such weights of the fields of a :class:`Motion`, shape (4, 2 modes + 2).
+
+        With what a spring takes over from those forces.
+        """
+
+    @abstractmethod
+    def _moved(
+        self,
+        every: Sequence[Driven],
+        drives: Sequence[Signals],
+        dt: float,
+        of_first: FloatArray | None = None,
+    ) -> list[Signals]:
+        """Move near motions through records of one interval, none of them empty.
+
+        Records have three samples or as many. Gives the output of each motion, or those
+        of the first one by such weights.
+        """
+
+    def outputs(
         self,
         signals: Signals,
         dts: Sequence[float],
         forces: tuple[Force, ...],
         others: OthersOnRecords,
         pieces: float = 1.0,
-    ) -> list[list[Motion]]:
-        """Compute how the coordinate moves, and how others with numbers near do.
+    ) -> list[Signals]:
+        """Compute the output, and those of others with numbers near.
 
         Each step of those is the tangent of this one's: right for small differences.
         Records of one sampling interval take one call of the kernel.
@@ -149,17 +181,23 @@ class ForcedDynamics(Dynamics):
         alike: dict[tuple[float, int], list[int]] = {}
         for k, (z, dt) in enumerate(zip(signals, dts, strict=True)):
             alike.setdefault((dt, min(len(z), 3)), []).append(k)
-        found: list[dict[int, Motion]] = [{} for _ in every]
+        found: list[dict[int, FloatArray]] = [{} for _ in every]
         for (dt, length), places in alike.items():
             drives = [[own[k] for k in places] for own in given]
-            moved = (
-                self._moved(every, drives, dt)
-                if length
-                else [[Motion(*[z] * 5) for z in own] for own in drives]
-            )
+            moved = self._moved(every, drives, dt) if length else drives
             for own, moves in zip(found, moved, strict=True):
                 own.update(zip(places, moves, strict=True))
-        return [[own[k] for k in range(len(signals))] for own in found]
+        return [tuple(own[k] for k in range(len(signals))) for own in found]
+
+    def motion(
+        self, z: FloatArray, dt: float, forces: tuple[Force, ...], pieces: float = 1.0
+    ) -> Motion:
+        """Compute how the coordinate moves in one record."""
+        if not len(z):
+            return Motion(*[z] * 4)
+        every = [Driven(self, forces, pieces)]
+        moved = self._moved(every, [(z,)], dt, self._of_motion(forces))
+        return Motion(*(own for (own,) in moved))
 
     def lines(self, first: Driven, drives: Sequence[Signals], dt: float) -> DriveLines:
         """Give what drives near motions, the first of which says in how many steps."""
@@ -176,6 +214,7 @@ class ForcedDynamics(Dynamics):
 
         corners, rested, fine = begun(drives[0])
         values, before = [np.concatenate(corners)], [rested]
+        alike = True
         for own in drives[1:]:
             if all(x is z for x, z in zip(own, drives[0], strict=True)):
                 values.append(values[0])
@@ -184,19 +223,14 @@ class ForcedDynamics(Dynamics):
                 others, its, _ = begun(own)
                 values.append(np.concatenate(others))
                 before.append(its)
-        lengths = np.array([len(x) for x in corners])
-        ends = np.cumsum(lengths, dtype=np.int64)
-        shown = [
-            slice(end - (len(z) - 1) * fine - 1, end, fine)
-            for z, end in zip(drives[0], ends.tolist(), strict=True)
-        ]
+                alike = False
         step = dt / fine
         return DriveLines(
-            np.array(values),
+            np.array(values[:1] if alike else values),
             np.array(before),
-            ends,
-            ends - lengths,
-            shown,
+            np.cumsum([len(x) for x in corners], dtype=np.int64),
+            fine,
+            tuple(map(len, drives[0])),
             step,
             self.parts(step, first.forces, first.pieces),
             float(holding != "zero-order"),

@@ -106,15 +106,15 @@ class Impedance(Dynamics, name="impedance", place="base"):
             [motion.acceleration, motion.velocity, motion.position, ones]
         )
 
-    def motions(
+    def outputs(
         self,
         signals: Signals,
         dts: Sequence[float],
         forces: tuple[Force, ...],
         others: OthersOnRecords,
         pieces: float = 1.0,
-    ) -> list[list[Motion]]:
-        """Give the motion and the forces that it meets, and those of others.
+    ) -> list[Signals]:
+        """Give the force of the motion that it is given, and those of others.
 
         What moves alike moves once, and meets forces that are the same once. The motion
         is given, so that ``pieces`` of steps change nothing.
@@ -123,7 +123,17 @@ class Impedance(Dynamics, name="impedance", place="base"):
             self._near(z, dt, forces, [(other, own[k]) for other, own in others])
             for k, (z, dt) in enumerate(zip(signals, dts, strict=True))
         ]
-        return [list(own) for own in zip(*of_records, strict=True)]
+        hosts = (self, *(other.host for other, _ in others))
+        return [
+            tuple(map(host.given, own))
+            for host, own in zip(hosts, zip(*of_records, strict=True), strict=True)
+        ]
+
+    def motion(
+        self, z: FloatArray, dt: float, forces: tuple[Force, ...], pieces: float = 1.0
+    ) -> Motion:
+        """Give the motion of one record and the forces that it meets."""
+        return self._near(z, dt, forces, ())[0]
 
     def _near(
         self, z: FloatArray, dt: float, forces: tuple[Force, ...], others: Others

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from math import sqrt
-from typing import Any
 
 import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.attached import Signals
-from hystbench.blocks.force import Driven, Force, Motion, exported, less_stiff, rows
+from hystbench.blocks.force import Driven, Force, exported, less_stiff, rows
 from hystbench.blocks.forced import ForcedDynamics, step_weights, tables_of
 from hystbench.blocks.parameter import TINY, choice, number
 from hystbench.blocks.starts import PASTS
@@ -69,57 +68,32 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
                 "there is no place of balance"
             )
 
-    def given(self, motion: Motion) -> FloatArray:
-        """Give the output of a motion, which may have run away."""
-        with np.errstate(over="ignore", invalid="ignore"):
-            if self.output == "force":
-                spring = self.stiffness * motion.position + motion.force
-                return spring + (self.damping + self.blend) * motion.velocity
-            if self.output == "position":
-                if self.blend == 0.0:
-                    return motion.position
-                return motion.position + self.blend * motion.velocity
-            if self.output == "velocity":
-                return motion.velocity + self.blend * motion.acceleration
-            return motion.acceleration + self.blend * motion.velocity
-
     def _moved(
-        self, every: Sequence[Driven], drives: Sequence[Signals], dt: float
-    ) -> list[list[Motion]]:
+        self,
+        every: Sequence[Driven],
+        drives: Sequence[Signals],
+        dt: float,
+        of_first: FloatArray | None = None,
+    ) -> list[Signals]:
         """Move near motions through records, which have three samples or as many."""
         slope = slope_of(every[0].forces)
-        stiffer: list[Any] = [_stiffer(each, slope) for each in every]
-        hosts, numbers = [own for own, _ in stiffer], np.array([x for _, x in stiffer])
+        stiffer = [_stiffer(each, slope) for each in every]
+        hosts, laws = [own for own, _ in stiffer], np.array([x for _, x in stiffer])
         driven = hosts[0].lines(every[0], drives, dt)
-        gain, bias, mass, damping, stiffness = np.array(
-            [[x.gain, x.bias, x.mass, x.damping, x.stiffness] for x in hosts]
-        ).T[..., None]
-        motion = np.zeros((len(hosts), driven.count, 2))
-        p = gain * driven.values + bias
+        gain, bias = np.array([[x.gain, x.bias] for x in hosts]).T[..., None]
+        starts = np.empty((len(hosts), len(driven.ends), 2))
         for k, host in enumerate(hosts):
-            motion[k, driven.begins] = host.start_position, host.start_velocity
+            starts[k] = host.start_position, host.start_velocity
             if self.start != "rest" and host.stiffness > 0.0:
                 rested = host.gain * driven.before[k] + host.bias
-                balances = [host._balance(z, numbers[k]) for z in rested]
-                motion[k, driven.begins, 0] += balances
+                starts[k, :, 0] += [host._balance(z, laws[k]) for z in rested]
         one = np.ones((len(hosts), 1))
         modes = [(host.linear,) for host in hosts]
         tables = tables_of(modes, one, one, driven.step / driven.parts)
-        force = driven.move(p, tables, numbers, motion)
-        q, v = motion[..., 0].copy(), motion[..., 1].copy()
-        with np.errstate(over="ignore", invalid="ignore"):  # it may have run away
-            curved = damping * v
-            curved += stiffness * q
-            curved += force
-            np.subtract(p, curved, out=curved)
-            curved /= mass
-            if slope:
-                force += slope * q
-        found = []
-        for each, *moved in zip(every, q, v, curved, force, strict=True):
-            signals = (*moved, each.host.given(Motion(*moved)))
-            found.append([Motion(*(x[at] for x in signals)) for at in driven.shown])
-        return found
+        shown = np.array([host.weights() for host in hosts])
+        asked = shown[:1] if of_first is None else of_first
+        p = gain * driven.values + bias
+        return driven.move(p, tables, laws, starts, shown, asked)
 
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
         """Move the coordinate over the interval that has passed."""
@@ -136,7 +110,7 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
             "parts": parts,
             "h": line / parts,
             "step": step_weights((stiffer.linear,), line / parts).ravel(),
-            "shown": stiffer._shown(),
+            "shown": stiffer.weights(),
             "start": np.array([self.start_position, self.start_velocity, balanced]),
             **inside,
         }
@@ -144,18 +118,25 @@ class Mechanism(ForcedDynamics, name="mechanism", place="base"):
         past = PASTS.get(self.start, "")
         return Step("mechanism", constants, states, past=past, **lines.told)
 
-    def _shown(self) -> FloatArray:
-        """Weights of q, q', the forces inside and the driving force in the output."""
-        spring = np.array([self.stiffness, self.damping, 1.0, 0.0])
-        acceleration = (np.array([0.0, 0.0, 0.0, 1.0]) - spring) / self.mass
-        position, velocity = np.eye(4)[:2]
-        weights: dict[str, FloatArray] = {
+    def weights(self) -> FloatArray:
+        """Give the weights of q, q', the forces inside and the driving force."""
+        position, velocity, acceleration, force = self._of_motion(())
+        spring = np.array([self.stiffness, self.damping, 0.0, 0.0])
+        shown: dict[str, FloatArray] = {
             "position": position + self.blend * velocity,
             "velocity": velocity + self.blend * acceleration,
             "acceleration": acceleration + self.blend * velocity,
-            "force": spring + self.blend * velocity,
+            "force": spring + force + self.blend * velocity,
         }
-        return weights[self.output]
+        return shown[self.output]
+
+    def _of_motion(self, forces: tuple[Force, ...]) -> FloatArray:
+        """Give the weights of position, velocity, acceleration and forces."""
+        slope = slope_of(forces)
+        position, velocity, force, drive = np.eye(4)
+        spring = (self.stiffness + slope) * position + self.damping * velocity
+        acceleration = (drive - force - spring) / self.mass
+        return np.array([position, velocity, acceleration, force + slope * position])
 
     def _balance(self, p: float, numbers: FloatArray) -> float:
         """Find where the springs hold a force, next to where the linear one does."""

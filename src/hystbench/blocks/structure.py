@@ -11,7 +11,7 @@ import numpy as np
 from hystbench import kernels
 from hystbench.blocks.attached import Signals
 from hystbench.blocks.base import Block
-from hystbench.blocks.force import Driven, Force, Motion, exported, rows
+from hystbench.blocks.force import Driven, Force, exported, rows
 from hystbench.blocks.forced import ForcedDynamics, tables_of
 from hystbench.blocks.parameter import TINY, choice, number, numbers
 from hystbench.blocks.starts import PASTS
@@ -112,11 +112,6 @@ class Structure(ForcedDynamics, name="structure", place="base"):
         """How far a unit of force moves the joint at rest."""
         return float(np.sum(self.at_joint**2 / np.array(self.stiffness)))
 
-    def given(self, motion: Motion) -> FloatArray:
-        """Give the output of a motion, which may have run away."""
-        assert motion.shown is not None  # noqa: S101  (for the type checker)
-        return motion.shown
-
     def rates(self, contact: float, shown: float) -> tuple[float, float]:
         """Give how fast modes of the joint swing, alone and in contact.
 
@@ -129,43 +124,42 @@ class Structure(ForcedDynamics, name="structure", place="base"):
         return alone or fastest, sqrt(fastest**2 + contact * float(joint @ joint))
 
     def _moved(
-        self, every: Sequence[Driven], drives: Sequence[Signals], dt: float
-    ) -> list[list[Motion]]:
+        self,
+        every: Sequence[Driven],
+        drives: Sequence[Signals],
+        dt: float,
+        of_first: FloatArray | None = None,
+    ) -> list[Signals]:
         """Move near motions through records, which have three samples or as many.
 
-        What moves alike moves once: most numbers of an output move nothing.
+        What moves as the first one does shows another output of the same motion: most
+        numbers of an output move nothing.
         """
         hosts: list[Any] = [each.host for each in every]
         moves = [
             (host.moving, each.forces, *map(id, own))
             for host, each, own in zip(hosts, every, drives, strict=True)
         ]
-        places: list[int] = []
-        number: dict[Any, int] = {}
-        for k, key in enumerate(moves):
-            if key not in number:
-                number[key] = len(places)
-                places.append(k)
+        alike = [k for k, key in enumerate(moves) if key == moves[0]]
+        others = [k for k, key in enumerate(moves) if key != moves[0]]
+        places = [0, *others]
         moved = [hosts[k] for k in places]
         laws = np.array([rows(every[k].forces) for k in places])
         driven = self.lines(every[0], [drives[k] for k in places], dt)
-        count = len(self.stiffness)
-        motion = np.zeros((len(moved), driven.count, 2 * count))
+        starts = np.zeros((len(moved), len(driven.ends), 2 * len(self.stiffness)))
         for k, host in enumerate(moved):
-            motion[k, driven.begins, :count] = host._balances(driven.before[k], laws[k])
+            rested = host._balances(driven.before[k], laws[k])
+            starts[k, :, : len(self.stiffness)] = rested
         tables = _tables(moved, driven.step / driven.parts)
-        force = driven.move(driven.values, tables, laws, motion)
-        joints = [
-            host._at_joint(*own)
-            for host, *own in zip(moved, motion, force, driven.values, strict=True)
-        ]
-        found = []
-        for host, key in zip(hosts, moves, strict=True):
-            k = number[key]
-            shown = host._output(motion[k], force[k], driven.values[k])
-            signals = (*joints[k], force[k], shown)
-            found.append([Motion(*(x[at] for x in signals)) for at in driven.shown])
-        return found
+        shown = np.array([host.weights() for host in moved])
+        asked = np.array([hosts[k].weights() for k in alike])
+        if of_first is not None:
+            asked = of_first
+        found = driven.move(driven.values, tables, laws, starts, shown, asked)
+        if of_first is not None:
+            return found
+        back = np.argsort([*alike, *others])
+        return [found[k] for k in back]
 
     @property
     def moving(self) -> tuple[Any, ...]:
@@ -178,41 +172,29 @@ class Structure(ForcedDynamics, name="structure", place="base"):
         every = zip(self.damping, self.stiffness, strict=True)
         return tuple((1.0, damping, stiffness) for damping, stiffness in every)
 
-    def _at_joint(self, modes: FloatArray, force: FloatArray, z: FloatArray) -> Signals:
-        """Give how the joint moves: its position, velocity and acceleration."""
-        joint, still = self.at_joint, np.zeros(len(self.stiffness))
-        weights = np.column_stack(
-            [
-                np.append(joint, still),
-                np.append(still, joint),
-                -np.append(joint * self.stiffness, joint * self.damping),
-            ]
-        )
-        with np.errstate(over="ignore", invalid="ignore"):  # it may have run away
-            position, velocity, curved = (modes @ weights).T
-            driven = z * float(joint @ self.drive) - force * float(joint @ joint)
-            return position, velocity, driven + curved
+    def _of_motion(self, forces: tuple[Force, ...]) -> FloatArray:
+        """Give the weights of the joint's motion and of the forces there."""
+        joint, count = self.at_joint, len(self.stiffness)
+        found = np.zeros((4, 2 * count + 2))
+        found[0, :count] = found[1, count:-2] = joint
+        found[2] = joint @ self._accelerations
+        found[3, -2] = 1.0
+        return found
 
-    def _output(
-        self, modes: FloatArray, force: FloatArray, z: FloatArray
-    ) -> FloatArray:
-        """Give the output of a motion of the modes."""
-        *weights, of_force, of_drive = self._shown()
-        with np.errstate(over="ignore", invalid="ignore"):
-            return np.asarray(modes @ weights + of_force * force + of_drive * z)
+    @property
+    def _accelerations(self) -> FloatArray:
+        """Weights in q'' of each mode, shape (modes, 2 modes + 2)."""
+        own = -np.diag(self.stiffness), -np.diag(self.damping)
+        return np.column_stack([*own, -self.at_joint, np.array(self.drive)])
 
-    def _shown(self) -> FloatArray:
-        """Weights in the output of q and q' of all modes, of F and of what drives."""
+    def weights(self) -> FloatArray:
+        """Give the weights of q and q' of all modes, of F and of what drives."""
         count = len(self.stiffness)
-        drive, joint = np.array(self.drive), self.at_joint
-        sensor = np.array(self.modal_constant) / drive
+        sensor = np.array(self.modal_constant) / np.array(self.drive)
         blend = np.array(self.blend or (0.0,) * count)
         position, velocity = np.zeros((2, count, 2 * count + 2))
         position[:, :count], velocity[:, count:-2] = np.eye(count), np.eye(count)
-        acceleration = np.column_stack(
-            [-np.diag(self.stiffness), -np.diag(self.damping), -joint, drive]
-        )
-        derivatives = (position, velocity, acceleration)
+        derivatives = (position, velocity, self._accelerations)
         order = OUTPUTS.index(self.output)
         # Beside an acceleration a share of the velocity, as a mechanism has it.
         other = derivatives[order + 1 if order < 2 else 1]
@@ -259,7 +241,7 @@ class Structure(ForcedDynamics, name="structure", place="base"):
             "parts": parts,
             "h": line / parts,
             "table": _tables([self], line / parts).ravel(),
-            "shown": self._shown(),
+            "shown": self.weights(),
             "rests": self._rests().ravel(),
             "spring": 1.0 / self.receptance if forces and self.start != "rest" else 0.0,
             **inside,

@@ -49,7 +49,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_hardening": (SIZE, "ifffffaa"),
     "hb_forces": (None, "ifiaaaaa"),
     "hb_settle": (None, "ffiaaa"),
-    "hb_structure": (None, "iiaiiiffaaiaaaa"),
+    "hb_structure": (None, "iiaiiiffiaaiaaiaiaa"),
     "hb_store": (None, "iifffffaaaa"),
     "hb_store_near": (None, "iifffffaaaaiaaaaaaa"),
     "hb_preisach": (None, "iifaaaaa"),

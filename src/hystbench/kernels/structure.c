@@ -11,11 +11,14 @@ struct nearby {
     const double *forces;             /* rows of each, one structure behind another */
     double *q, *memory;               /* q of all modes, then v; memory of all forces */
     double *from, *to;                /* what drives them over a part */
-    double *alone, *x, *v, *way, *sum; /* of the joint */
+    double *x, *v, *way, *sum;        /* of the joint */
     const int *own_row;               /* forces that are not linearised, -1 behind */
 };
 
 #define EACH(k, all) for (index_t k = 0; k < (all)->wide; k += LANES)
+
+/* Where the weights of an output stand behind a table. */
+static inline int hb_shown(int modes) { return modes + 2 * (3 + 12 * modes); }
 
 /* What a law depends on, beside the way or the velocity: the place, and its memory. */
 static int minds_place(int law) { return law <= 2 || law == 6 || law == 13; }
@@ -217,133 +220,206 @@ INLINE void follow(int modes, int count, const double *table, const double *forc
     }
 }
 
-/* Moves a structure and those near it through a record, each from its first motion. */
-INLINE void move(index_t n, int modes, index_t parts, double dt, double ramp, int count,
-                 const double *table, const double *forces, double *memory, const double *p,
-                 double *motion, double *out, index_t whole, struct nearby *all,
-                 double *before, double *moved)
+/* An output: weights of q and v of all modes, of the forces and of what drives them. */
+INLINE double shown(int size, const double *weights, const double *motion, double force,
+                    double p)
 {
-    const double h = dt / parts;
-    const index_t near = all->near, wide = all->wide, size = 2 * modes;
-    double ways[8], longer, *remembered = before + size, now[size];
-    for (int j = 0; j < size; j++) {
-        now[j] = motion[j];
-        for (index_t i = 0; i < near; i++)
-            all->q[j * wide + i] = motion[size * whole * (i + 1) + j];
-    }
-    for (index_t k = 0;; k++) {
-        for (int j = 0; j < size; j++) motion[size * k + j] = now[j];
+    double sum = weights[size] * force + weights[size + 1] * p;
+    for (int j = 0; j < size; j++) sum += weights[j] * motion[j];
+    return sum;
+}
+
+/* What is shown of a structure and of those near it. */
+struct outputs {
+    index_t fine, rows, total;  /* corners a sample; outputs of the first; samples of all */
+    const double *rows_of_first; /* weights of each */
+    int forced;                 /* whether an output depends on the forces themselves */
+    double *at;                 /* where the next sample of the first output belongs */
+};
+
+/* Shows outputs at a corner: those of the first, then one of each near it. */
+INLINE void show(int modes, int count, const double *table, const double *forces,
+                 const double *memory, const double *now, const double *p, index_t apart,
+                 struct nearby *all, struct outputs *to)
+{
+    const int size = 2 * modes;
+    const index_t near = all->near, wide = all->wide;
+    double force = 0, longer;
+    if (to->forced) {
         const double x = hb_at_joint(modes, table, now);
         const double v = hb_at_joint(modes, table, now + modes);
         if (near) {
             near_joints(modes, all, all->q, all->x);
             near_joints(modes, all, all->q + modes * wide, all->v);
-            out[k] = near_forces(count, forces, memory, x, v, 0, all, all->v, &longer);
-            for (index_t i = 0; i < near; i++) {
-                double *its = motion + size * (whole * (i + 1) + k);
-                for (int j = 0; j < size; j++) its[j] = all->q[j * wide + i];
-                out[whole * (i + 1) + k] = all->sum[i];
-            }
+            force = near_forces(count, forces, memory, x, v, 0, all, all->v, &longer);
         } else {
-            out[k] = hb_sum_of_forces(count, forces, x, v, memory);
+            force = hb_sum_of_forces(count, forces, x, v, memory);
         }
+    }
+    for (index_t r = 0; r < to->rows; r++)
+        to->at[r * to->total] = shown(size, to->rows_of_first + (size + 2) * r, now, force, *p);
+    for (index_t i = 0; i < near; i++) all->from[i] = p[apart * (i + 1)];
+    const double *weights = all->table + hb_shown(modes) * wide;
+    EACH(k, all) {
+        lanes sum = load(weights + (size + 1) * wide + k) * load(all->from + k);
+        if (to->forced) sum += load(weights + size * wide + k) * load(all->sum + k);
+        for (int j = 0; j < size; j++)
+            sum += load(weights + j * wide + k) * load(all->q + j * wide + k);
+        store(all->to + k, sum);
+    }
+    for (index_t i = 0; i < near; i++) to->at[(to->rows + i) * to->total] = all->to[i];
+    to->at++;
+}
+
+/* Fills what is left of a record of outputs where a motion runs away. */
+static void show_none(index_t samples, index_t outputs, struct outputs *to)
+{
+    for (index_t i = 0; i < outputs; i++)
+        for (index_t k = 0; k < samples; k++) to->at[i * to->total + k] = NAN;
+    to->at += samples;
+}
+
+INLINE int ran_away(int size, const double *motion)
+{
+    int away = 0;
+    for (int j = 0; j < size; j++) away |= !(fabs(motion[j]) < 1e100);
+    return away;
+}
+
+/* Moves a structure and those near it through a record, each from its first motion. */
+INLINE void move(index_t n, int modes, index_t parts, double dt, double ramp, int count,
+                 const double *table, const double *forces, double *memory, const double *p,
+                 index_t apart, const double *starts, index_t records, struct nearby *all,
+                 double *before, double *moved, struct outputs *to)
+{
+    const double h = dt / parts;
+    const index_t near = all->near, wide = all->wide, size = 2 * modes;
+    double ways[8], *remembered = before + size, now[size];
+    for (int j = 0; j < size; j++) {
+        now[j] = starts[j];
+        for (index_t i = 0; i < near; i++)
+            all->q[j * wide + i] = starts[size * records * (i + 1) + j];
+    }
+    for (index_t k = 0;; k++) {
+        if ((n - 1 - k) % to->fine == 0)
+            show(modes, count, table, forces, memory, now, p + k, apart, all, to);
         if (k + 1 == n) return;
         const double slope = ramp * (p[k + 1] - p[k]) / parts;
-        int runs_away = 0;
-        for (index_t s = 0; s < parts && !runs_away; s++) {
-            const double from = p[k] + s * slope, to = from + slope;
+        int away = 0;
+        for (index_t s = 0; s < parts && !away; s++) {
+            const double from = p[k] + s * slope, till = from + slope;
             for (int i = 0; i < count; i++) remembered[i] = memory[i];
             const int pieces = hb_joint_moved(modes, table, count, forces, memory, h, from,
-                                              to, now, before, ways);
+                                              till, now, before, ways);
             for (index_t i = 0; i < near; i++) {
-                const double *its = p + whole * (i + 1) + k;
+                const double *its = p + apart * (i + 1) + k;
                 const double rise = ramp * (its[1] - its[0]) / parts;
                 all->from[i] = its[0] + s * rise, all->to[i] = all->from[i] + rise;
             }
             if (near)
-                follow(modes, count, table, forces, h, pieces, ways, from, to, before,
+                follow(modes, count, table, forces, h, pieces, ways, from, till, before,
                        remembered, all, moved);
-            for (int j = 0; j < size; j++) runs_away |= !(fabs(now[j]) < 1e100);
+            away = ran_away(size, now);
         }
-        if (!runs_away) continue;
-        for (index_t i = 0; i <= near; i++)
-            for (index_t j = k + 1; j < n; j++) {
-                for (int l = 0; l < size; l++) motion[size * (whole * i + j) + l] = NAN;
-                out[whole * i + j] = NAN;
-            }
-        return;
+        if (away) {
+            show_none((n - 2 - k) / to->fine + 1, to->rows + near, to);
+            return;
+        }
     }
 }
 
-/* Moves a structure without forces through a record, from the motion in its first row. */
+/* Moves a structure without forces through a record; rows: weights of its outputs. */
 INLINE void coast(index_t n, int modes, double ramp, const double *table, const double *p,
-                  double *motion, double *out)
+                  const double *start, index_t rows, const double *weights,
+                  struct outputs *to)
 {
     const int size = 2 * modes;
     const double *part = table + hb_part(modes, 0);
     double now[size];
-    for (int j = 0; j < size; j++) now[j] = motion[j];
+    for (int j = 0; j < size; j++) now[j] = start[j];
     for (index_t k = 0;; k++) {
-        for (int j = 0; j < size; j++) motion[size * k + j] = now[j];
-        out[k] = 0;
+        if ((n - 1 - k) % to->fine == 0) {
+            for (index_t r = 0; r < rows; r++)
+                to->at[r * to->total] = shown(size, weights + (size + 2) * r, now, 0, p[k]);
+            to->at++;
+        }
         if (k + 1 == n) return;
         hb_modes_after(modes, part, now, p[k], p[k] + ramp * (p[k + 1] - p[k]), 0);
-        int runs_away = 0;
-        for (int j = 0; j < size; j++) runs_away |= !(fabs(now[j]) < 1e100);
-        if (!runs_away) continue;
-        for (index_t j = k + 1; j < n; j++) {
-            for (int l = 0; l < size; l++) motion[size * j + l] = NAN;
-            out[j] = NAN;
-        }
+        if (!ran_away(size, now)) continue;
+        show_none((n - 2 - k) / to->fine + 1, rows, to);
         return;
     }
 }
 
 /* All of several structures without forces: the first, and those near it. */
-INLINE void coast_each(index_t n, index_t records, const index_t *ends, int modes,
-                       index_t near, index_t wide, double ramp, const double *table,
-                       const double *tables, const double *p, double *motion, double *out)
+INLINE void coast_each(index_t records, const index_t *ends, int modes, index_t near,
+                       index_t wide, double ramp, const double *table,
+                       const double *tables, const double *p, index_t apart,
+                       const double *starts, struct outputs *to)
 {
-    const int numbers = hb_part(modes, 1);
-    double own[numbers];
+    const int numbers = hb_shown(modes) + 2 * modes + 2;
+    double own[numbers], *out = to->at;
     for (int j = 0; j < numbers; j++) own[j] = table[j];
-    for (index_t i = 0; i <= near; i++, p += n, motion += 2 * modes * n, out += n) {
+    for (index_t i = 0; i <= near; i++, p += apart, starts += 2 * modes * records) {
         for (int j = 0; i && j < numbers; j++) own[j] = tables[j * wide + i - 1];
+        const double *weights = i ? own + hb_shown(modes) : to->rows_of_first;
+        const index_t rows = i ? 1 : to->rows;
+        to->at = i ? out + (to->rows + i - 1) * to->total : out;
         for (index_t r = 0, begin = 0; r < records; begin = ends[r++])
-            coast(ends[r] - begin, modes, ramp, own, p + begin, motion + 2 * modes * begin,
-                  out + begin);
+            coast(ends[r] - begin, modes, ramp, own, p + begin, starts + 2 * modes * r, rows,
+                  weights, to);
     }
 }
 
-/* Motions of the modes at the samples, a row each, and the force F, from the motion in
- * the first row of each record. One record follows another: each ends where `ends` says,
- * and begins without a memory. Over one of `parts` equal parts of an interval dt the
- * forces count with their mean over the way, which does their exact work: so a passive
- * force never gives energy, however stiff it is, and the method is of second order. p
- * moves by the share ramp of a straight line in each interval (1: straight, 0: a
- * staircase). table is that of joint.c, and tables that of `near` structures with numbers
- * near these, a row for each of its numbers, filled with zeros to a multiple of WIDTH; of
- * each array follow those of the near ones. Where a motion runs away the rest of its
- * record is NaN. */
+/* One body for each of the usual numbers of modes: loops of a known length are unrolled. */
+#define FOR_MODES(call)                                                                  \
+    switch (modes) {                                                                     \
+    case 1: call(1); break;                                                              \
+    case 2: call(2); break;                                                              \
+    case 3: call(3); break;                                                              \
+    case 4: call(4); break;                                                              \
+    case 5: call(5); break;                                                              \
+    case 6: call(6); break;                                                              \
+    default: call((int)modes);                                                           \
+    }
+
+/* Outputs of a structure, and of `near` structures with numbers near its own, at every
+ * `fine`-th corner of what drives them, p, counted from the end of each record. One record
+ * follows another: each ends where `ends` says, and begins without a memory; starts holds
+ * the first motion of each structure in each record. Over one of `parts` equal parts of
+ * an interval dt the forces count with their mean over the way, which does their exact
+ * work: so a passive force never gives energy, however stiff it is, and the method is of
+ * second order. p moves by the share ramp of a straight line in each interval (1: straight,
+ * 0: a staircase); that of the next structure lies `apart` behind it, 0 where all have the
+ * same. table is that of joint.c with the weights of an output behind it, and tables that
+ * of the near ones, a row for each of its numbers, filled with zeros to a multiple of
+ * WIDTH. The first shows `rows` outputs by the weights of_first in place of its own; of the
+ * other arrays that of each near one follows the first. Where a motion runs away the rest
+ * of its record is NaN. */
 EXPORT void hb_structure(index_t n, index_t records, const index_t *ends, index_t modes,
-                         index_t near, index_t parts, double dt, double ramp,
+                         index_t near, index_t parts, double dt, double ramp, index_t fine,
                          const double *table, const double *tables, index_t count,
-                         const double *forces, const double *p, double *motion, double *out)
+                         const double *forces, const double *p, index_t apart,
+                         const double *starts, index_t rows, const double *of_first,
+                         double *out)
 {
     const index_t size = 2 * modes;
     const index_t wide = (near + WIDTH - 1) / WIDTH * WIDTH;
+    struct outputs to = {.fine = fine, .rows = rows, .rows_of_first = of_first, .at = out};
+    for (index_t r = 0, begin = 0; r < records; begin = ends[r++])
+        to.total += (ends[r] - begin - 1) / fine + 1;
     if (!count && parts == 1) {
 #define COAST(modes)                                                                     \
-    coast_each(n, records, ends, modes, near, wide, ramp, table, tables, p, motion, out)
-        if (modes == 1)
-            COAST(1);
-        else
-            COAST((int)modes);
+    coast_each(records, ends, modes, near, wide, ramp, table, tables, p, apart, starts, &to)
+        FOR_MODES(COAST)
 #undef COAST
         return;
     }
+    for (index_t r = 0; r < rows; r++) to.forced |= of_first[(size + 2) * r + size] != 0;
+    for (index_t i = 0; i < near; i++)
+        to.forced |= tables[(hb_shown((int)modes) + size) * wide + i] != 0;
     double memory[count + 1], before[size + count + 1];
-    double rows[(size + count + 7) * wide + 1], moved[2 * count * near + 1];
+    double rows_of_near[(size + count + 6) * wide + 1], moved[2 * count * near + 1];
     int own[count * near + 1], *last = own;
     for (index_t i = 0; i < near; i++)
         for (index_t r = 0; r < count; r++) {
@@ -353,24 +429,20 @@ EXPORT void hb_structure(index_t n, index_t records, const index_t *ends, index_
             if (differs) *last++ = (int)(count * i + r);
         }
     *last = -1;
-    double *at = rows;
-    for (index_t i = 0; i < (size + count + 7) * wide; i++) at[i] = 0;
+    double *at = rows_of_near;
+    for (index_t i = 0; i < (size + count + 6) * wide; i++) at[i] = 0;
     struct nearby all = {near, wide, tables, forces + HB_ROW * count, at, at + size * wide};
     at += (size + count) * wide;
-    double **each[] = {&all.from, &all.to, &all.alone, &all.x, &all.v, &all.way, &all.sum};
-    for (int j = 0; j < 7; j++, at += wide) *each[j] = at;
+    double **each[] = {&all.from, &all.to, &all.x, &all.v, &all.way, &all.sum};
+    for (int j = 0; j < 6; j++, at += wide) *each[j] = at;
     all.own_row = own;
     for (index_t r = 0, begin = 0; r < records; begin = ends[r++]) {
         for (index_t i = 0; i < count; i++) memory[i] = 0;
         for (index_t i = 0; i < count * wide; i++) all.memory[i] = 0;
-        /* One mode is common: where its loops are of one turn they cost nothing. */
 #define MOVE(modes)                                                                      \
     move(ends[r] - begin, modes, parts, dt, ramp, (int)count, table, forces, memory,     \
-         p + begin, motion + size * begin, out + begin, n, &all, before, moved)
-        if (modes == 1)
-            MOVE(1);
-        else
-            MOVE((int)modes);
+         p + begin, apart, starts + size * r, records, &all, before, moved, &to)
+        FOR_MODES(MOVE)
 #undef MOVE
     }
 }

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.blocks.base import Block
+from hystbench.blocks.force import Motion
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
 from hystbench.blocks.impedance import NUMBERS, Impedance
@@ -210,9 +211,10 @@ def _solved_for(
         moved = [started(rough, r).motion(r.driven, r.dt, ()) for r in records]
         other = beside(unit)
         for output, own in zip(outputs, found, strict=True):
-            seen: Any = {"output": output, "hold": hold}
-            one = replace(unit, **seen)
-            columns = np.column_stack([sample.take([*map(one.given, moved)]), other])
+            shown: Any = {"output": output, "hold": hold}
+            one = replace(unit, **shown)
+            seen = [_seen(one, motion) for motion in moved]
+            columns = np.column_stack([sample.take(seen), other])
             weighed = columns * weights[:, None]
             gain, more = solved(weighed, wanted * weights).tolist()
             left = (wanted - columns @ [gain, more]) * weights
@@ -226,6 +228,14 @@ def _solved_for(
         + [begun for *_, begun in sorted(own, key=itemgetter(1))[:1]]
         for own in found
     ]
+
+
+def _seen(host: Mechanism, motion: Motion) -> FloatArray:
+    """Give what is seen of a motion that meets no force inside."""
+    if host.output == "force":
+        return host.stiffness * motion.position + host.damping * motion.velocity
+    found: FloatArray = getattr(motion, host.output)
+    return found
 
 
 def span_and_step(records: Sequence[Record]) -> tuple[float, float]:
