@@ -346,6 +346,11 @@ class SearchOptions:
         "Share of the gap's power that may stay unnamed beside a name.",
         {"show_default": True},
     ] = 0.01
+    cores: Annotated[
+        int | None,
+        click.IntRange(min=1),
+        "Cores that the search may use; all that there are by default.",
+    ] = None
 
     @property
     def limits(self) -> dict[str, float]:

@@ -146,12 +146,14 @@ rule gap_decide:
             else ""
         ),
         folder=subpath(output.curves, parent=True),
+    # Cases take less time beside each other than each on all cores.
+    threads: max(1, (workflow.cores or 1) // max(1, len(GAP_CASES)))
     message:
         "verdict on {wildcards.case}"
     shell:
         "hystbench job gap-decide {input.dataset:q} --model {params.model:q}"
         " {params.limits} {params.effects} --unnamed-share {params.unnamed_share}"
-        " {params.experiment}"
+        " {params.experiment} --cores {threads}"
         " --out {params.folder:q} --took {output.took:q} 2> {log:q}"
 
 

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import click
 
 from hystbench import options
+from hystbench.cores import available, on_cores
 from hystbench.gap.bases.kinds import check_base
 from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.records.evidence import load_evidence
@@ -68,10 +69,12 @@ def gap(
         calls=calls,
         keep_calls=keep_calls,
         cache=cache,
+        cores=asked.cores or available(),
         say=say,
         evidence=evidence,
     )
-    found.save(out, report)
+    with on_cores(asked.cores or available()):
+        found.save(out, report)
     known = evidence.warnings
     options.warn(line for line in found.content["warnings"] if line not in known)
     say(f"{found.verdict}: {found.content['reason']}")  # once all is written

@@ -11,7 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.blocks.simulator import Simulator
 from hystbench.command_files import writes
+from hystbench.cores import on_cores
 from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.gpi import IdentifiedGpi
@@ -127,6 +129,10 @@ def decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Dec
     """
     vocabulary = asked.vocabulary.in_device(evidence.device_kind)
     asked = replace(asked, vocabulary=vocabulary, say=say_in_words(asked.say))
+    if any(isinstance(block, Simulator) for block in base.chain):
+        # What calls a user's function counts them, and keeps what they gave.
+        with on_cores(1):
+            return _decide(evidence.deciding, base, asked)
     found = _decide(evidence.deciding, base, asked)
     unsettled = found[0].content["verdict"] == "unnamed"
     if not unsettled or not is_identified_linear(base) or vocabulary.fixed:

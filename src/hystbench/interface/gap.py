@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from hystbench.cores import on_cores
 from hystbench.dataset import Dataset
 from hystbench.errors import refuse_unknown
 from hystbench.gap.asked import Asked
@@ -238,6 +239,7 @@ def find_gap(
     calls: int | None = None,
     keep_calls: bool = True,
     cache: bool = True,
+    cores: int = 1,
     say: Say = silent,
     evidence: Evidence | None = None,
 ) -> Gap:
@@ -267,6 +269,9 @@ def find_gap(
     cache : bool
         Whether what the search computes is kept there, so that another search on the
         same records need not compute it again.
+    cores : int
+        Cores that the search may use, on Linux. It finds the same on any number. A
+        function of your own is called on one alone.
     say : callable
         Told a line of progress at a time.
     evidence : Evidence, optional
@@ -298,7 +303,8 @@ def find_gap(
         )
         say(note)
         called = model.name if isinstance(model, Model) else str(model)
-        closed = closed_gap(evidence, base, asked, called)
+        with on_cores(cores):
+            closed = closed_gap(evidence, base, asked, called)
     places = {
         "dataset": place,
         "model": "MODEL.yaml" if isinstance(model, Model) else str(model),

@@ -13,7 +13,7 @@ from hystbench.gap.thresholds import FURTHER, SCALE
 
 def start(score, *effects, form="", freedom=1.0):
     added = tuple(SimpleNamespace(effect=name, form=form) for name in effects)
-    return Fitted(SimpleNamespace(added=added, freedom=freedom), score)
+    return Fitted(SimpleNamespace(added=added, freedom=freedom, sample=[0]), score)
 
 
 @pytest.fixture

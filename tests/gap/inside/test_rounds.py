@@ -152,7 +152,7 @@ def test_another_effect_is_put_where_the_search_has_not_gone_on(monkeypatch):
     begun = []
 
     def of(*effects):
-        state = SimpleNamespace(chain=(), added=added(effects), freedom=0.0)
+        state = SimpleNamespace(chain=(), added=added(effects), freedom=0.0, sample=[0])
         return Fitted(state, 0.0)
 
     def without(state, place):

@@ -6,6 +6,7 @@ from typing import Any
 import click
 
 from hystbench import options
+from hystbench.cores import available, on_cores
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.computing_time import write_took
@@ -50,7 +51,8 @@ def gap_decide(
     if note:
         click.echo(note, err=True)
     check_units(evidence, base, model)
-    decision = decide_in(out, evidence, base, asked)
+    with on_cores(given.cores or available()):
+        decision = decide_in(out, evidence, base, asked)
     if given.write_experiment is not None:
         # The folder is a job's output, with the signal or without.
         place = given.write_experiment

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hystbench.cores import each
 from hystbench.gap.fitting.refit import refit
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.serialize import remembered_of, state_key
@@ -77,14 +78,15 @@ def _gain(
     if in_blocks is None:
         in_blocks = shows_in_one_record(before, after, score)
     folds, inside = _folds(before, score, False if in_blocks else None)
-    gain = 0.0
-    for fold in folds:
+
+    def gained(fold: _Fold) -> float:
         fitted, _ = refit(after, fold.train, ROUNDS)
         with np.errstate(over="ignore", invalid="ignore"):  # of one that runs away
             rest, within = _split(fitted, score)
             outside = _terms(rest, score, fold.held)
-        gain += float(np.sum(fold.outside - outside)) + (inside - within) / len(folds)
-    return max(RUNS_AWAY, gain)
+        return float(np.sum(fold.outside - outside)) + (inside - within) / len(folds)
+
+    return max(RUNS_AWAY, sum(each(gained, folds, "folds")))
 
 
 def shows_in_one_record(before: ModelState, after: ModelState, score: Score) -> bool:

@@ -132,23 +132,25 @@ def remembered_of(
     found: Result = remembered(
         lambda: [*more(), *state_key(state)],
         compute,
-        _written,
-        lambda content: _read(content, state),
+        written,
+        lambda content: read_like(content, state),
     )
     return found
 
 
-def _written(result: Any) -> Any:
+def written(result: Any) -> Any:
+    """Write models, and tuples that hold some, as JSON holds them."""
     if isinstance(result, ModelState):
         return {MODEL: state_mapping(result)}
-    return list(map(_written, result)) if isinstance(result, tuple) else result
+    return list(map(written, result)) if isinstance(result, tuple) else result
 
 
-def _read(content: Any, like: ModelState) -> Any:
+def read_like(content: Any, like: ModelState) -> Any:
+    """Give what :func:`written` wrote, of models on the records of another one."""
     if isinstance(content, dict) and MODEL in content:
         return state_of(content[MODEL], like)
     if isinstance(content, list):
-        return tuple(_read(item, like) for item in content)
+        return tuple(read_like(item, like) for item in content)
     return content
 
 

@@ -18,6 +18,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.blocks.simulator import Simulator
+from hystbench.cores import each
 from hystbench.errors import InputError
 from hystbench.gap.effects.effect import Declined, Effect
 from hystbench.gap.effects.variant import Variant
@@ -82,9 +83,9 @@ class Seen(NamedTuple):
 
 def tried(effect: Effect, state: ModelState, score: Score) -> tuple[list[Trial], str]:
     """Score every variant of an effect over its grid; or say why it declines."""
-    looks, why = seen(effect, state, score)
+    looks, why_not = seen([effect], state, score)
     found, refused = on_all_records(looks, 0.0, lambda most: -np.inf)
-    return found, refused.get(effect.name, why)
+    return found, (why_not | refused).get(effect.name, "")
 
 
 def on_all_records(
@@ -125,33 +126,47 @@ def on_all_records(
     return [found[number] for number in sorted(found)], refused
 
 
-def seen(effect: Effect, state: ModelState, score: Score) -> tuple[list[Seen], str]:
-    """Look at every variant of an effect over its grid; or say why it declines."""
+Look = tuple[int, tuple[Point, ...], float]
+"""Number of a variant among all of its effect, and what :class:`Seen` tells of it."""
+
+
+def seen(
+    every: Sequence[Effect], state: ModelState, score: Score
+) -> tuple[list[Seen], dict[str, str]]:
+    """Look at every variant of effects over its grid; tell why not, by name."""
+    looks: list[Seen] = []
+    why_not: dict[str, str] = {}
+    found = each(lambda effect: _looks(effect, state, score), every, "looks")
+    for effect, (own, why) in zip(every, found, strict=True):
+        if why:
+            why_not[effect.name] = why
+        variants = list(effect.every_variant(state.simulation)) if own else []
+        for number, points, gain in own:
+            attempt = _thinned(Attempt(state, variants[number], score, number))
+            looks.append(Seen(attempt, points, gain))
+    return looks, why_not
+
+
+def _looks(
+    effect: Effect, state: ModelState, score: Score
+) -> tuple[tuple[Look, ...], str]:
+    """Look at an effect's variants that can be run, or say why there is none."""
     try:
         variants = list(effect.every_variant(state.simulation))
     except Declined as reason:
-        return [], str(reason)
+        return (), str(reason)
     runnable = [
         (number, item)
         for number, item in enumerate(variants)
         if not _needs_rerun(state, item)
     ]
     if variants and not runnable:
-        return [], NEEDS_RERUN
-    looks, why = remembered_of(
+        return (), NEEDS_RERUN
+    return remembered_of(
         state,
         lambda: ["seen", effect.name, score.digest],
         lambda: _seen(runnable, state, score),
     )
-    found = [
-        Seen(_thinned(Attempt(state, variants[number], score, number)), points, gain)
-        for number, points, gain in looks
-    ]
-    return found, why
-
-
-Look = tuple[int, tuple[Point, ...], float]
-"""Number of a variant among all of its effect, and what :class:`Seen` tells of it."""
 
 
 def _seen(

@@ -13,6 +13,7 @@ import numpy as np
 
 from hystbench.blocks.calls import CallsUsedUp
 from hystbench.blocks.parameter import HUGE
+from hystbench.cores import each
 from hystbench.errors import InputError
 from hystbench.gap.effects.effect import Declined
 from hystbench.gap.effects.variant import Values, Variant
@@ -337,6 +338,17 @@ def fine(start: Trial) -> Trial:
         lambda: _fine(start),
     )
     return Trial(attempt, *found)
+
+
+def fine_each(starts: Sequence[Trial]) -> list[Trial]:
+    """Search around the best point of each of several grids."""
+
+    def found(start: Trial) -> tuple[dict[str, float], float]:
+        trial = fine(start)
+        return trial.values, trial.score
+
+    searched = each(found, starts, "fine search")
+    return [Trial(x.attempt, *own) for x, own in zip(starts, searched, strict=True)]
 
 
 def _fine(start: Trial) -> tuple[dict[str, float], float]:

@@ -7,10 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from hystbench.cores import each
 from hystbench.gap.effects.law import Changed, Law
 from hystbench.gap.fitting.edit_chain import without_effect
+from hystbench.gap.fitting.fit_each import Written, fit_each, fit_mapping, fit_of
 from hystbench.gap.fitting.in_stages import gentlest
 from hystbench.gap.fitting.least_squares import (
+    EVALUATIONS,
     Fitted,
     fitted,
     record_weights,
@@ -172,7 +175,11 @@ def _with_another(
         Fitted(without_effect(best.state, k), np.inf) for k in range(len(best.effects))
     ]
     known = {_laws(item) for item in went_on}
-    carried = [fitted(x.state, score) for x in fewer if _laws(x) not in known]
+    carried = fit_each(
+        lambda item: fitted(item.state, score),
+        [x for x in fewer if _laws(x) not in known],
+        EVALUATIONS,
+    )
     return _one_more(carried, offer, score, PAIRS, alone, say)
 
 
@@ -205,9 +212,7 @@ def _one_more(
     begun: list[Fitted] = []
     for before in carried:
         short = beginnings.cut(before.state)  # its tangents serve all effects
-        for at, name, own in _offered(before, offer):
-            if name not in before.effects:
-                begun += starts(at, short, name, own, beginnings)
+        begun += _each_begun(before, short, offer, beginnings)
     if not begun:
         return []
     gentle = () if first.added else gentlest(first)
@@ -224,9 +229,35 @@ def _one_more(
     return best_first
 
 
-def _offered(
-    before: Fitted, offer: Offer
-) -> Iterator[tuple[Fitted, str, Sequence[Law | Changed]]]:
+def _each_begun(
+    before: Fitted, short: ModelState, offer: Offer, beginnings: Beginnings
+) -> list[Fitted]:
+    """Put every further force that is offered into a hypothesis."""
+    offered = [
+        item for item in _offered(before, offer) if item[1] not in before.effects
+    ]
+
+    def begin(item: Offered) -> list[Fitted]:
+        at, name, own = item
+        return list(starts(at, short, name, own, beginnings))
+
+    def write(begun: list[Fitted]) -> list[Written]:
+        return list(map(fit_mapping, begun))
+
+    def read(content: list[Written], item: Offered) -> list[Fitted]:
+        return [fit_of(one, item[0].state) for one in content]
+
+    if offered:
+        _ = short.tangents  # once, and not on each core
+    every = each(begin, offered, "starts", len(short.sample), write, read)
+    return [item for own in every for item in own]
+
+
+Offered = tuple[Fitted, str, Sequence[Law | Changed]]
+"""Where a force would be put in, its name, and its laws."""
+
+
+def _offered(before: Fitted, offer: Offer) -> Iterator[Offered]:
     """Give what may be put into a hypothesis, a force wherever the joint may be."""
     for name, laws in of_one_name(offer(before)).items():
         yield before, name, laws

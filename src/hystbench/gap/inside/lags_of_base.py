@@ -6,7 +6,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from hystbench.gap.fitting.edit_chain import without_effect
-from hystbench.gap.fitting.least_squares import Fitted, fitted_to_the_end, judged
+from hystbench.gap.fitting.fit_each import fit_states
+from hystbench.gap.fitting.least_squares import (
+    EVALUATIONS,
+    Fitted,
+    fitted_to_the_end,
+    judged,
+)
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.choose import best_of_each
@@ -46,7 +52,7 @@ def with_lags_of_base(
         alone = without_effect(alone, 0)
     fewer = (without_effect(state, k) for k in range(len(state.added)))
     less = [alone, *(item for item in fewer if item.added)]
-    fits = [fitted_to_the_end(item, score) for item in less]
+    fits = fit_states(lambda item: fitted_to_the_end(item, score), less, EVALUATIONS)
     lags = LAGS.intersection(best.effects)
     states = (_as_host(x.state) for x in found if LAGS.intersection(x.effects) == lags)
     return best_of_each([*fits, *(Fitted(x, judged(x, score)) for x in states)])

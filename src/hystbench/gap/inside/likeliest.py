@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.gap.effects import effects
+from hystbench.gap.fitting.fit_each import fit_each
 from hystbench.gap.fitting.in_stages import fitted_in_stages, led_out
 from hystbench.gap.fitting.least_squares import (
     EVALUATIONS,
@@ -84,7 +85,7 @@ def fitted_likely(
         done = best_of_each(done)
     if gentle and done:
         least = min(item.score for item in done)
-        done = [_led_out(item, score, least) for item in done]
+        done = fit_each(lambda item: _led_out(item, score, least), done, EVALUATIONS)
     return sorted(done, key=lambda item: item.score)
 
 
@@ -106,7 +107,11 @@ def _as_far_as_they_matter(
     others = list(begun[1:])
     if done and not may_gain(done[0], score):
         most = done[0].score + CERTAIN
-        nearer = [fitted(item.state, score, QUICK) for item in others]
+        nearer = fit_each(
+            lambda item: fitted(item.state, score, QUICK),
+            others,
+            QUICK,
+        )
         others = [item for item in nearer if item.score < most]
         done += [item for item in nearer if most <= item.score < np.inf]
     done += to_the_end(others, score, gentle)
@@ -138,7 +143,11 @@ def to_the_end(
 
     Those that leave what another effect could gain are led by the gentle records too.
     """
-    done = [fitted_in_stages(item.state, score, gentle) for item in begun]
+    done = fit_each(
+        lambda item: fitted_in_stages(item.state, score, gentle),
+        list(begun),
+        EVALUATIONS,
+    )
     return sorted(_that_are_themselves(done, score), key=lambda item: item.score)
 
 

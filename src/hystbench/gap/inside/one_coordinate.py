@@ -19,6 +19,7 @@ from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.mechanism import Mechanism, free_starts
 from hystbench.blocks.starts import possible_starts, started
 from hystbench.gap.cache import records_digest
+from hystbench.gap.fitting.fit_each import fit_states
 from hystbench.gap.fitting.least_squares import (
     QUICK,
     Fitted,
@@ -49,9 +50,8 @@ def best_host(states: Iterable[ModelState], score: Score) -> Fitted | None:
 
 def likeliest(states: Iterable[ModelState], score: Score) -> Fitted | None:
     """Fit hosts a little, and the best two of them to the end; None without any."""
-    quick = sorted(
-        (fitted(state, score, QUICK) for state in states), key=lambda item: item.score
-    )
+    begun = fit_states(lambda state: fitted(state, score, QUICK), list(states), QUICK)
+    quick = sorted(begun, key=lambda item: item.score)
     done = (fitted_to_the_end(item.state, score) for item in quick)
     moving = (item for item in done if not _is_constant_pull(item.state))
     return min(itertools.islice(moving, 2), key=lambda item: item.score, default=None)

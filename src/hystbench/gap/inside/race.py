@@ -7,6 +7,7 @@ from math import ceil
 
 import numpy as np
 
+from hystbench.gap.fitting.fit_each import fit_each
 from hystbench.gap.fitting.least_squares import Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.beginnings import Beginnings
@@ -27,8 +28,13 @@ def a_little(begun: Sequence[Fitted], beginnings: Beginnings) -> Running:
 
 def further(running: Running, score: Score, evaluations: int) -> Running:
     """Fit all of them by so many evaluations more."""
-    more = [(item, fitted(own.state, score, evaluations)) for item, own in running]
-    return sorted(more, key=lambda pair: pair[1].score)
+    more = fit_each(
+        lambda own: fitted(own.state, score, evaluations),
+        [own for _, own in running],
+        evaluations,
+    )
+    pairs = zip((item for item, _ in running), more, strict=True)
+    return sorted(pairs, key=lambda pair: pair[1].score)
 
 
 def raced(

@@ -12,7 +12,8 @@ from dataclasses import replace
 
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Law
-from hystbench.gap.fitting.least_squares import Fitted, fitted_to_the_end
+from hystbench.gap.fitting.fit_each import fit_states
+from hystbench.gap.fitting.least_squares import EVALUATIONS, Fitted, fitted_to_the_end
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.choose import best_of_each
@@ -37,7 +38,11 @@ def with_simpler_laws(
     """
     if len(best.effects) < 2:
         return list(found)
-    simpler = [fitted_to_the_end(state, score) for state in _begun(best.state)]
+    simpler = fit_states(
+        lambda state: fitted_to_the_end(state, score),
+        list(_begun(best.state)),
+        EVALUATIONS,
+    )
     return best_of_each([*found, *simpler])
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -21,7 +21,7 @@ from hystbench.gap.fitting.refit import added, finished, refit
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.fitting.tried import Seen, on_all_records, seen
-from hystbench.gap.fitting.variant_search import Trial, fine
+from hystbench.gap.fitting.variant_search import Trial, fine, fine_each
 from hystbench.gap.naming.rivals import (
     beside_their_own_shapes,
     beyond_simpler_laws,
@@ -35,6 +35,7 @@ from hystbench.gap.naming.rounds import (
     Candidate,
     TriedVariant,
     best_forms,
+    each_candidate,
     in_order,
 )
 from hystbench.gap.thresholds import CERTAIN, LOOSE, PAYS, SCALE, SHAPE
@@ -138,10 +139,14 @@ def rank(
         for item in candidates[:EXACT]
         if item.score < candidates[0].score + NEAR
     ]
-    candidates = in_order(
-        exactly(item, score, now) if item.effect in exact else item
-        for item in candidates
+    again = each_candidate(
+        lambda item: exactly(item, score, now),
+        [item for item in candidates if item.effect in exact],
+        state,
+        "exact refits",
     )
+    refitted = {item.effect: item for item in again}
+    candidates = in_order(refitted.get(item.effect, item) for item in candidates)
     candidates = beside_their_own_shapes(candidates, exact, state, score.floor)
     if not folds:
         candidates = by_all_their_laws(candidates)
@@ -155,17 +160,13 @@ def _first_looks(
     known: Sequence[Effect], state: ModelState, score: Score
 ) -> tuple[list[Seen], dict[str, str]]:
     """Try effects on some samples; tell why not, by name."""
-    looks: list[Seen] = []
     names, have = [item.name for item in known], {x.effect for x in state.added}
     why_not = {name: "added already" for name in names if name in have}
     if SHAPE in names and _loop_is_free(state):
         why_not.setdefault(SHAPE, FITTED_WITH_IT)
-    for effect in known:
-        if effect.name not in why_not:
-            trials, why = seen(effect, state, score)
-            looks += trials
-            why_not |= {effect.name: why} if why else {}
-    return looks, why_not
+    asked = [effect for effect in known if effect.name not in why_not]
+    looks, declined = seen(asked, state, score)
+    return looks, why_not | declined
 
 
 def _first_exact(
@@ -223,7 +224,8 @@ def _refined(found: Sequence[Trial], now: float, least: float) -> list[Trial]:
         now - x.score > least or x.variant.freedom < most.get(x.variant.effect, 0.0)
         for x in found
     ]
-    every = [fine(x) if enough else x for x, enough in zip(found, near, strict=True)]
+    searched = iter(fine_each([x for x, one in zip(found, near, strict=True) if one]))
+    every = [next(searched) if one else x for x, one in zip(found, near, strict=True)]
     first = min(range(len(every)), key=lambda k: every[k].score)
     best = every[first].variant
     for k, trial in enumerate(found if near[first] else ()):
@@ -252,23 +254,31 @@ def _each_judged(
     score: Score,
     now: float,
     folds: bool,
-) -> Iterator[Candidate]:
+) -> list[Candidate]:
     """Judge effects, the likeliest first.
 
     Where a block refuses the numbers of an effect's best law, the next one is judged.
     What is not judged on folds only has to do better than one that stands: far behind
     the best so far, beyond what a free form is charged beside it, a refit ends early.
     """
+
+    def judge(trial: Trial, wanted: float = np.inf) -> Candidate:
+        item = _judged(trial, state, score, now, wanted)
+        if not item.refused:
+            return item
+        others = (x for x in every if _is_other_law(x.variant, trial.variant))
+        judged = (_judged(x, state, score, now, wanted) for x in others)
+        return next((x for x in judged if not x.declined), item)
+
+    if folds:
+        return each_candidate(judge, likely, state, "refits")
+    found: list[Candidate] = []
     wanted = np.inf
     for trial in likely:
-        item = _judged(trial, state, score, now, wanted)
-        if item.refused:
-            others = (x for x in every if _is_other_law(x.variant, trial.variant))
-            judged = (_judged(x, state, score, now, wanted) for x in others)
-            item = next((x for x in judged if not x.declined), item)
-        if not folds and item.state is not None:
-            wanted = min(wanted, item.score + CERTAIN + NEAR)
-        yield item
+        found.append(judge(trial, wanted))
+        if found[-1].state is not None:
+            wanted = min(wanted, found[-1].score + CERTAIN + NEAR)
+    return found
 
 
 def _of_fewer_numbers(

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from hystbench.cores import each
+from hystbench.gap.fitting.serialize import read_like, written
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.thresholds import SCALE
+
+Item = TypeVar("Item")
 
 MOST_EFFECTS = 4
 """Effects that are looked for, at most: a bound on time, as each costs a round."""
@@ -58,6 +62,34 @@ class Candidate:
     def but(self, why: str) -> Candidate:
         """Give the same as one that declined."""
         return Candidate(self.effect, self.place, declined=why)
+
+
+def each_candidate(
+    judge: Callable[[Item], Candidate],
+    items: Sequence[Item],
+    like: ModelState,
+    kind: str,
+) -> list[Candidate]:
+    """Judge items that know nothing of each other, on several cores.
+
+    Parameters
+    ----------
+    judge : callable
+    items : sequence
+    like : ModelState
+        A model on the same records.
+    kind : str
+        Words for the work, as of :func:`hystbench.cores.each`.
+    """
+
+    def write(found: Candidate) -> tuple[Candidate, Any]:
+        return replace(found, state=None), written(found.state)
+
+    def read(content: tuple[Candidate, Any], item: Item) -> Candidate:
+        found, state = content
+        return replace(found, state=read_like(state, like))
+
+    return each(judge, items, kind, 1.0, write, read)
 
 
 @dataclass(frozen=True)
