@@ -135,6 +135,8 @@ rule gap_decide:
         f"{RESULTS}/logs/gap/{{case}}/decide.log",
     benchmark:
         f"{RESULTS}/logs/benchmarks/gap/{{case}}/decide.tsv"
+    # Cases take less time beside each other than each on all cores.
+    threads: max(1, (workflow.cores or 1) // max(1, len(GAP_CASES)))
     params:
         model=of_case("model"),
         limits=limits_of_case,
@@ -146,8 +148,6 @@ rule gap_decide:
             else ""
         ),
         folder=subpath(output.curves, parent=True),
-    # Cases take less time beside each other than each on all cores.
-    threads: max(1, (workflow.cores or 1) // max(1, len(GAP_CASES)))
     message:
         "verdict on {wildcards.case}"
     shell:
