@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
@@ -306,6 +307,10 @@ class HystereticForce(InsideEffect):
                 yield replace(block, **{name: value}), name
 
 
+SLIDER_SHARES = (0.03, 0.1, 0.3)
+"""Of the largest way, by which a slider's clearance and its spring are begun."""
+
+
 class SliderWithGap(InsideEffect):
     """A slider behind a clearance."""
 
@@ -313,11 +318,11 @@ class SliderWithGap(InsideEffect):
     shows = "branch"
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Offer narrow and wide clearances."""
+        """Offer narrow and wide clearances, behind which it slides early or late."""
         names = ("contact_stiffness", "slip_force", "gap")
-        for share in (0.03, 0.3):
+        for share, slides in itertools.product(SLIDER_SHARES, SLIDER_SHARES):
             block = SliderBlock(
-                contact_stiffness=3.0 * moved.force / moved.reach,
+                contact_stiffness=0.3 * moved.force / (slides * moved.reach),
                 slip_force=0.3 * moved.force,
                 gap=share * moved.reach,
             )

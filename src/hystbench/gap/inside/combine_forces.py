@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from hystbench.blocks.force import Force
 from hystbench.cores import each
 from hystbench.gap.effects.law import Changed, Law
 from hystbench.gap.fitting.edit_chain import without_effect
@@ -281,12 +282,14 @@ def starts(
     That is the score of the beginnings of the records, on which ``short`` is the model
     before. The residual there is explained by what the force does as it starts, as one
     column, by what each of its numbers does that starts at zero, which that column does
-    not hold, and by what changes of all other numbers do, by least squares.
+    not hold, and by what changes of all other numbers do, by least squares. Where the
+    force has to be much weaker for that, it is begun so.
     """
     state = before.state
     tangents, weights = short.tangents, record_weights(short)
     tangents = tangents[:, np.isfinite(tangents).all(axis=0)]
-    for law in laws:
+
+    def begin(law: Law | Changed) -> tuple[Fitted, float] | None:
         begun = (
             with_changed(state, effect, law)
             if isinstance(law, Changed)
@@ -298,7 +301,7 @@ def starts(
         does = short.residual - own.residual
         starts_at_zero = of_zeros(own)
         if not (np.isfinite(does).all() and np.isfinite(starts_at_zero).all()):
-            continue  # the law runs away, or would at the next step
+            return None  # the law runs away, or would at the next step
         columns = np.column_stack([tangents, does, starts_at_zero])
         sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
         scaled = columns / sizes
@@ -307,7 +310,41 @@ def starts(
         )
         rest = short.residual - scaled @ found
         expected = beginnings.score.of(rest, begun.freedom)
-        yield Fitted(begun, expected)
+        times = found[tangents.shape[1]] / sizes[tangents.shape[1]]
+        return Fitted(begun, expected), float(times)
+
+    for law in laws:
+        found = begin(law)
+        if found is None:
+            continue
+        item, times = found
+        weaker = as_weak(law, times)
+        again = None if weaker is None else begin(weaker)
+        yield item if again is None or item.score < again[0].score else again[0]
+
+
+TOO_STRONG = 1 / 3
+"""Share of its strength that a force needs at most to be begun weaker."""
+WEAKEST = 0.01
+
+
+def as_weak(law: Law | Changed, share: float) -> Law | None:
+    """Give a law whose force is weaker; None where that is no start.
+
+    Its shape stays. One that begins too weak needs no other start: it grows into its
+    place while a fit follows the motion. One that begins too strong has changed it.
+    """
+    if isinstance(law, Changed) or not isinstance(law.block, Force):
+        return None
+    if not 0.0 < share < TOO_STRONG:
+        return None
+    about = law.block.parameters()
+    strengths = {
+        name: max(share, WEAKEST) * getattr(law.block, name)
+        for name in law.free
+        if about[name].unit.startswith("U")
+    }
+    return replace(law, block=replace(law.block, **strengths)) if strengths else None
 
 
 def of_zeros(begun: ModelState) -> FloatArray:
