@@ -15,36 +15,38 @@ from hystbench.record import Channel, Record
 from tests.gap.inside_host import each_alone
 
 DT = 0.005
-NOISE = 2e-4
-CONTACT, SLIP, GAP = 40.0, 0.35, 0.02
-"""N/m, N and m; what drives it goes to 20 N."""
+NOISE = 0.05
+CONTACT, SLIP, GAP = 20.0, 0.2, 0.05
+"""N/m, N and m; what drives it goes beyond 10 N, and it moves by half a metre."""
 
 
-def moved(u, fine=40):
+def accelerations(u, fine=40):
     """Move 1 kg on a spring of 60 N/m against a slider behind a clearance, by Euler."""
     q, v, way, out = 0.0, 0.0, 0.0, []
     reach = GAP + SLIP / CONTACT
     for push in np.repeat(u, fine).tolist():
-        out.append(q)
         pressed = max(abs(way) - GAP, 0.0)
-        force = CONTACT * pressed * (1 if way > 0 else -1)
-        v += DT / fine * (push - 1.5 * v - 60.0 * q - force)
+        a = push - 0.5 * v - 60.0 * q - CONTACT * pressed * (1 if way > 0 else -1)
+        out.append(a)
+        v += DT / fine * a
         q += DT / fine * v
         way = min(max(way + DT / fine * v, -reach), reach)
     return np.array(out[::fine])
 
 
 def test_a_slider_behind_a_clearance_is_found_with_its_numbers():
-    random = np.random.default_rng(5)
+    random, time = np.random.default_rng(5), np.arange(1200) * DT
     records = []
     for size in (5.0, 20.0):
-        u = size * np.repeat(random.uniform(-1, 1, 60), 20)
-        y = moved(u) + NOISE * random.standard_normal(len(u))
-        channels = Channel("in", "N"), Channel("out", "m")
+        tones = 2 * np.pi * np.arange(0.4, 3.2, 0.2)
+        phases = random.uniform(0, 6, len(tones))
+        u = size / 4 * np.sin(np.outer(time, tones) + phases).sum(axis=1)
+        y = accelerations(u) + NOISE * random.standard_normal(len(u))
+        channels = Channel("in", "N"), Channel("out", "m/s^2")
         records.append(Record(f"{size:g}", DT, u, y, *channels, "measured", "fit"))
     given = tuple(records)
     score = Score.plain(ScoredSamples.of(given), NOISE**2)
-    begun = one_coordinate(given, Quantities("force", "position"), "zero-order")
+    begun = one_coordinate(given, Quantities("force", "acceleration"), "zero-order")
     offered = ["slider-with-gap", "hysteretic-force", "friction"]
     found = each_alone(best_host(list(begun), score), score, offered)
     best = min(found, key=lambda item: item.score)
