@@ -88,15 +88,21 @@ def test_a_copy_that_ends_by_itself_is_told(two):
         each(ends, [1, 2, 3], "work")
 
 
-def test_no_copy_is_left_where_the_work_is_interrupted(two):
-    here = os.getpid()
+def test_no_copy_is_left_where_the_work_is_interrupted(two, monkeypatch):
+    here, copies, fork = os.getpid(), [], os.fork
+
+    def forked():
+        copies.append(fork())
+        return copies[-1]
 
     def interrupted(item):
         if os.getpid() == here:
             raise KeyboardInterrupt
         time.sleep(60)
 
+    monkeypatch.setattr(os, "fork", forked)
     with pytest.raises(KeyboardInterrupt):
         each(interrupted, [1, 2, 3, 4], "work")
-    with pytest.raises(ChildProcessError):
-        os.waitpid(-1, os.WNOHANG)
+    (copy,) = copies
+    with pytest.raises(ProcessLookupError):
+        os.kill(copy, 0)

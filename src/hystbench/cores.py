@@ -72,6 +72,7 @@ def each(
     items: Sequence[Item],
     kind: str,
     effort: float = 1.0,
+    seconds: float = 0.0,
     write: Callable[[Result], Any] = unchanged,
     read: Callable[[Any, Item], Result] = unchanged,
 ) -> list[Result]:
@@ -86,6 +87,8 @@ def each(
         Words for the work. It is shared once work of its kind was seen to take long.
     effort : float
         Of an item, in a unit of the kind's own.
+    seconds : float
+        That a unit of it takes, about, as long as nothing of its kind was seen.
     write, read : callable
         To what pickle can hold, and back beside the item.
 
@@ -99,7 +102,7 @@ def each(
         return [function(item) for item in items]
     begun = time.perf_counter()
     efforts = effort * len(items)
-    worth = cores.seconds.get(kind, 0.0) * efforts > WORTH_S
+    worth = cores.seconds.get(kind, seconds) * efforts > WORTH_S
     used = min(cores.count, len(items)) if worth else 1
     alone = _current.set(None)
     try:

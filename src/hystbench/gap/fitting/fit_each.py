@@ -35,7 +35,7 @@ def fit_each(
         return fit_of(content, before.state)
 
     effort = evaluations * len(begun[0].state.sample) if begun else 0.0
-    return each(fit, begun, "fits", effort, fit_mapping, read)
+    return each(fit, begun, "fits", effort=effort, write=fit_mapping, read=read)
 
 
 Written = tuple[dict[str, Any], float]

@@ -250,7 +250,8 @@ def _each_begun(
 
     if offered:
         _ = short.tangents  # once, and not on each core
-    every = each(begin, offered, "starts", len(short.sample), write, read)
+    effort = len(short.sample)
+    every = each(begin, offered, "starts", effort=effort, write=write, read=read)
     return [item for own in every for item in own]
 
 

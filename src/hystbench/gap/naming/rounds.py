@@ -89,7 +89,7 @@ def each_candidate(
         found, state = content
         return replace(found, state=read_like(state, like))
 
-    return each(judge, items, kind, 1.0, write, read)
+    return each(judge, items, kind, write=write, read=read)
 
 
 @dataclass(frozen=True)

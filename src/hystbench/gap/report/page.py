@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from hystbench.cores import each
 from hystbench.figures.style import BLUE, COLUMN, GREY, in_style, unit_text
 from hystbench.files import write_text
 from hystbench.gap.report import diagram, pictures, words
@@ -21,6 +23,8 @@ from hystbench.report.markup import one_micro
 from hystbench.sentences import either, listed
 
 TEMPLATE = "report.html.j2"
+PICTURE_S = 0.2
+"""Seconds that a picture takes, about."""
 #: Functions of ``words`` that the template uses.
 FILTERS = (
     *("number", "size", "with_error", "percent", "explained", "p_value", "bound"),
@@ -61,24 +65,34 @@ def page(content: Content) -> str:
     environment.filters |= {"listed": listed, "either": either}
     named = with_optional(content.gap)  # as the vocabulary has it
     gap = with_optional(for_readers(content.gap))
-    drawn, missing = pictures_of(content.curves)
+    # The slowest first, as each goes to the core that is free.
+    pictured: list[Callable[[], Any]] = [
+        partial(pictures_of, content.curves),
+        partial(_series, content.hold_out),
+        partial(headline, gap, content.hold_out),
+        partial(_ranking, gap),
+        partial(_ladder, gap),
+        partial(_diagram, content),
+    ]
+    drawn = each(lambda one: one(), pictured, "pictures", seconds=PICTURE_S)
+    (where, missing), series, glance, ranking, ladder, shown = drawn
     page = environment.get_template(TEMPLATE).render(
         gap=gap,
         sentence=words.verdict_sentence(named),
         y=unit_text(gap["unit"]),
-        glance=headline(gap, content.hold_out),
-        diagram=_diagram(content),
+        glance=glance,
+        diagram=shown,
         reruns=words.rerun_commands(named),
         input_column=_input_column(gap),
-        where_pictures=drawn,
+        where_pictures=where,
         missing=missing,
         level=BY_CHANCE,
-        ladder=_ladder(gap),
-        ranking=_ranking(gap),
+        ladder=ladder,
+        ranking=ranking,
         ranked=_ranked(item for item in gap["ranking"] if not item["look"]),
         looks=_looks(gap),
         declined=_declined(gap),
-        series=_series(content.hold_out),
+        series=series,
         drawn=min(len(content.hold_out), pictures.MOST_RECORDS),
         held=len(content.hold_out),
     )

@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from hystbench.cores import each
 from hystbench.errors import InputError
 from hystbench.figures.style import (
     BLACK,
@@ -63,8 +62,7 @@ def pictures_of(curves: Content) -> tuple[list[EmbeddedPicture], list[str]]:
         If it holds something else.
     """
     try:
-        drawn = each(_drawn, curves["pictures"], "pictures of where")
-        return drawn, list(curves["not_drawn"])
+        return [_drawn(one) for one in curves["pictures"]], list(curves["not_drawn"])
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(
             f"curves.json: {error} in a picture; expected what hystbench gap writes"
