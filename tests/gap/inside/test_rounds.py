@@ -141,6 +141,7 @@ def test_threes_are_tried_where_a_pair_pays_or_no_single_does(
     monkeypatch.setattr(combine_forces, "_one_more", one_more)
     monkeypatch.setattr(combine_forces, "with_one_fewer", lambda *_: [])
     monkeypatch.setattr(combine_forces, "_with_another", lambda *_: [])
+    monkeypatch.setattr(combine_forces, "by_other_laws", lambda *_: [])
     score = SimpleNamespace(least=lambda freedom: -5000.0)
     found = [chained(0.0), chained(single, "friction")]
     combine_forces.together(found, lambda _: {}, score)

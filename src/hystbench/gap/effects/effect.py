@@ -226,8 +226,10 @@ class Effect(ABC):
         """
         return None
 
-    def simpler(self, block: Any) -> Iterator[Law]:
-        """Give laws of fewer numbers than that of a block inside, begun as it is.
+    def other_laws(self, block: Any) -> Iterator[Law]:
+        """Give laws of no more numbers than that of a block inside, begun as it is.
+
+        Beside another effect they may do better than the law that did best alone.
 
         Parameters
         ----------

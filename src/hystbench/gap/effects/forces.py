@@ -112,7 +112,7 @@ class Friction(Effect):
             }
             yield Law("smooth Stribeck", SmoothFriction(**own), tuple(own))
 
-    def simpler(self, block: Any) -> Iterator[Law]:
+    def other_laws(self, block: Any) -> Iterator[Law]:
         """One without Stribeck's excess, as large as it is near rest."""
         if not getattr(block, "static_excess", 0.0):
             return
@@ -237,6 +237,10 @@ LATEST = 0.5
 as late as the last all slip at once, too."""
 
 
+BOUC_WEN = {1.0: "Bouc-Wen", 2.0: "Bouc-Wen, exponent 2"}
+"""Its laws, by the exponent."""
+
+
 class HystereticForce(InsideEffect):
     """Bouc and Wen's hysteresis as a force, or plays."""
 
@@ -252,9 +256,9 @@ class HystereticForce(InsideEffect):
                 largest=share * moved.force, yield_distance=way * moved.reach
             )
             ranges = {"yield_distance": (SLIDES * moved.reach, np.inf)}
-            yield Law("Bouc-Wen", block, names, ranges=ranges)
+            yield Law(BOUC_WEN[1.0], block, names, ranges=ranges)
             sharper = replace(block, exponent=2.0)
-            yield Law("Bouc-Wen, exponent 2", sharper, names, ranges=ranges)
+            yield Law(BOUC_WEN[2.0], sharper, names, ranges=ranges)
         # Beyond such a beta it would slide on nearly all of its way.
         stiffness = max(moved.stiffness, moved.force / moved.reach)
         stiffens = {
@@ -299,6 +303,13 @@ class HystereticForce(InsideEffect):
                 "first_slip": (0.0, LATEST),
             },
         )
+
+    def other_laws(self, block: Any) -> Iterator[Law]:
+        """That of the other exponent."""
+        if isinstance(block, BoucWen):
+            exponent = 1.0 if block.exponent == 2.0 else 2.0
+            names = ("largest", "yield_distance", "sharing")
+            yield Law(BOUC_WEN[exponent], replace(block, exponent=exponent), names)
 
     def vanishing(self, form: str, block: Any) -> Iterator[tuple[Block, str]]:
         """Without a loop it is a spring."""

@@ -32,6 +32,7 @@ from hystbench.gap.inside.insert_law import (
 )
 from hystbench.gap.inside.joint import joints
 from hystbench.gap.inside.likeliest import fitted_each, fitted_likely, to_the_end
+from hystbench.gap.inside.other_laws import by_other_laws
 from hystbench.gap.inside.other_names import of_one_name
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import FURTHER, PAYS
@@ -98,6 +99,8 @@ def together(
             carried = [item for item in carried if item.score < alone]
         went_on += carried
         carried = _one_more(carried, offer, score, keep, alone, say)
+        carried += by_other_laws(least([*carried, found[0]]), score)
+        carried = sorted(best_of_each(carried), key=lambda item: item.score)
         every += carried
     best = least(every)
     if not of_stores(best):
@@ -105,6 +108,7 @@ def together(
         paying = best_that_pays(every)
         every += with_one_fewer(paying, every, score, _laws)
         every += _with_another(paying, went_on, offer, score, alone, say)
+        every += by_other_laws(best_that_pays(every), score)
     return with_a_way(best_of_each(every))
 
 

@@ -43,7 +43,6 @@ from hystbench.gap.inside.lags_of_base import LAGS, with_lags_of_base
 from hystbench.gap.inside.other_names import with_other_names
 from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.inside.short_steps import in_short_steps
-from hystbench.gap.inside.simpler_laws import with_simpler_laws
 from hystbench.gap.inside.try_hosts import (
     HostTrial,
     Tried,
@@ -137,8 +136,6 @@ def named_inside(
     tried = best_with_several(trial, *ones)
     host, found, best, alone = tried.host, tried.found, tried.best, tried.host.alone
     found = with_others_as_late(best, found, offer, score)
-    best = chosen(found, score.floor, share)
-    found = with_simpler_laws(best, found, score)
     best = chosen(found, score.floor, share)
     found = with_other_names(best, found, offer)
     words = host.words

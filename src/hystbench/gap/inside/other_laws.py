@@ -1,13 +1,13 @@
-"""Simpler laws of effects that were found together.
+"""Other laws of effects that were found together.
 
-A law of many numbers, found before the effect beside it was there, may have stood for
-both. Beside that effect it keeps what it stood for, and its fit ends in a worse place
-than a simpler law's.
+A law that was found before the effect beside it was there may have stood for both.
+Beside that effect it keeps what it stood for, and its fit ends in a worse place than
+that of a simpler law, or of another one of as many numbers.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 from hystbench.gap.effects import effects
@@ -16,43 +16,37 @@ from hystbench.gap.fitting.fit_each import fit_states
 from hystbench.gap.fitting.least_squares import EVALUATIONS, Fitted, fitted_to_the_end
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.choose import best_of_each
 
 
-def with_simpler_laws(
-    best: Fitted, found: Sequence[Fitted], score: Score
-) -> list[Fitted]:
-    """Add a hypothesis of several effects with a simpler law of each.
+def by_other_laws(best: Fitted, score: Score) -> list[Fitted]:
+    """Fit a hypothesis of several effects with another law of one, each in turn.
 
     Parameters
     ----------
     best : Fitted
-    found : sequence of Fitted
-        All that were tried; the host alone first.
     score : Score
 
     Returns
     -------
     list of Fitted
-        Of each set of effects the best.
+        None of a single effect, nor of a law beside which there is no other.
     """
     if len(best.effects) < 2:
-        return list(found)
-    simpler = fit_states(
+        return []
+    return fit_states(
         lambda state: fitted_to_the_end(state, score),
         list(_begun(best.state)),
         EVALUATIONS,
     )
-    return best_of_each([*found, *simpler])
 
 
 def _begun(state: ModelState) -> Iterator[ModelState]:
-    """Put simpler laws in the place of those that effects act by inside."""
+    """Put other laws in the place of those that effects act by inside."""
     for number, added in enumerate(state.added):
         if added.place != "inside" or len(added.blocks) != 1:
             continue
         (place,) = added.blocks
-        for law in effects()[added.effect].simpler(state.chain[place]):
+        for law in effects()[added.effect].other_laws(state.chain[place]):
             yield _with(state, number, place, law)
 
 
