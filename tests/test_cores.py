@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from hystbench import cores
+from hystbench import cli, cores
 from hystbench.cores import each, on_cores
 
 
@@ -84,7 +84,7 @@ def test_a_copy_that_ends_by_itself_is_told(two):
             os._exit(3)
         time.sleep(0.05)
 
-    with pytest.raises(RuntimeError, match="a copy of the process ended"):
+    with pytest.raises(ChildProcessError, match="a copy of the process ended"):
         each(ends, [1, 2, 3], "work")
 
 
@@ -106,3 +106,12 @@ def test_no_copy_is_left_where_the_work_is_interrupted(two, monkeypatch):
     (copy,) = copies
     with pytest.raises(ProcessLookupError):
         os.kill(copy, 0)
+
+
+def test_a_copy_that_ends_is_one_line_to_a_user(monkeypatch, capsys):
+    def ends(command):
+        raise ChildProcessError("a copy of the process ended")
+
+    monkeypatch.setattr(cli, "_called", ends)
+    assert cli.run() == 2
+    assert capsys.readouterr().err == "hystbench: a copy of the process ended\n"

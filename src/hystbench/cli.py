@@ -68,7 +68,7 @@ def run() -> int:
 
     try:
         status = _called(group(COMMANDS))
-    except InputError as error:
+    except (InputError, ChildProcessError) as error:
         _tell(f"hystbench: {error}")
         return 2
     except OSError as error:

@@ -96,6 +96,8 @@ def each(
     ------
     Exception
         What the function raises for the first item for which it does.
+    ChildProcessError
+        If a copy of the process ends before its work does.
     """
     cores = _current.get()
     if cores is None or not may_share(len(items)):
@@ -141,9 +143,9 @@ def _shared(
                 _, status = os.waitpid(copy, 0)
                 copies.pop()
                 if status:
-                    raise RuntimeError(
-                        f"a copy of the process ended with status {status}: is memory "
-                        "short? On one core it needs less"
+                    raise ChildProcessError(
+                        f"a copy of the process ended with status {status}; expected "
+                        "memory for each: --cores 1 needs least"
                     )
                 file.seek(0)
                 found |= pickle.load(file)  # noqa: S301  (a copy of this process wrote it)
