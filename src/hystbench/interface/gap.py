@@ -295,7 +295,7 @@ def find_gap(
     if evidence is None:
         evidence = _evidence(dataset)
     place = str(dataset.path if isinstance(dataset, Dataset) else dataset)
-    with _kept(calls, keep_calls, cache, say):
+    with _kept(calls, keep_calls, cache, say), on_cores(cores):
         from hystbench.gap.bases.load import load_base  # late: what it needs depends
 
         base, note = load_base(
@@ -303,8 +303,7 @@ def find_gap(
         )
         say(note)
         called = model.name if isinstance(model, Model) else str(model)
-        with on_cores(cores):
-            closed = closed_gap(evidence, base, asked, called)
+        closed = closed_gap(evidence, base, asked, called)
     places = {
         "dataset": place,
         "model": "MODEL.yaml" if isinstance(model, Model) else str(model),

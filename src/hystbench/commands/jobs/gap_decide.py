@@ -47,11 +47,11 @@ def gap_decide(
         say=lambda line: click.echo(line, err=True),
     )
     evidence = load_evidence(dataset, "fit")
-    base, note = load_base(model, evidence)
-    if note:
-        click.echo(note, err=True)
-    check_units(evidence, base, model)
     with on_cores(given.cores or available()):
+        base, note = load_base(model, evidence)
+        if note:
+            click.echo(note, err=True)
+        check_units(evidence, base, model)
         decision = decide_in(out, evidence, base, asked)
     if given.write_experiment is not None:
         # The folder is a job's output, with the signal or without.

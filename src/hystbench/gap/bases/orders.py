@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.starts import plainest_start, possible_starts
+from hystbench.cores import each
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import (
     Ratio,
@@ -179,10 +180,12 @@ class Orders:
         """Fit a ratio to all records, and from there to each fold's."""
         count = sum(int(mask.sum()) for mask in self.whole)
         ratio = task.refined(first, self.whole, ROUNDS)
-        judged = sum(
-            task.squares(task.refined(ratio, fold.train, FOLD_ROUNDS), fold.validation)
-            for fold in self.folds
-        )
+
+        def squares(fold: Fold) -> float:
+            fitted = task.refined(ratio, fold.train, FOLD_ROUNDS)
+            return task.squares(fitted, fold.validation)
+
+        judged = sum(each(squares, self.folds, "orders on folds", len(ratio.a)))
         fit, folds = (float(np.sqrt(x / count)) for x in (ratio.cost, judged))
         return Found(fit, folds, self.constant, self, task, ratio)
 
@@ -214,10 +217,11 @@ class Orders:
         found: list[Found] = []
         while len(last.ratio.a) + 2 <= HIGHEST_WITH_MODES:
             left = last.task.left(last.ratio)
-            begun = [
-                last.task.refined(ratio, self.whole, FOLD_ROUNDS)
-                for ratio in with_a_mode(self.spectra, last.ratio, left)
-            ]
+            begun = each(
+                partial(last.task.refined, masks=self.whole, rounds=FOLD_ROUNDS),
+                list(with_a_mode(self.spectra, last.ratio, left)),
+                "a further mode",
+            )
             best = min(begun, key=lambda ratio: ratio.cost)
             further = self.judged(last.task, best)
             if not lowers(further, last, ANOTHER_MODE):

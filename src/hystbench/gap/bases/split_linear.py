@@ -29,6 +29,7 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
 from hystbench.blocks.starts import started
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.cores import each
 from hystbench.gap.bases.spectral import Ratio, Rational
 from hystbench.gap.bases.wiener_hammerstein import Halves, HalvesError
 from hystbench.gap.records.evidence import Evidence
@@ -47,6 +48,8 @@ LIKELY = 3
 ROUNDS = 5
 TO_THE_END = 40
 FOLD_ROUNDS = 4
+ROUGHLY_S = 0.1
+"""Seconds that halves take to be refined."""
 #: Poles of both halves together, at most.
 HIGHEST = 8
 #: A new pole or zero starts beyond the others, at so many times the scale.
@@ -85,7 +88,7 @@ def best_split(
     ways = [[task.bent(way) for way in ways_inside(ratio)] for ratio in ratios]
     end = task.refined(min(ends, key=COST), TO_THE_END)
     likely = [way for own in ways for way in sorted(own, key=COST)[:LIKELY]]
-    tried = [task.refined(way, ROUNDS) for way in likely]
+    tried = _refined(task, likely)
     best = min(tried, key=COST, default=None)
     if best is None or best.cost > ENOUGH * end.cost:
         return None
@@ -159,17 +162,25 @@ def _grown(task: HalvesError, halves: Halves) -> Halves:
     The order of a linear model is hidden in what the curve distorts.
     """
     while True:
-        tried = [
-            task.refined(way, ROUNDS)
+        longer = [
+            way
             for way in _more(halves)
             if len(way.front.a) + len(way.back.a) <= HIGHEST
         ]
+        tried = _refined(task, longer)
         if not tried:
             return halves
         best = task.refined(min(tried, key=COST), TO_THE_END)
         if best.cost > (1 - NUMBER_PAYS) ** 2 * halves.cost:
             return halves
         halves = best
+
+
+def _refined(task: HalvesError, every: Sequence[Halves]) -> list[Halves]:
+    """Refine several halves a little."""
+    return each(
+        lambda way: task.refined(way, ROUNDS), every, "halves", seconds=ROUGHLY_S
+    )
 
 
 def _more(halves: Halves) -> Iterator[Halves]:
@@ -191,12 +202,12 @@ def _longer(half: Rational) -> Iterator[Rational]:
 
 def _on_folds(task: HalvesError, halves: Halves, folds: Sequence[Fold]) -> float:
     """Sum of squares over samples that did not fit."""
-    return sum(
-        replace(task, masks=fold.validation).squares(
-            replace(task, masks=fold.train).refined(halves, FOLD_ROUNDS)
-        )
-        for fold in folds
-    )
+
+    def squares(fold: Fold) -> float:
+        fitted = replace(task, masks=fold.train).refined(halves, FOLD_ROUNDS)
+        return replace(task, masks=fold.validation).squares(fitted)
+
+    return sum(each(squares, folds, "halves on folds", seconds=ROUGHLY_S))
 
 
 def ways_at_ends(ratio: Ratio) -> Iterator[Halves]:
