@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from hystbench.blocks.forced import ForcedDynamics
@@ -11,6 +13,7 @@ from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.state_space import StateSpace
 from hystbench.blocks.store import Store
 from hystbench.gap.simulation.simulation import Simulation
+from hystbench.quantities import Quantities, quantity_of
 
 TRANSFER_FUNCTION = "transfer-function"
 INSIDE = "inside the base"
@@ -34,10 +37,22 @@ def places_between_halves(simulation: Simulation) -> list[int]:
 def drives_a_machine(simulation: Simulation) -> bool:
     """Tell whether the input drives a mass or fills a store, with no material before.
 
-    What limits the input there is the drive's.
+    What limits the input there is the drive's. A linear base of a force and a motion,
+    by their units, is such a mass.
     """
     first = next((x for x in simulation.chain if not isinstance(x, Gain)), None)
-    return isinstance(first, ForcedDynamics | Store)
+    if isinstance(first, ForcedDynamics | Store):
+        return True
+    record = simulation.records[0]
+    units = record.input.unit, record.output.unit
+    return isinstance(first, LinearBlock) and _is_force_to_motion(*units)
+
+
+@lru_cache
+def _is_force_to_motion(given: str, shown: str) -> bool:
+    """Tell whether units are those of a force and of the motion that it makes."""
+    takes, gives = quantity_of("input", given), quantity_of("output", shown)
+    return takes == "force" and Quantities(takes, gives).causality == "force to motion"
 
 
 def has_dynamics(simulation: Simulation) -> bool:
