@@ -11,6 +11,7 @@ from hystbench.challenge.plant.effects import IN_MACHINE, MACHINES
 from hystbench.challenge.spec import GROUPS, CaseSpec, draw_spec, effects_of, kind_of
 from hystbench.dataset import load_dataset
 from hystbench.errors import InputError
+from hystbench.gap.records.evidence import load_evidence
 
 
 def case_of(family, *effects, seed=7, **more):
@@ -185,3 +186,16 @@ def test_a_step_at_which_the_fit_of_a_base_runs_away_explains_nothing(monkeypatc
     monkeypatch.setattr(machine, "_simulated", left)
     found = machine.linear_parts(drawn, list(zip(inputs, truth, strict=True)))
     assert all(np.isfinite(model).all() for _, model in found)
+
+
+def test_a_period_is_told_only_where_the_input_has_it(tmp_path):
+    """A controller drives this mass; its force changes as a clearance wears."""
+    spec = CaseSpec(
+        131040002, "unlisted", ("wearing-clearance",), "mass-spring", 20.0, group=2
+    )
+    case = make(spec)
+    assert case.truth["closed_loop"]
+    write_folder(case, tmp_path)
+    load_evidence(tmp_path / "dataset")  # refuses a period that is none
+    told = {record.name: record.period_samples for record in case.records}
+    assert told["multisine-low"] is None

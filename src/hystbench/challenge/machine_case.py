@@ -17,7 +17,7 @@ from hystbench.challenge.plant.kind import HiddenEffect, Reach, draw, log_unifor
 from hystbench.challenge.spec import BASE, EFFECTS, NOISE, PLANT, CaseSpec
 from hystbench.metrics import rms
 from hystbench.model import Model
-from hystbench.record import Record
+from hystbench.record import FloatArray, Record
 
 #: An effect is to be within these shares of the output's rms on the fit records;
 #: outside, its size is changed.
@@ -28,6 +28,8 @@ PLAIN_NOISE_SHARES = (0.002, 0.02)
 CONVERTER_STEPS = 65536
 #: Of masses on a spring under a force so many are handed over as a model file.
 SHARE_WITH_MODEL = 0.25
+#: Share of its standard deviation by which an input that repeats may differ.
+ALIKE = 0.1
 
 
 def make_machine_case(spec: CaseSpec) -> Case:
@@ -62,7 +64,7 @@ def make_machine_case(spec: CaseSpec) -> Case:
                 *machine.channels,
                 "plant",
                 item.use,
-                item.period_samples,
+                _repeats(item.period_samples, u),
             )
         )
     model = _model(machine, spec)
@@ -85,6 +87,18 @@ def make_machine_case(spec: CaseSpec) -> Case:
         "base_error_fit_rms": 0.0,
     }
     return Case(tuple(records), model, truth)
+
+
+def _repeats(period: int | None, u: FloatArray) -> int | None:
+    """Give a period if the input has it: a controller's force repeats no other way.
+
+    What changes in the machine from one period to the next changes that force.
+    """
+    if period is None:
+        return None
+    rounds = u[: len(u) // period * period].reshape(-1, period)
+    apart = np.sqrt(np.mean(np.diff(rounds, axis=0) ** 2, axis=1))
+    return period if np.min(apart, initial=np.inf) <= ALIKE * np.std(u) else None
 
 
 def _resized(machine: Machine, effect: HiddenEffect, reach: Reach) -> HiddenEffect:
