@@ -436,7 +436,7 @@ def test_a_weight_that_swings_far_is_told_as_gravity_and_not_as_a_softer_spring(
     assert best.state.chain[1].amplitude == pytest.approx(40.0, rel=0.05)
 
 
-def found_beside_an_arm(slope, sizes, damping):
+def found_beside_an_arm(slope, sizes, damping, spring=30.0):
     """Search beside an arm whose spring is known; give the best of what was found."""
     random = np.random.default_rng(3)
     records = []
@@ -445,7 +445,7 @@ def found_beside_an_arm(slope, sizes, damping):
         y = motion(slope, [0.0, 0.0], TIME, DT, u)
         y = y + 1e-3 * random.standard_normal(1600)
         records.append(record(f"arm-{size:g}", u, y, ("N*m", "rad")))
-    arm = Mechanism(mass=1.0, damping=damping, stiffness=30.0, hold="linear")
+    arm = Mechanism(mass=1.0, damping=damping, stiffness=spring, hold="linear")
     given = tuple(records)
     start = ModelState((arm,), given, ScoredSamples.of(given)).settled()
     score = Score.plain(start.sample, 1e-6)
@@ -481,6 +481,19 @@ def test_the_weight_of_a_level_arm_is_found_where_its_spring_was_slack():
     # 9 cos q = 9 sin(q + pi / 2)
     assert weight.amplitude == pytest.approx(9.0, rel=0.02)
     assert weight.angle == pytest.approx(np.pi / 2, abs=0.02)
+    assert np.sqrt(np.mean(best.state.residual**2)) < 1.1e-3
+
+
+def test_the_weight_of_a_link_on_a_free_rotor_is_found():
+    """A rotor that is known to be free, and whose place is seen, may bear a weight."""
+
+    def slope(t, state, u):
+        angle, rate = state
+        return [rate, np.interp(t, TIME, u) - 9.0 * np.sin(angle) - 0.8 * rate]
+
+    best = found_beside_an_arm(slope, (4.0, 9.0), damping=0.8, spring=0.0)
+    assert best.effects == ("gravity",)
+    assert best.state.chain[1].amplitude == pytest.approx(9.0, rel=0.02)
     assert np.sqrt(np.mean(best.state.residual**2)) < 1.1e-3
 
 

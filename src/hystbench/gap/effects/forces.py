@@ -210,6 +210,11 @@ class Gravity(InsideEffect):
             spring = moved.stiffness / RADIANS[moved.turns]
             alone = GravityBlock(amplitude=spring, unit=moved.turns)
             yield Law("without a spring", alone, both[:1], stands_for=1.0)
+        if moved.stiffness == 0.0:
+            arm = GravityBlock(amplitude=0.3 * moved.force, unit=moved.turns)
+            yield Law("", arm, both[:1])
+            yield Law("tilted", arm, both)
+            return
         for share in (BESIDE, 0.5, -0.5):
             # Of so small an angle that its sine is the angle, a spring.
             weight = share * moved.stiffness / RADIANS[moved.turns]

@@ -116,7 +116,13 @@ def how_it_moves(state: ModelState, turns: str) -> Moved:
         driving = record.y if host.name == "impedance" else z
         force = max(force, float(np.max(np.abs(driving - np.mean(driving)))))
     tiny = 1.0 / HUGE
+    known = not any_is_free(state, place, "stiffness")
     anywhere = isinstance(host, Mechanism) and spring == 0.0
+    if anywhere and known and host.output == "position":
+        # Its place is seen. Without what holds it, it would have gone far beyond.
+        anywhere = False
+        seen = max(float(np.ptp(record.y)) / 2 for record in state.records)
+        reach = min(reach, seen)
     return Moved(
         max(reach, tiny),
         max(speed, tiny),
@@ -125,7 +131,7 @@ def how_it_moves(state: ModelState, turns: str) -> Moved:
         anywhere,
         spring,
         without_spring(state, place) is not state,
-        not any_is_free(state, place, "stiffness"),
+        known,
     )
 
 
