@@ -5,11 +5,13 @@ import pytest
 
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.slider_with_gap import SliderWithGap
-from hystbench.gap.effects.law import Law
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.combine_forces import as_weak
 from hystbench.gap.inside.one_coordinate import best_host, one_coordinate
 from hystbench.gap.records.scored_samples import ScoredSamples
+from hystbench.gap.thresholds import SLIDES
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 from tests.gap.inside_host import each_alone
@@ -65,3 +67,14 @@ def test_a_force_begins_weaker_and_its_shape_stays():
     for share in (-0.1, 0.5, 4.0, float("nan")):
         assert as_weak(law, share) is None
     assert as_weak(Law("", InputDelay(delay_s=0.1), ("delay_s",)), 0.1) is None
+
+
+def test_a_clearance_is_wider_than_the_way_in_which_friction_gives_way():
+    """A hundredth of the motion: where a loop's flanks look vertical."""
+    moved = Moved(reach=100.0, speed=1.0, force=16.0)
+    laws = list(effects()["slider-with-gap"].in_mechanism(moved))
+    assert laws
+    for law in laws:
+        low, _ = law.ranges["gap"]
+        assert low == pytest.approx(SLIDES * 100.0)
+        assert law.block.gap > low

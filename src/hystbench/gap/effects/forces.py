@@ -334,7 +334,10 @@ class SliderWithGap(InsideEffect):
     shows = "branch"
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
-        """Offer narrow and wide clearances, behind which it slides early or late."""
+        """Offer narrow and wide clearances, behind which it slides early or late.
+
+        A clearance of next to nothing is none, but how dry friction gives way.
+        """
         names = ("contact_stiffness", "slip_force", "gap")
         for share, slides in itertools.product(SLIDER_SHARES, SLIDER_SHARES):
             block = SliderBlock(
@@ -342,7 +345,8 @@ class SliderWithGap(InsideEffect):
                 slip_force=0.3 * moved.force,
                 gap=share * moved.reach,
             )
-            yield Law("", block, names)
+            ranges = {"gap": (SLIDES * moved.reach, np.inf)}
+            yield Law("", block, names, ranges=ranges)
 
     def vanishing(self, form: str, block: Any) -> Iterator[tuple[Block, str]]:
         """Without its clearance it is dry friction."""
