@@ -303,3 +303,18 @@ def test_a_given_base_that_lets_no_constant_through_is_looked_at_too(tmp_path):
     assert [item.numerator[-1] == 0.0 for item in halves] == [False, True]
     straight = measured(lambda w: w, back=rate)
     assert load_base(str(tmp_path / "rig.yaml"), straight)[0].chain == model.chain
+
+
+def test_beyond_what_it_was_fitted_to_a_curve_stays_as_it_is():
+    one = Rational(np.zeros(0), np.ones(1))
+    line = Halves(one, one, curve=np.array([2.0, 0.0, 0.0, 0.0, 0.0]))
+    held = replace(line, limits=(-1.0, 3.0))
+    np.testing.assert_allclose(held.bend(np.array([-5.0, 2.0, 9.0])), [-2.0, 4.0, 6.0])
+    assert not held.send_as(line)
+
+
+def test_a_deep_limit_between_the_halves_is_seen_where_one_record_is_loudest():
+    """What fits soft records runs away on the loud one that was left out."""
+    evidence = measured(lambda w: 0.4 * np.tanh(w / 0.4), sizes=(0.4, 1.2, 0.6, 1))
+    _, note = load_base("linear", evidence)
+    assert "written as two in series" in note

@@ -204,7 +204,9 @@ def _on_folds(task: HalvesError, halves: Halves, folds: Sequence[Fold]) -> float
     """Sum of squares over samples that did not fit."""
 
     def squares(fold: Fold) -> float:
-        fitted = replace(task, masks=fold.train).refined(halves, FOLD_ROUNDS)
+        train = replace(task, masks=fold.train)
+        # A polynomial says nothing beyond what it was fitted to.
+        fitted = train.within(train.refined(halves, FOLD_ROUNDS))
         return replace(task, masks=fold.validation).squares(fitted)
 
     return sum(each(squares, folds, "halves on folds", seconds=ROUGHLY_S))

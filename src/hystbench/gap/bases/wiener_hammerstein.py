@@ -34,6 +34,8 @@ class Halves:
     offset: float = 0.0
     cost: float = np.inf
     """Sum of squares."""
+    limits: tuple[float, float] = (-np.inf, np.inf)
+    """Signals between the halves beyond which the curve stays as it is there."""
 
     @property
     def count(self) -> int:
@@ -57,10 +59,11 @@ class Halves:
         parts = (self.front, self.back, self.curve)
         others = (other.front, other.back, other.curve)
         same = all(own is its for own, its in zip(parts, others, strict=True))
-        return same and self.offset == other.offset
+        return same and (self.offset, self.limits) == (other.offset, other.limits)
 
     def bend(self, w: FloatArray | float) -> FloatArray:
         """Give what the curve makes of a signal."""
+        w = np.clip(w, *self.limits)
         return np.asarray(np.polyval(np.append(self.curve[::-1], 0.0), w), np.float64)
 
 
@@ -201,6 +204,12 @@ class HalvesError:
         cube, square, *_ = np.polyfit(w, halves.bend(w), 3)
         middle = -square / (3 * cube) if cube else 0.0
         return float(middle) if np.abs(middle) <= np.abs(w).max() else 0.0
+
+    def within(self, halves: Halves) -> Halves:
+        """Give halves whose curve goes no farther than the samples that count."""
+        w = [way.between(halves)[-len(way.mask) :][way.mask] for way in self.ways]
+        every = np.concatenate(w)
+        return replace(halves, limits=(float(every.min()), float(every.max())))
 
     def squares(self, halves: Halves) -> float:
         """Sum of squares of the error over the samples that count."""
