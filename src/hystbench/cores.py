@@ -11,7 +11,6 @@ import os
 import pickle
 import signal
 import sys
-import tempfile
 import time
 import traceback
 from collections.abc import Callable, Iterator, Sequence
@@ -49,17 +48,12 @@ def available() -> int:
 @contextmanager
 def on_cores(count: int) -> Iterator[None]:
     """Let :func:`each` use so many cores within the block."""
-    before = _current.set(Cores(min(count, available())) if count > 1 else None)
+    most = min(count, available())
+    before = _current.set(Cores(most) if most > 1 else None)
     try:
         yield
     finally:
         _current.reset(before)
-
-
-def may_share(count: int) -> bool:
-    """Tell whether so many items could be shared among cores."""
-    cores = _current.get()
-    return cores is not None and cores.count > 1 and count > 1
 
 
 def unchanged(result: Any, item: Any = None) -> Any:
@@ -100,7 +94,7 @@ def each(
         If a copy of the process ends before its work does.
     """
     cores = _current.get()
-    if cores is None or not may_share(len(items)):
+    if cores is None or len(items) < 2:
         return [function(item) for item in items]
     begun = time.perf_counter()
     efforts = effort * len(items)
@@ -123,6 +117,8 @@ def _shared(
     function: Callable[[Item], Any], items: Sequence[Item], cores: int
 ) -> list[Any]:
     """Work on items in this process and in copies of it: whoever is free takes one."""
+    import tempfile  # late: commands that share nothing need none of it
+
     with ExitStack() as files:
         ask, tell = os.pipe()
         files.callback(os.close, ask)

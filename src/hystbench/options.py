@@ -31,6 +31,7 @@ from typing import (
 import click
 
 from hystbench import command_files
+from hystbench.cores import available
 from hystbench.errors import InputError
 from hystbench.files import read_json
 
@@ -351,6 +352,11 @@ class SearchOptions:
         click.IntRange(min=1),
         "Cores that the search may use; all that there are by default.",
     ] = None
+
+    @property
+    def most_cores(self) -> int:
+        """How many cores the search may use."""
+        return self.cores or available()
 
     @property
     def limits(self) -> dict[str, float]:

@@ -126,6 +126,16 @@ def check_moves(file: Path, item: Mapping[str, str], values: FloatArray) -> None
         )
 
 
+def between_periods(u: FloatArray, period: int) -> float:
+    """Give how far one period is from the next, rms; infinity where only one fits.
+
+    Of the nearest two: an input may be faded in and out.
+    """
+    rounds = u[: len(u) // period * period].reshape(-1, period)
+    apart = np.sqrt(np.mean(np.diff(rounds, axis=0) ** 2, axis=1))
+    return float(np.min(apart, initial=np.inf))
+
+
 def check_period(place: str, period: int, u: FloatArray) -> None:
     """Refuse a period that does not fit twice, or with which no input repeats.
 
@@ -139,9 +149,7 @@ def check_period(place: str, period: int, u: FloatArray) -> None:
             f"half of its {len(u)} samples, or all of them: one period of a steady "
             "state"
         )
-    rounds = u[: len(u) // period * period].reshape(-1, period)
-    # The nearest two of them: the input may be faded in and out.
-    away = float(np.sqrt(np.mean(np.diff(rounds, axis=0) ** 2, axis=1)).min())
+    away = between_periods(u, period)
     if away > UNLIKE * float(np.std(u)):
         raise InputError(
             f"{place}: period_samples: {period}; the input differs from one period to "

@@ -214,7 +214,6 @@ class ForcedDynamics(Dynamics):
 
         corners, rested, fine = begun(drives[0])
         values, before = [np.concatenate(corners)], [rested]
-        alike = True
         for own in drives[1:]:
             if all(x is z for x, z in zip(own, drives[0], strict=True)):
                 values.append(values[0])
@@ -223,7 +222,7 @@ class ForcedDynamics(Dynamics):
                 others, its, _ = begun(own)
                 values.append(np.concatenate(others))
                 before.append(its)
-                alike = False
+        alike = all(own is values[0] for own in values)
         step = dt / fine
         return DriveLines(
             np.array(values[:1] if alike else values),

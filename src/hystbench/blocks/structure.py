@@ -152,14 +152,11 @@ class Structure(ForcedDynamics, name="structure", place="base"):
             starts[k, :, : len(self.stiffness)] = rested
         tables = _tables(moved, driven.step / driven.parts)
         shown = np.array([host.weights() for host in moved])
+        if of_first is not None:
+            return driven.move(driven.values, tables, laws, starts, shown, of_first)
         asked = np.array([hosts[k].weights() for k in alike])
-        if of_first is not None:
-            asked = of_first
         found = driven.move(driven.values, tables, laws, starts, shown, asked)
-        if of_first is not None:
-            return found
-        back = np.argsort([*alike, *others])
-        return [found[k] for k in back]
+        return [found[k] for k in np.argsort([*alike, *others])]
 
     @property
     def moving(self) -> tuple[Any, ...]:

@@ -18,6 +18,7 @@ from hystbench.challenge.spec import BASE, EFFECTS, NOISE, PLANT, CaseSpec
 from hystbench.metrics import rms
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
+from hystbench.samples import between_periods
 
 #: An effect is to be within these shares of the output's rms on the fit records;
 #: outside, its size is changed.
@@ -94,11 +95,9 @@ def _repeats(period: int | None, u: FloatArray) -> int | None:
 
     What changes in the machine from one period to the next changes that force.
     """
-    if period is None:
+    if period is None or between_periods(u, period) > ALIKE * float(np.std(u)):
         return None
-    rounds = u[: len(u) // period * period].reshape(-1, period)
-    apart = np.sqrt(np.mean(np.diff(rounds, axis=0) ** 2, axis=1))
-    return period if np.min(apart, initial=np.inf) <= ALIKE * np.std(u) else None
+    return period
 
 
 def _resized(machine: Machine, effect: HiddenEffect, reach: Reach) -> HiddenEffect:

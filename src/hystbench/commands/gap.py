@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import click
 
 from hystbench import options
-from hystbench.cores import available, on_cores
+from hystbench.cores import on_cores
 from hystbench.gap.bases.kinds import check_base
 from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.records.evidence import load_evidence
@@ -69,11 +69,11 @@ def gap(
         calls=calls,
         keep_calls=keep_calls,
         cache=cache,
-        cores=asked.cores or available(),
+        cores=asked.most_cores,
         say=say,
         evidence=evidence,
     )
-    with on_cores(asked.cores or available()):
+    with on_cores(asked.most_cores):
         found.save(out, report)
     known = evidence.warnings
     options.warn(line for line in found.content["warnings"] if line not in known)

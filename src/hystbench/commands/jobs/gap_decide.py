@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from hystbench import options
-from hystbench.cores import available, on_cores
+from hystbench.cores import on_cores
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.computing_time import write_took
@@ -47,7 +47,7 @@ def gap_decide(
         say=lambda line: click.echo(line, err=True),
     )
     evidence = load_evidence(dataset, "fit")
-    with on_cores(given.cores or available()):
+    with on_cores(given.most_cores):
         base, note = load_base(model, evidence)
         if note:
             click.echo(note, err=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 from hystbench.cores import each
 from hystbench.gap.fitting.least_squares import Fitted
-from hystbench.gap.fitting.serialize import state_mapping, state_of
+from hystbench.gap.fitting.serialize import read_like, written
 from hystbench.gap.fitting.state import ModelState
 
 
@@ -31,26 +31,16 @@ def fit_each(
         In their order, the same on any number of cores.
     """
 
-    def read(content: Written, before: Fitted) -> Fitted:
-        return fit_of(content, before.state)
+    def read(content: Any, before: Fitted) -> Fitted:
+        return Fitted(*read_like(content, before.state))
 
     effort = evaluations * len(begun[0].state.sample) if begun else 0.0
-    return each(fit, begun, "fits", effort=effort, write=fit_mapping, read=read)
+    return each(fit, begun, "fits", effort=effort, write=write_fit, read=read)
 
 
-Written = tuple[dict[str, Any], float]
-"""A fit as other processes are told of it: the model, and its score."""
-
-
-def fit_mapping(found: Fitted) -> Written:
-    """Write a fit for another process."""
-    return state_mapping(found.state), found.score
-
-
-def fit_of(content: Written, like: ModelState) -> Fitted:
-    """Give the fit that :func:`fit_mapping` wrote, on the records of a model."""
-    state, score = content
-    return Fitted(state_of(state, like), score)
+def write_fit(found: Fitted) -> Any:
+    """Write a fit, which :func:`read_like` reads as its model and its score."""
+    return written((found.state, found.score))
 
 
 def fit_states(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from hystbench.blocks.force import Force
 from hystbench.cores import each
 from hystbench.gap.effects.law import Changed, Law
 from hystbench.gap.fitting.edit_chain import without_effect
-from hystbench.gap.fitting.fit_each import Written, fit_each, fit_mapping, fit_of
+from hystbench.gap.fitting.fit_each import fit_each, write_fit
 from hystbench.gap.fitting.in_stages import gentlest
 from hystbench.gap.fitting.least_squares import (
     EVALUATIONS,
@@ -20,6 +21,7 @@ from hystbench.gap.fitting.least_squares import (
     record_weights,
 )
 from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.serialize import read_like
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.average_force import evened
 from hystbench.gap.inside.beginnings import Beginnings
@@ -88,6 +90,7 @@ def together(
     """
     every, alone, carried = list(found), found[0].score, list(found[1:])
     went_on: list[Fitted] = []
+    asked: list[Fitted] = []
     for count, keep in ((2, PAIRS), (3, 1)):
         if (
             count > most
@@ -99,7 +102,8 @@ def together(
             carried = [item for item in carried if item.score < alone]
         went_on += carried
         carried = _one_more(carried, offer, score, keep, alone, say)
-        carried += by_other_laws(least([*carried, found[0]]), score)
+        asked.append(least([*carried, found[0]]))
+        carried += by_other_laws(asked[-1], score)
         carried = sorted(best_of_each(carried), key=lambda item: item.score)
         every += carried
     best = least(every)
@@ -108,7 +112,9 @@ def together(
         paying = best_that_pays(every)
         every += with_one_fewer(paying, every, score, _laws)
         every += _with_another(paying, went_on, offer, score, alone, say)
-        every += by_other_laws(best_that_pays(every), score)
+        last = best_that_pays(every)
+        if not any(last is item for item in asked):
+            every += by_other_laws(last, score)
     return with_a_way(best_of_each(every))
 
 
@@ -246,11 +252,11 @@ def _each_begun(
         at, name, own = item
         return list(starts(at, short, name, own, beginnings))
 
-    def write(begun: list[Fitted]) -> list[Written]:
-        return list(map(fit_mapping, begun))
+    def write(begun: list[Fitted]) -> list[Any]:
+        return list(map(write_fit, begun))
 
-    def read(content: list[Written], item: Offered) -> list[Fitted]:
-        return [fit_of(one, item[0].state) for one in content]
+    def read(content: list[Any], item: Offered) -> list[Fitted]:
+        return [Fitted(*own) for own in read_like(content, item[0].state)]
 
     if offered:
         _ = short.tangents  # once, and not on each core

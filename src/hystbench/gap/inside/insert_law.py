@@ -117,18 +117,17 @@ def how_it_moves(state: ModelState, turns: str) -> Moved:
         force = max(force, float(np.max(np.abs(driving - np.mean(driving)))))
     tiny = 1.0 / HUGE
     known = not any_is_free(state, place, "stiffness")
-    anywhere = isinstance(host, Mechanism) and spring == 0.0
-    if anywhere and known and host.output == "position":
-        # Its place is seen. Without what holds it, it would have gone far beyond.
-        anywhere = False
-        seen = max(float(np.ptp(record.y)) / 2 for record in state.records)
-        reach = min(reach, seen)
+    free = isinstance(host, Mechanism) and spring == 0.0
+    seen = free and known and host.output == "position"
+    if seen:  # without what holds it, it would have gone far beyond
+        shown = max(float(np.ptp(record.y)) / 2 for record in state.records)
+        reach = min(reach, shown)
     return Moved(
         max(reach, tiny),
         max(speed, tiny),
         max(force, tiny),
         turns,
-        anywhere,
+        free and not seen,
         spring,
         without_spring(state, place) is not state,
         known,

@@ -224,8 +224,9 @@ def _refined(found: Sequence[Trial], now: float, least: float) -> list[Trial]:
         now - x.score > least or x.variant.freedom < most.get(x.variant.effect, 0.0)
         for x in found
     ]
-    searched = iter(fine_each([x for x, one in zip(found, near, strict=True) if one]))
-    every = [next(searched) if one else x for x, one in zip(found, near, strict=True)]
+    every, places = list(found), np.flatnonzero(near).tolist()
+    for k, trial in zip(places, fine_each([found[k] for k in places]), strict=True):
+        every[k] = trial
     first = min(range(len(every)), key=lambda k: every[k].score)
     best = every[first].variant
     for k, trial in enumerate(found if near[first] else ()):
