@@ -11,7 +11,7 @@ import numpy as np
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.starts import plainest_start, possible_starts
 from hystbench.cores import each
-from hystbench.gap.bases.output_error import OutputError
+from hystbench.gap.bases.output_error import OutputError, own_columns, without_own
 from hystbench.gap.bases.spectral import (
     Ratio,
     Spectra,
@@ -113,15 +113,17 @@ class Orders:
 
     @cached_property
     def constant(self) -> float:
-        """Error of a constant on the folds, of each record's own where it has one."""
-        ys = [record.y for record in self.evidence.fit]
+        """Error of a constant on the folds, beside what each record has of its own."""
+        fit = self.evidence.fit
+        ys, own = [x.y for x in fit], own_columns(fit, self.evidence.own_offsets)
         squares, count = 0.0, 0
         for fold in self.folds:
             mean = float(np.mean(np.concatenate(_taken(ys, fold.train))))
-            for judged in _taken(ys, fold.validation):
-                own = np.mean(judged) if self.evidence.own_offsets else mean
-                squares += float(np.sum((judged - own) ** 2))
-                count += len(judged)
+            judged = _taken(ys, fold.validation)
+            beside = _taken(own, fold.validation)
+            for taken, of in zip(judged, beside, strict=True):
+                squares += float(np.sum(without_own(taken - mean, of) ** 2))
+                count += len(taken)
         return float(np.sqrt(squares / count))
 
     @cached_property
@@ -158,6 +160,7 @@ class Orders:
         else:
             brake = 1 / (self.decay_s * self.spectra.scale)
             first = with_poles(self.spectra, brake * np.array([UNHELD, 1.0]), zeros)
+            first = replace(first, offset=0.0)  # every window begins at zero
         evidence = self.evidence
         task = OutputError(
             evidence.fit,

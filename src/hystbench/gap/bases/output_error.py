@@ -127,9 +127,9 @@ class OutputError:
     def squares(self, ratio: Ratio, masks: Sequence[Mask]) -> float:
         """Sum of squares of the error over the masked samples.
 
-        With offsets of their own, those that fit the masked samples best. Infinite for
-        a ratio that runs away, and for one that no block takes, as where rounding makes
-        slow poles unstable.
+        What each record has of its own is what fits its masked samples best. Infinite
+        for a ratio that runs away, and for one that no block takes, as where rounding
+        makes slow poles unstable.
         """
         with np.errstate(over="ignore", invalid="ignore"):  # of one that runs away
             try:
@@ -142,9 +142,14 @@ class OutputError:
     def _masked(
         self, columns: Sequence[FloatArray], masks: Sequence[Mask]
     ) -> list[FloatArray]:
-        """Give the masked samples, without their mean where records have offsets."""
+        """Give the masked samples, without what each record has of its own."""
         parts = [x[mask] for x, mask in zip(columns, masks, strict=True)]
-        return [without_mean(x) for x in parts] if self.own_offsets else parts
+        own = [x[mask] for x, mask in zip(self._own, masks, strict=True)]
+        return [without_own(x, of) for x, of in zip(parts, own, strict=True)]
+
+    @cached_property
+    def _own(self) -> tuple[FloatArray, ...]:
+        return own_columns(self.records, self.own_offsets)
 
     def refined(self, ratio: Ratio, masks: Sequence[Mask], rounds: int) -> Ratio:
         """Go down the sum of squares of the masked samples.
@@ -188,8 +193,10 @@ class OutputError:
                 np.column_stack([self._derivatives(ratio, record), rest])
                 for record, rest in zip(self.records, self.left(ratio), strict=True)
             ]
-        for part in columns:
+        for part, own in zip(columns, self._own, strict=True):
             part[:, : self.held] = 0.0
+            if own.shape[1]:  # the ratio's constant is one of the record's own
+                part[:, -2] = 0.0
         own = [triangle_of(part) for part in self._masked(columns, masks)]
         return triangle_of(np.vstack(own))
 
@@ -232,9 +239,31 @@ def _with_its_derivatives(ratio: Ratio, scale: float) -> StateSpace:
     return StateSpace(scale * matrix, scale * drive, np.zeros(2 * k), 0.0)
 
 
-def without_mean(x: FloatArray) -> FloatArray:
-    """Take off each column's mean."""
-    return x - x.mean(axis=0) if len(x) else x
+def own_columns(records: Sequence[Record], own_offsets: bool) -> tuple[FloatArray, ...]:
+    """Give what each record may have of its own, shape (n, k) each.
+
+    A constant where records have offsets. In a window, which begins at zero, the noise
+    of its first sample and what its velocity there does.
+    """
+    found = []
+    for record in records:
+        constants = int(own_offsets or record.decay_s is not None)
+        found.append(np.hstack([np.ones((len(record), constants)), record.of_start]))
+    return tuple(found)
+
+
+def without_own(x: FloatArray, own: FloatArray) -> FloatArray:
+    """Take off each column of x the sum of the columns ``own`` that is nearest to it.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,) or (n, m)
+    own : ndarray, shape (n, k)
+    """
+    if not own.shape[1] or not len(x):
+        return x
+    basis = np.linalg.qr(own)[0]
+    return np.asarray(x - basis @ (basis.T @ x))
 
 
 def _step(triangle: FloatArray, damping: float) -> FloatArray:

@@ -12,7 +12,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.impedance import INPUTS, NUMBERS, Impedance
 from hystbench.gap.bases.orders import Judged, Orders
-from hystbench.gap.bases.output_error import without_mean
+from hystbench.gap.bases.output_error import own_columns, without_own
 from hystbench.record import FloatArray, Mask
 
 
@@ -48,11 +48,11 @@ def summed(
     sizes = np.maximum(np.sqrt(np.mean(np.vstack(signals) ** 2, axis=0)), 1e-300)
     scaled = [columns / sizes for columns in signals]
     outputs = [record.y for record in evidence.fit]
-    apart = evidence.own_offsets
+    own = own_columns(evidence.fit, evidence.own_offsets)
 
     def masked(parts: Sequence[FloatArray], masks: tuple[Mask, ...]) -> FloatArray:
-        taken = [x[mask] for x, mask in zip(parts, masks, strict=True)]
-        return np.concatenate([without_mean(x) for x in taken] if apart else taken)
+        each = zip(parts, own, masks, strict=True)
+        return np.concatenate([without_own(x[m], of[m]) for x, of, m in each])
 
     def solved(masks: tuple[Mask, ...]) -> FloatArray:
         left, right = masked(scaled, masks), masked(outputs, masks)
@@ -63,7 +63,7 @@ def summed(
         return float(error @ error)
 
     best = solved(whole)
-    if apart:  # the mean of what each record has of its own
+    if evidence.own_offsets:  # the mean of what each record has of its own
         each = zip(scaled, outputs, whole, strict=True)
         best[-1] = np.mean(
             np.concatenate([(y - x @ best)[mask] for x, y, mask in each])
