@@ -21,7 +21,7 @@ from hystbench.model import Model, load_model
 from hystbench.schema import check_against_schema
 from tests.gap.closing import close_gap
 from tests.gap.made import record
-from tests.gap.tiny import BASE, LATE, write_tiny
+from tests.gap.tiny import BASE, LATE, write_driven, write_tiny
 
 
 def content(before=1.0, after=0.5, verdict="named", names=("creep",), **gap):
@@ -142,8 +142,25 @@ def test_no_gap_is_not_said_where_the_base_predicts_nothing(tmp_path):
 
     found = spoilt(tmp_path, "unseen", swapped)
     assert found["verdict"] == "unnamed"
-    assert "as it is, the base predicts nothing" in found["reason"]
+    assert "as it is, the model predicts nothing" in found["reason"]
     assert found["reason"].count("of the fit records: ") == 1
+
+
+def test_a_base_that_predicts_nothing_is_no_warning_where_the_model_does(tmp_path):
+    """The drive is 7 ms late: half a period of 70 Hz, which turns its sign."""
+    late = 35
+
+    def drive(u):
+        return np.concatenate([np.full(late, u[0]), u[:-late]])
+
+    data, base = write_driven(tmp_path, drive)
+    out = tmp_path / "out"
+    close_gap(load_evidence(data), load_model(base), out, report=False, vocabulary=LATE)
+    found = json.loads((out / "gap.json").read_text())
+    assert [item["name"] for item in found["effects"]] == ["input-delay"]
+    still = rms_of_a_constant(load_evidence(data), found["gap"]["noise_floor"])
+    assert found["gap"]["before"] > 1.05 * still > 10 * found["gap"]["after"]
+    assert not [text for text in found["warnings"] if "predicts nothing" in text]
 
 
 def test_lone_samples_are_told_with_their_place(tmp_path):

@@ -99,7 +99,9 @@ def show_on_hold_out(decided: Decided, evidence: Evidence) -> Outcome:
     elif content["effects"] or content["verdict"] == "parameters":
         content["effects"] = no_surer_than_even(content)
         content["reason"] = f"{first_figure(content)}; {content['reason']}"
-    worse = worse_than_a_constant(content["gap"]["before"], still, content["unit"])
+    gap = content["gap"]
+    left = gap["before"] if gap["after"] is None else gap["after"]
+    worse = worse_than_a_constant(left, still, content["unit"])
     lone = _lone_samples(shown, evidence, fitted.floor.rms)
     content["warnings"] = [
         *evidence.warnings,
@@ -159,13 +161,13 @@ def rms_of_a_constant(evidence: Evidence, floor: float) -> float:
     return np.inf if still**2 <= (1 + AS_GOOD) * floor**2 else still
 
 
-def worse_than_a_constant(before: float, still: float, unit: str) -> list[str]:
-    """Say that the mean output of the fit records does better than the base.
+def worse_than_a_constant(left: float, still: float, unit: str) -> list[str]:
+    """Say that the mean output of the fit records does better than the model.
 
     Parameters
     ----------
-    before : float
-        RMS residual of the base on the hold-out records.
+    left : float
+        RMS residual of the model with its effects, if any, on the hold-out records.
     still : float
         That of a constant.
     unit : str
@@ -175,12 +177,12 @@ def worse_than_a_constant(before: float, still: float, unit: str) -> list[str]:
     list of str
         One warning, or none.
     """
-    if before**2 <= (1 + AS_GOOD) * still**2:
+    if left**2 <= (1 + AS_GOOD) * still**2:
         return []
     return [
-        f"on the hold-out records the base leaves {sized(before, unit)} rms, and a "
+        f"on the hold-out records the model leaves {sized(left, unit)} rms, and a "
         f"constant, the mean output of the fit records, {sized(still, unit)}: as it "
-        "is, the base predicts nothing. Check its columns, its units, its start and "
+        "is, the model predicts nothing. Check its columns, its units, its start and "
         "its numbers"
     ]
 
