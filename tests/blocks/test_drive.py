@@ -84,26 +84,31 @@ def test_slew_limit_catches_up_within_an_interval_and_turns():
     np.testing.assert_allclose(v, [0.0, 0.5, 0.6 - 0.8 * 0.5], rtol=1e-14)
 
 
-def amplified(z, rate, lag):
-    """Solve the law of an amplifier of limited rate for straight lines, finely."""
+CURVES = {"rounded": np.tanh, "sharp": lambda x: np.clip(x, -1.0, 1.0)}
+
+
+def lagging(z, rate, lag, curve):
+    """Solve the law of a lag of limited rate for straight lines, finely."""
 
     def law(t, v):
-        return rate * np.tanh((np.interp(t, times, z) - v) / (rate * lag))
+        return rate * curve((np.interp(t, times, z) - v) / (rate * lag))
 
     times = DT * np.arange(len(z))
     fine = {"t_eval": times, "rtol": 1e-10, "atol": 1e-12, "max_step": DT / 4}
     return solve_ivp(law, (0.0, times[-1]), z[:1], **fine).y[0]
 
 
+@pytest.mark.parametrize("form", CURVES)
 @pytest.mark.parametrize("rate", [20.0, 200.0, 2000.0])
-def test_a_soft_limit_of_the_rate_is_of_second_order(rate):
+def test_a_lag_with_a_limit_of_its_rate_is_of_second_order(rate, form):
     z = np.sin(2 * np.pi * 10 * DT * np.arange(200))  # 63 a second at most
     errors = []
     for parts in (1, 4):  # both steps are shorter than an eighth of the lag
         fine = np.interp(np.arange(0, 199, 1 / parts), np.arange(200), z)
-        block = SlewLimit(rate=rate, time_constant_s=9 * DT)
+        block = SlewLimit(rate=rate, time_constant_s=9 * DT, form=form)
         v = block.simulate(fine, fine, DT / parts)[::parts]
-        errors.append(np.abs(v - amplified(z, rate, 9 * DT)[:199]).max())
+        true = lagging(z, rate, 9 * DT, CURVES[form])[:199]
+        errors.append(np.abs(v - true).max())
     assert errors[0] < 1e-3
     assert errors[1] < errors[0] / 12
 

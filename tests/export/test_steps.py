@@ -138,6 +138,12 @@ def mixed():
         "an amplifier's limit of the rate": chain_of(
             ("slew-limit", {"rate": 100.0, "time_constant_s": 2.5 * DT}),
         ),
+        "a servo's limit of the rate": chain_of(
+            (
+                "slew-limit",
+                {"rate": 100.0, "time_constant_s": 2.5 * DT, "form": "sharp"},
+            ),
+        ),
         "two low-passes of heat": chain_of(
             ("thermal-drift",
              {**EXAMPLES["thermal-drift"], "second_time_constant_s": 0.01}),

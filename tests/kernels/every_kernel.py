@@ -146,6 +146,7 @@ def blocks(x):
     each = (
         SlewLimit(rate=50.0),
         SlewLimit(rate=50.0, time_constant_s=2 * DT),
+        SlewLimit(rate=50.0, time_constant_s=2 * DT, form="sharp"),
         StiffnessHardening(
             coefficient=0.5, frequency_hz=300.0, damping_ratio=0.05, participation=0.4
         ),

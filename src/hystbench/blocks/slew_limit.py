@@ -4,10 +4,11 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import TINY, number
+from hystbench.blocks.parameter import TINY, choice, number
 from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
+FORMS = ("rounded", "sharp")
 QUICK = 64.0
 """Sampling intervals over the time constant from which the lag is neglected: far more
 than records show."""
@@ -20,10 +21,12 @@ class SlewLimit(Block, name="slew-limit", place="drive"):
     between samples: where the output catches up within an interval, it follows from
     there on.
 
-    With a time constant it is an amplifier whose first stage gives no more than a
-    current, by the law of a pair of transistors [2]_: ``dv/dt = rate tanh((z - v) /
-    (rate tau))``. Small signals lag by ``tau``, large ones are limited. Of second order
-    in the smaller of a sampling interval and an eighth of ``tau``.
+    With a time constant small signals lag by ``tau``, and large ones are limited:
+    ``dv/dt = rate f((z - v) / (rate tau))``. The form ``rounded`` is an amplifier whose
+    first stage gives no more than a current, by the law of a pair of transistors [2]_:
+    ``f = tanh``. The form ``sharp`` is a servo whose valve or motor goes no faster:
+    ``f(x) = max(-1, min(1, x))``. Of second order in the smaller of a sampling interval
+    and an eighth of ``tau``.
 
     References
     ----------
@@ -37,6 +40,7 @@ class SlewLimit(Block, name="slew-limit", place="drive"):
     time_constant_s: float = number(
         "s", "lag tau of small signals; 0 for none", 0.0, 1e3, default=0.0
     )
+    form: str = choice("how one with a lag nears its rate", FORMS, FORMS[0])
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Follow the input at a limited rate."""
@@ -44,18 +48,24 @@ class SlewLimit(Block, name="slew-limit", place="drive"):
         rate = self.rate * dt
         z = np.ascontiguousarray(z, np.float64)
         if self._lags(dt):
-            kernels.call("hb_soft_slew", len(z), rate, dt / self.time_constant_s, z, v)
+            lag = rate, dt / self.time_constant_s
+            kernels.call("hb_slew_with_lag", len(z), self._sharp, *lag, z, v)
         else:
             kernels.call("hb_slew_limit", len(z), rate, z, v)
         return v
 
     def step(self, sampling: Sampling) -> Step:
         """Follow the input, which goes straight from its last sample."""
-        numbers = {"rate": self.rate * sampling.dt}
+        rate = {"rate": self.rate * sampling.dt}
         if self._lags(sampling.dt):
-            numbers["share"] = sampling.dt / self.time_constant_s
-            return Step("soft_slew", numbers, {"started": 1, "before": 1, "x": 1})
-        return Step("slew_limit", numbers, {"started": 1, "before": 1, "now": 1})
+            share = sampling.dt / self.time_constant_s
+            numbers = {"sharp": self._sharp, **rate, "share": share}
+            return Step("slew_with_lag", numbers, {"started": 1, "before": 1, "x": 1})
+        return Step("slew_limit", rate, {"started": 1, "before": 1, "now": 1})
+
+    @property
+    def _sharp(self) -> int:
+        return FORMS.index(self.form)
 
     def _lags(self, dt: float) -> bool:
         return QUICK * self.time_constant_s > dt

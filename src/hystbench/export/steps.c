@@ -163,8 +163,8 @@ static double hb_slew_limit(double rate, double *started, double *before, double
 
 /* x is (z - v) / (R tau): the input moves by half of its way, x relaxes, the input moves
  * on. */
-static double hb_soft_slew(double rate, double share, double *started, double *before,
-                           double *x, double z)
+static double hb_slew_with_lag(int sharp, double rate, double share, double *started,
+                               double *before, double *x, double z)
 {
     const int parts = (int)ceil(8 * share);
     const double h = share / parts, fade = exp(-h);
@@ -172,7 +172,13 @@ static double hb_soft_slew(double rate, double share, double *started, double *b
     const double half = 0.5 * (z - *before) / rate * h;
     for (int part = 0; *started != 0 && part < parts; part++) {
         *x += half;
-        *x = fabs(*x) > 20 + h ? *x - copysign(h, *x) : asinh(sinh(*x) * fade);
+        const double size = fabs(*x);
+        if (size > (sharp ? 1 : 20) + h)
+            *x -= copysign(h, *x);
+        else if (sharp)
+            *x = size > 1 ? copysign(exp(size - 1 - h), *x) : *x * fade;
+        else
+            *x = asinh(sinh(*x) * fade);
         *x += half;
     }
     *started = 1;

@@ -44,7 +44,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_curve_modes": (SIZE, "iiiiaaafaa"),
     "hb_curve_space": (SIZE, "iiiiaaafaa"),
     "hb_slew_limit": (None, "ifaa"),
-    "hb_soft_slew": (None, "iffaa"),
+    "hb_slew_with_lag": (None, "iiffaa"),
     "hb_acting_field": (None, "ifffaa"),
     "hb_hardening": (SIZE, "ifffffaa"),
     "hb_forces": (None, "ifiaaaaa"),

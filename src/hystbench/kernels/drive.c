@@ -27,23 +27,32 @@ EXPORT void hb_slew_limit(index_t n, double rate, const double *z, double *out)
     }
 }
 
-/* dv/dt = R tanh((z - v) / (R tau)), with rate = R dt and share = dt / tau.  Strang's
- * splitting: the input moves by half of its way, x = (z - v) / (R tau) relaxes while the
- * input rests, sinh x = sinh x0 exp(-t / tau), and the input moves on.  Of second order
- * in the part of an interval that a step is, at most an eighth of tau. */
-EXPORT void hb_soft_slew(index_t n, double rate, double share, const double *z, double *out)
+/* What is left of x = (z - v) / (R tau) after a time h over tau, while the input rests:
+ * dx/dh = -tanh x, so that sinh x fades by exp(-h), or dx/dh = -x up to one and at the
+ * full rate beyond.  fade is exp(-h). */
+static double relaxed(double x, double h, double fade, int sharp)
+{
+    const double size = fabs(x);
+    if (!sharp) /* far off it goes at the full rate, and sinh would overflow */
+        return size > 20 + h ? x - copysign(h, x) : asinh(sinh(x) * fade);
+    if (size >= 1 + h) return x - copysign(h, x);
+    return size > 1 ? copysign(exp(size - 1 - h), x) : x * fade;
+}
+
+/* dv/dt = R tanh((z - v) / (R tau)), or sharp R max(-1, min(1, (z - v) / (R tau))), with
+ * rate = R dt and share = dt / tau.  Strang's splitting: the input moves by half of its
+ * way, x relaxes, and the input moves on.  Of second order in the part of an interval
+ * that a step is, at most an eighth of tau. */
+EXPORT void hb_slew_with_lag(index_t n, index_t sharp, double rate, double share,
+                             const double *z, double *out)
 {
     const int parts = (int)ceil(8 * share);
     const double h = share / parts, fade = exp(-h);
     double x = 0;
     for (index_t k = 0; k < n; k++) {
         const double move = k > 0 ? (z[k] - z[k - 1]) / rate * h : 0;
-        for (int part = 0; k > 0 && part < parts; part++) {
-            x += 0.5 * move;
-            /* far off it goes at the full rate, and sinh would overflow */
-            x = fabs(x) > 20 + h ? x - copysign(h, x) : asinh(sinh(x) * fade);
-            x += 0.5 * move;
-        }
+        for (int part = 0; k > 0 && part < parts; part++)
+            x = relaxed(x + 0.5 * move, h, fade, (int)sharp) + 0.5 * move;
         out[k] = z[k] - x * rate / share;
     }
 }

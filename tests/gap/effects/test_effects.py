@@ -639,7 +639,7 @@ def test_some_rate_of_the_grid_explains_half_of_any_slew_limit(share):
     u = np.sin(2 * np.pi * 9 * t)
     one = record(u, y=u, dt=1e-3)
     state = state_of((block("gain", value=1.0),), (one,))
-    variant, _ = effects()["slew-limit"].variants(state.simulation)
+    variant, *_ = effects()["slew-limit"].variants(state.simulation)
 
     def limited(rate):
         return block("slew-limit", rate=rate).simulate(u, u, 1e-3)
@@ -653,7 +653,7 @@ def slew_limit_beside_steps():
     """The variant of a slew limit for two steps of 4, half a second each."""
     u = np.repeat([0.0, 4.0, 0.0, -4.0], 250)
     state = state_of((block("gain", value=1.0),), (record(u, y=u, dt=1e-3),))
-    variant, _ = effects()["slew-limit"].variants(state.simulation)
+    variant, *_ = effects()["slew-limit"].variants(state.simulation)
     return variant
 
 
@@ -670,7 +670,7 @@ def test_a_fast_tone_is_no_step(samples):
     """Of the same size from sample to sample, or nearly: all rates are offered."""
     u = np.sin(2 * np.pi * np.arange(1000) / samples + 0.3)
     state = state_of((block("gain", value=1.0),), (record(u, y=u, dt=1e-3),))
-    variant, _ = effects()["slew-limit"].variants(state.simulation)
+    variant, *_ = effects()["slew-limit"].variants(state.simulation)
     _, fastest = variant.ends("rate")
     assert fastest == pytest.approx(0.98 * np.abs(np.diff(u)).max() / 1e-3)
 

@@ -1,4 +1,4 @@
-"""A drive that goes no faster than a rate: hard, or as an amplifier that also lags."""
+"""A drive that goes no faster than a rate: hard, or as one that also lags."""
 
 import itertools
 
@@ -23,14 +23,14 @@ DT, FINE = 1e-3, 64
 RATE, LAG = 120.0, 5e-3
 
 
-def amplified(u, rate):
+def lagging(u, rate, curve):
     """Follow straight lines in short steps, each of them by half of the last rate."""
     now, out, step = u[0], [u[0]], DT / FINE
     for before, after in itertools.pairwise(u):
         for part in range(FINE):
             ahead = before + (after - before) * (part + 0.5) / FINE
-            half = now + 0.5 * step * rate * np.tanh((ahead - now) / (rate * LAG))
-            now += step * rate * np.tanh((ahead - half) / (rate * LAG))
+            half = now + 0.5 * step * rate * curve((ahead - now) / (rate * LAG))
+            now += step * rate * curve((ahead - half) / (rate * LAG))
         out.append(now)
     return np.array(out)
 
@@ -63,9 +63,14 @@ def found(bend):
     return effect["name"], told
 
 
-def test_an_amplifier_is_told_with_its_rate_and_its_lag():
-    name, told = found(lambda u: amplified(u, RATE))
-    assert name == "slew-limit"
+@pytest.mark.parametrize(
+    ("curve", "form"),
+    [(np.tanh, "rounded"), (lambda x: np.clip(x, -1.0, 1.0), "sharp")],
+    ids=["an amplifier", "a servo"],
+)
+def test_one_that_lags_is_told_with_its_rate_its_lag_and_its_law(curve, form):
+    name, told = found(lambda u: lagging(u, RATE, curve))
+    assert (name, told.get("form", "rounded")) == ("slew-limit", form)
     assert told["rate"] == pytest.approx(RATE, rel=0.02)
     assert told["time_constant_s"] == pytest.approx(LAG, rel=0.05)
 

@@ -84,6 +84,10 @@ def _values(geometry: str, given: Values) -> dict[str, Any]:
     return {**given, "geometry": geometry}
 
 
+def _of_form(law: str, given: Values) -> dict[str, Any]:
+    return {**given, "form": law}
+
+
 HARD = 100.0
 """Dampings that make the force at the largest velocity, beyond a limit of it."""
 
@@ -121,20 +125,22 @@ class SlewLimit(Effect):
                 grids={"rate": rates},
                 limits={"rate": (slowest, float(rates[-1]))},
             )
-            # An amplifier lags below its limit as well, and nears it smoothly.
+            # An amplifier or a servo lags below its limit as well.
             # Of a lag of less than a sample, or as long as a record, nothing is seen.
             longest = simulation.span / 20
             if longest <= simulation.step:
                 continue
             lags = logarithmic(simulation.step, longest, 1.5)
-            yield self.inserted(
-                simulation,
-                place,
-                form="soft",
-                grids={"rate": rates[-1] * SOFT_SHARES, "time_constant_s": lags},
-                limits={"rate": (slowest, float(rates[-1]))},
-                refused={"rate": "upper", "time_constant_s": "either"},
-            )
+            for form, law in (("soft", "rounded"), ("of a servo", "sharp")):
+                yield self.inserted(
+                    simulation,
+                    place,
+                    partial(_of_form, law),
+                    form=form,
+                    grids={"rate": rates[-1] * LAGGING_SHARES, "time_constant_s": lags},
+                    limits={"rate": (slowest, float(rates[-1]))},
+                    refused={"rate": "upper", "time_constant_s": "either"},
+                )
 
     def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer a servo that goes no faster, a little and far below its fastest."""
@@ -144,8 +150,8 @@ class SlewLimit(Effect):
             yield Law("of a servo", block, ("rate",))
 
 
-SOFT_SHARES = np.array([0.1, 0.3, 0.6, 0.95])
-"""Rates of an amplifier that also lags, over the fastest of its input."""
+LAGGING_SHARES = np.array([0.1, 0.3, 0.6, 0.95])
+"""Rates of an amplifier or a servo that also lags, over the fastest of its input."""
 STEP = 0.25
 """Largest move in the two intervals beside a step together, as a share of the step."""
 
