@@ -1,5 +1,7 @@
-"""The vocabulary of blocks as a table, for docs/model-files.md."""
+"""The vocabulary of blocks, for docs/model-files.md and docs/blocks.md."""
 
+import inspect
+import re
 from dataclasses import MISSING, fields
 
 from hystbench import files
@@ -20,6 +22,27 @@ def markdown_table() -> str:
             rows.append((*first, f"`{key}`", about.unit, values, about.meaning))
             first = ["", ""]
     return files.markdown_table(COLUMNS, rows) + "\n"
+
+
+def laws() -> str:
+    """Write what each of hystbench's own blocks computes, as its docstring says it."""
+    parts = (f"### {name}\n\n{_law(block)}\n" for name, block in own().items())
+    return "\n".join(parts)
+
+
+def _law(block: type) -> str:
+    """Give a docstring as Markdown: its text, and the references as a list."""
+    doc = inspect.getdoc(block) or ""
+    doc, _, references = doc.partition("\nReferences\n----------\n")
+    text = re.split(r"\n\w+\n-{4,}\n", doc)[0]
+    text, references = (
+        re.sub(r"``(.*?)``", r"`\1`", part, flags=re.DOTALL)
+        for part in (re.sub(r":\w+:`(.*?)`", r"`\1`", text), references)
+    )
+    text = re.sub(r"\[(\d)\]_", r"[\1]", text).strip()
+    listed = re.sub(r"\.\. \[(\d)\] ", r"- [\1] ", references)
+    listed = re.sub(r"\n {3,}", "\n  ", listed).strip()
+    return f"{text}\n\n{listed}" if listed else text
 
 
 def _values(about: Parameter) -> str:
