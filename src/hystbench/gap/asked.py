@@ -18,9 +18,9 @@ class Asked:
     """What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
     What is not given is taken from the fit records."""
     unnamed_share: float = UNNAMED_SHARE
-    """Share of the power of the gap that follows known signals and may stay unnamed
-    beside a name. The verdict holds it against that; the search, against all that is
-    left, no more than the usual share (:attr:`sought`)."""
+    """Share of the gap's power that may stay unnamed beside a name. The verdict
+    compares it with what follows known signals. The search compares it with all that
+    is left, and takes at most the default (:attr:`sought`)."""
     vocabulary: Vocabulary = EVERYTHING
     """Effects that may be named, and those that are in the model from the start."""
     say: Say = silent

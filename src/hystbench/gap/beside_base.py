@@ -77,8 +77,9 @@ class BesideBase:
     def margin(self) -> float:
         """By how much a re-tuned base has to do better: the base is believed as given.
 
-        Where what was named is of a kind that the base has, it may do as much worse:
-        what is called missing is then its own mode or spring with other numbers.
+        If a named effect repeats a part of the base, the re-tuned base wins even if it
+        scores worse by less than `PAYS`. The effect is then the base's own mode or
+        spring with other numbers.
         """
         return -PAYS if repeats_the_base(self.named.state) else PAYS
 

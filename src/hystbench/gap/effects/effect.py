@@ -48,12 +48,13 @@ class Effect(ABC):
     free_forms: ClassVar[tuple[str, ...]] = ()
     """Forms that bend to much of what is there, as a path does: no law."""
     like_noise: ClassVar[bool] = False
-    """Whether it is anything slow: where it has less power than the noise, it is noise
-    that is slow, as of most instruments, and no effect."""
+    """Whether it is a slow wander. As a signal beside the chain it is no effect if it
+    takes less power than that of the noise: most instruments have slow noise."""
     laws: ClassVar[tuple[str, ...]] = ()
     """Blocks of other laws of the effect, beside the one that has its name."""
     taken_from: ClassVar[str] = ""
-    """The number of a mechanism that it may have been counted in before."""
+    """Parameter of a mechanism that may already contain this effect, as a spring may
+    contain a weight."""
     special: ClassVar[bool] = False
     """Whether it is offered only where its cause can be, as a weight where something
     turns: of a tie with a law that any device may have it is the likelier."""

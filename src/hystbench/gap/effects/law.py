@@ -66,23 +66,22 @@ class Law:
 
 
 class Filled(NamedTuple):
-    """How high stores are filled: place, block and highest level of each.
-
-    Of the last one, where its level is the output, also the highest that was measured.
-    And whether a given base states their numbers.
-    """
+    """How high stores are filled."""
 
     tops: tuple[tuple[int, Store, float], ...]
+    """Place, block and highest simulated level of each."""
     measured: float | None = None
+    """Highest measured level of the last one, where its level is the output."""
     known: bool = False
+    """Whether a given base states their numbers."""
 
 
 class Changed(NamedTuple):
-    """Other numbers of stores, where their fit starts.
-
-    Of them those that are free, by place and parameter.
-    """
+    """Other numbers of stores, where their fit starts."""
 
     form: str
+    """What tells it from other laws of the effect."""
     values: dict[int, dict[str, float]]
+    """The numbers, by place and parameter."""
     free: tuple[tuple[int, str], ...]
+    """Place and parameter of each number that is fitted."""

@@ -41,10 +41,13 @@ def make_score(state: ModelState, floor_rms: float, forms: bool = True) -> Score
 def score_of_numbers(state: ModelState, floor_rms: float) -> Score:
     """Give the score by which the numbers of a model are found in the end.
 
-    It is flat below its floor. Noise that is an upper bound may lie above what the
-    model leaves, so the floor is at most half of what it leaves of any record: no few
-    numbers take more of noise away. Those of another shape of the hysteresis are found
-    without sparing what a shape could do; all others without sparing loops that forget.
+    The score is flat below its floor. Where the noise is known only by an upper bound,
+    that bound may lie above what the model leaves. So the floor is at most half of what
+    the model leaves of any record: a few numbers cannot take more than half of noise.
+
+    Where another shape of the hysteresis was named, the score ignores nothing that a
+    shape could do. Elsewhere it ignores what loops that close could do, but not what
+    loops that forget could do (:func:`closing_reshapings` says why).
 
     Parameters
     ----------

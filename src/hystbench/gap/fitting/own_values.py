@@ -226,7 +226,7 @@ def own_values(
     for one in each:
         like = costs([one] * len(pairs))
         value = float(np.minimum(like, own).sum()) + charge
-        # A tie is the simulator's own, unless it is then no record's.
+        # On a tie the simulator's values stay, unless no record differs from ``one``.
         none_differs = bool((like <= own).all())
         if value < best + (STILL if none_differs else -STILL):
             best, shared, alike = value, one, like

@@ -53,8 +53,8 @@ class Added(NamedTuple):
     blocks: tuple[int, ...]
     """Places of its blocks in the chain; none for a signal beside it."""
     values: dict[str, float]
-    """By parameter; ``3.gain`` is one of the base's own, in the chain's block 3, and
-    what it was before."""
+    """By parameter. A key such as ``3.gain`` is a number of the base, in block 3 of the
+    chain; its value is the one before the effect was added."""
     charge: float
     replaced: Block | None = None
     """The chain's own block that it stands for."""
@@ -81,8 +81,9 @@ FORMS = (0.3, 0.6, 1.6, 3.0)
 """Factors on a number of an added effect: what other forms of it could do. They reach
 half a decade down and up; what lies between does less."""
 MANY_NUMBERS = 4
-"""No law of a chain that is one formula has more. One that has is a sum, of plays or of
-elements that creep: it bends to what others do, and has no other forms."""
+"""Most numbers that a law of a chain has if it is a single formula. A law of more is a
+sum of plays or of elements that creep. It can imitate other effects, and no other forms
+of it are considered."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -85,9 +85,9 @@ def _steps_up(content: Mapping[str, Any]) -> list[tuple[Any, Any]]:
 def no_surer_than_even(content: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Give the effects, no surer than even where hold-out records do not bear them out.
 
-    One half is the most for a name whose step widens the gap there. It is the most for
-    all names, but for signals that are new in every record, if less than half of the
-    share that they promised on the fit records is gone.
+    Confidence is capped at 0.5 for a name whose step widens the gap there. If less than
+    half of the share that is gone on the fit records is gone there, it is capped for
+    all names but signals that are new in every record.
     """
     doubtful = {
         name for _, step in _steps_up(content) for name in step["name"].split(" + ")

@@ -149,10 +149,10 @@ def with_one_fewer(
 ) -> list[Fitted]:
     """Take each effect of a hypothesis out, where the others together were not tried.
 
-    An effect that stood for another one before that came may be needless beside it. The
-    others have to come one after the other: one fewer of them was tried as well. Of
-    what is to be named others are also tried that were by other laws alone: beside
-    another law of an effect one may be needless too.
+    An early effect may only have imitated a later one. The others are fitted only if a
+    set with one effect fewer still was tried, so that a way leads to them
+    (:func:`with_a_way`). ``told_by`` tells what counts as tried: by default a set of
+    effects; with :func:`_laws` a set of effects with their laws.
     """
     if len(best.effects) < 2:
         return []

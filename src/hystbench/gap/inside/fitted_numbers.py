@@ -13,9 +13,10 @@ from hystbench.sentences import percent
 def more_for_numbers(host: Host, state: ModelState, known: float) -> float:
     """Charge the numbers of a base that were fitted though it gives them, beyond usual.
 
-    Numbers that are off by no more than a data sheet may be stand for no effect where
-    as many are named as with the numbers as they are: they are free of charge. Those
-    that are farther off have to be beyond doubt.
+    Changes of no more than `ABOUT`, the tolerance of a data sheet, are free of charge
+    if as many effects are named as with the numbers as they are. If fewer are named,
+    the usual charge stays: the numbers stand for an effect. Larger changes have to be
+    beyond doubt.
 
     Parameters
     ----------

@@ -36,5 +36,5 @@ class Host:
 
     @property
     def counts(self) -> int:
-        """As how many effects it counts: one if known numbers are fitted."""
+        """How many effects it counts as: one if known numbers were fitted, else 0."""
         return int(self.charge > 0.0)

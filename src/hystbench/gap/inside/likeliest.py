@@ -43,8 +43,7 @@ def fitted_likely(
     count : int
         How many, each by its best start, are fitted to the end. Twice as many are
         fitted roughly, and four times as many a little, each from twice as many starts
-        and by all its laws: what a law promises where it starts says little of where it
-        comes to.
+        and by all its laws: the score at a start says little of the score after a fit.
     gentle : sequence of int
         Records that lead a fit which leaves much: :func:`fitted_in_stages`. What they
         led to is then led out of where it stopped.

@@ -107,10 +107,10 @@ def named_inside(
     asked : Asked
         A further effect that takes less than may stay unnamed does not matter.
     most : callable
-        Computes the chain, which is slow, once, and gives how many effects inside could
-        still pay against it; known numbers that are re-tuned are one. The first model
-        of one coordinate that was identified is tried without asking: it takes less
-        time than a chain, and is often enough.
+        Computes the chain once, which is slow, and gives how many effects inside could
+        still pay against it. Re-tuning known numbers counts as one effect. The first
+        host of an identified base is tried without asking: it takes less time than a
+        chain, and is often enough.
     again : callable
         Told of a host with its best force, where that takes most of the gap. If it says
         that the search is to begin again, on other records, this one ends: None.

@@ -1,8 +1,8 @@
 """Other laws of effects that were found together.
 
-A law that was found before the effect beside it was there may have stood for both.
-Beside that effect it keeps what it stood for, and its fit ends in a worse place than
-that of a simpler law, or of another one of as many numbers.
+A law that was fitted alone may have explained a second effect as well. When that
+effect is added, the law starts from those numbers. Its fit may then end in a worse
+minimum than that of a simpler law, or of another law of as many numbers.
 """
 
 from __future__ import annotations

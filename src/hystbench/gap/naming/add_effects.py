@@ -61,8 +61,8 @@ class Named:
     def reasons(self) -> dict[str, tuple[Candidate, ...]]:
         """The last ranking by which each effect was taken, or kept.
 
-        What scores better than a wrong shape that goes first is no rival of it: the
-        shape is needed beside it.
+        A wrong shape may be taken first though effects score better. They are left out
+        of its ranking: they are no rivals, as they need the shape beside them.
         """
         found: dict[str, tuple[Candidate, ...]] = {}
         for one in self.rounds:

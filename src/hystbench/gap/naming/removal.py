@@ -64,10 +64,10 @@ def without_what_goes(
 def needless(state: ModelState, floor_rms: float, gap: float) -> Without | None:
     """Find an effect that gains too little beside those that were added later.
 
-    The score leaves out what other forms of the effects that stay could do, but not of
-    this one, which would stand in for it. Both models are refitted under it. A wrong
-    shape of the hysteresis, which is charged dearly, stays where it takes much of the
-    gap away, by the rule by which it was added.
+    The score ignores what other forms of the remaining effects could explain. It does
+    not ignore other forms of this effect, as they could stand in for it. Both models
+    are refitted under this score. A wrong shape of the hysteresis has a high charge. It
+    stays where it takes much of the gap, by the rule by which it was added.
     """
     for number, item in enumerate(state.added):
         if not removable(state, number):

@@ -56,9 +56,9 @@ def on_folds(item: Candidate, before: ModelState, score: Score) -> Candidate:
 def by_all_their_laws(candidates: Sequence[Candidate]) -> list[Candidate]:
     """Sum the evidence of all laws of each effect.
 
-    Each law is as likely as the others before anything was measured. So an effect of
-    which one law alone fits pays for the others, and one of which all fit alike pays
-    nothing: with ``s`` the scores of ``n`` laws and their places, the effect's score is
+    Each law is as likely as the others before anything was measured. So an effect is
+    charged for its laws that do not fit. If all of them fit equally well, nothing is
+    charged. With ``s`` the scores of ``n`` laws and their places, the effect's score is
     raised by ``-SCALE log(sum(exp((min(s) - s) / SCALE)) / n)``.
     """
 
@@ -75,14 +75,17 @@ def by_all_their_laws(candidates: Sequence[Candidate]) -> list[Candidate]:
 def beyond_simpler_laws(
     candidates: Sequence[Candidate], before: ModelState, score: Score
 ) -> list[Candidate]:
-    """Charge what bends to much as a further effect, where a simpler law does nearly.
+    """Charge forms that bend to much, where a simpler law takes nearly as much.
 
-    Two sorts do: a free form, such as a path or a correction of the hysteresis, which
-    is no rival of a law that leaves no more than may stay in all; and what a law has
-    beside an offset of the output, as a bias of the field has one when the sensor is
-    set to zero with it on, where an effect of no more numbers leaves hardly more of the
-    gap. Either may stand for what the simulation misses, so that it has to be beyond
-    doubt.
+    The simpler law has no more numbers, gains at least `PAYS` and scores worse.
+
+    - A free form is a path or a correction of the hysteresis. It is charged if the
+      simpler law leaves less than `LOOSE` of the gap more.
+    - An offset form is a law with an offset of the output. A biased field has one if
+      the sensor was set to zero with the bias on. It is charged if the simpler law
+      leaves less than `AS_GOOD` of the gap more.
+
+    The charge is `CERTAIN`: both forms may stand for what the simulation misses.
     """
     floor = score.floor
     gap = before.power(floor)

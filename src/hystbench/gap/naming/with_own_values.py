@@ -32,17 +32,19 @@ def named_apart(
 ) -> tuple[ModelState, Named, OwnValues]:
     """Name anew beside what records have of their own, where that explains them better.
 
-    Effects go first: they are laws, with few numbers, that hold for every record. What
-    records have of their own is looked for beside the effects that were named, beside
-    those of them that do not do the same to all records, and beside the base alone. It
-    is taken off the records and naming begins again; what is named then tells better
-    what the records have of their own, and so on while the score falls and the names
-    change. The whole has to lower the score of the first names by as much as a first
-    effect has to lower it, all numbers charged; of names that are themselves new in
-    every record, such as a drift, it only has to be the better one, where an offset in
-    place of a path is charged as little as a path. And no more may be
-    left than noise, or than may stay unnamed: numbers of one record stand in for any
-    law that its rate or its amplitude brings out.
+    Effects go first: they are laws of few numbers that hold for every record. What
+    records have of their own is looked for beside three models: the effects that were
+    named, those of them that do not act alike on all records, and the base alone. It is
+    taken off the records, and naming begins again. This is repeated while the score
+    falls and the names change.
+
+    An answer is accepted if
+
+    1. its score, with all numbers charged, is lower than that of the first names by
+       `PAYS`. If these hold a path of each record's own, any lower score is enough.
+       Offsets alone are then charged half a number less for each record, as a path is;
+    2. no more is left than noise, or than may stay unnamed. Numbers of single records
+       can imitate any law that depends on the rate or the amplitude of a record.
 
     Parameters
     ----------
@@ -206,8 +208,8 @@ def _likely(
 ) -> list[tuple[float, OwnValues]]:
     """Find what records have of their own beside models, and the scores with it.
 
-    Of the kinds that are given beside each.
-    A model is refitted without it, and what is their own found again, while that helps.
+    Only the kinds that are listed with each model are looked for. The model is refitted
+    without what was found, and the search is repeated while that helps.
     """
     found = []
     for state, kinds in models:
