@@ -33,10 +33,11 @@ EXPORT void hb_slew_limit(index_t n, double rate, const double *z, double *out)
 static double relaxed(double x, double h, double fade, int sharp)
 {
     const double size = fabs(x);
-    if (!sharp) /* far off it goes at the full rate, and sinh would overflow */
-        return size > 20 + h ? x - copysign(h, x) : asinh(sinh(x) * fade);
-    if (size >= 1 + h) return x - copysign(h, x);
-    return size > 1 ? copysign(exp(size - 1 - h), x) : x * fade;
+    if (size >= (sharp ? 1 : 20) + h) return x - copysign(h, x);
+    if (sharp) return size > 1 ? copysign(exp(size - 1 - h), x) : x * fade;
+    /* asinh(fade sinh x), to a rounding of one: in less time than by these functions */
+    const double grown = exp(size), s = 0.5 * fade * (grown - 1 / grown);
+    return copysign(log(s + sqrt(1 + s * s)), x);
 }
 
 /* dv/dt = R tanh((z - v) / (R tau)), or sharp R max(-1, min(1, (z - v) / (R tau))), with
