@@ -86,6 +86,20 @@ def test_a_tag_is_not_followed(tmp_path):
     assert not mark.exists()
 
 
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("unit: %", "line 1: '%' begins no text; expected text in quotes: '%'"),
+        ("a: 1\n{unit: @rms, b: 2}", "line 2: '@' begins no text"),
+        ("a:\n\tb: 1", "line 2: a tab begins no text; expected spaces"),
+    ],
+)
+def test_a_sign_that_begins_no_text_is_shown(text, told):
+    with pytest.raises(InputError) as error:
+        parse_yaml(text, "x.yaml")
+    assert told in str(error.value)
+
+
 def test_a_name_that_needs_quotes_is_told_to():
     text = "a: 1\ntime: {column: time [s], unit: s}\n"
     with pytest.raises(InputError, match=r"x\.yaml: line 2: .*'time \[s\]'"):

@@ -28,7 +28,7 @@ FLOAT = re.compile(
 """Floats of YAML 1.2's core schema. PyYAML follows YAML 1.1, to which 1e-5 and 2.6e4
 are text."""
 
-_QUOTES = "a tab or a sign that begins no text; expected spaces, or text in quotes"
+_QUOTES = "{sign} begins no text; expected {instead}"
 _HINTS = {
     "found character '\\t' that cannot start any token": _QUOTES,
     "found character that cannot start any token": _QUOTES,
@@ -113,7 +113,19 @@ def parse_yaml(text: str, place: str) -> Any:
         for known, hint in _HINTS.items():
             if problem.startswith(known):
                 problem = hint
+        if problem is _QUOTES:
+            problem = problem.format(**_sign_at(text, mark))
         raise InputError(f"{place}: {where}{problem}") from error
+
+
+def _sign_at(text: str, mark: Any) -> dict[str, str]:
+    """Tell which sign begins no text, and what may stand there."""
+    line = text.splitlines()[mark.line]
+    sign = line[mark.column : mark.column + 1]
+    if sign == "\t":
+        return {"sign": "a tab", "instead": "spaces"}
+    begun = line[mark.column :].split(" #")[0].rstrip(" ,]}")
+    return {"sign": repr(sign), "instead": f"text in quotes: '{begun}'"}
 
 
 def yaml_text(content: Any, width: int = 88, flow: bool | None = None) -> str:
