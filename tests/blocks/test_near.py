@@ -205,3 +205,22 @@ def test_so_are_those_of_stores_that_overflow_and_run_empty(exponent, rim, hold)
         for name in ("gain", "rate", "exponent", "height", "bias")
     ]
     check(chain, np.repeat(drive()[:200:5], 5) / 5, [*names, (0, "caught")])
+
+
+@pytest.mark.parametrize("hold", ["zero-order", "linear", "band-limited"])
+@pytest.mark.parametrize("exponent", [0.5, 1.0])
+def test_so_are_those_of_stores_that_run_over_a_weir(exponent, hold):
+    numbers = {"rate": 30.0, "exponent": exponent, "bias": 3.0, "hold": hold}
+    upper = Store(
+        gain=1.0, height=0.6, weir=40.0, caught=0.4, output="outflow", **numbers
+    )
+    chain = (
+        upper,
+        Store(gain=0.6, height=0.35, weir=60.0, start_level=0.2, **numbers),
+    )
+    names = [
+        (place, name)
+        for place in (0, 1)
+        for name in ("gain", "rate", "exponent", "height", "weir", "bias")
+    ]
+    check(chain, np.repeat(drive()[:200:5], 5) / 5, [*names, (0, "caught")])

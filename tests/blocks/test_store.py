@@ -84,6 +84,55 @@ def test_no_volume_is_lost_over_the_rim(exponent, hold):
     np.testing.assert_allclose(spilt[over], mean - 0.8, atol=1e-3)
 
 
+@pytest.mark.parametrize("exponent", [0.5, 1.0])
+def test_what_runs_over_a_weir_is_of_second_order(exponent):
+    """Against a general solver: level, and what is spilt in all."""
+    errors, spilt = [], []
+    for count in (250, 500, 1000):
+        t = np.linspace(0, 10, count + 1)
+
+        def law(at, state):
+            h, _ = state
+            over = 1.5 * max(h - 0.4, 0.0) ** 1.5
+            return [2 * inflow(at) - 0.8 * max(h, 0.0) ** exponent - over, over]
+
+        about = {"t_eval": t, "rtol": 1e-10, "atol": 1e-12, "max_step": 0.05}
+        true = solve_ivp(law, (0, 10), [0.3, 0.0], **about).y
+        tank = replace(
+            TANK, gain=2.0, exponent=exponent, start_level=0.3, height=0.4, weir=1.5
+        )
+        z = inflow(t)
+        errors.append(np.abs(tank.simulate(z, z, t[1]) - true[0]).max())
+        out, both = (
+            replace(tank, output="outflow", caught=share).simulate(z, z, t[1])
+            for share in (0.0, 1.0)
+        )
+        spilt.append(abs((both - out).sum() * t[1] - true[1, -1]))
+    assert true[1, -1] > 1.0
+    for error in (errors, spilt):
+        assert error[-1] < 1e-3
+        assert error[-1] < error[0] / 12
+
+
+def test_a_long_weir_holds_the_level_as_a_sharp_rim_does():
+    t = np.arange(500) * 0.01
+    z = 1.0 - np.cos(np.pi * t)
+    sharp = replace(TANK, height=0.5)
+    long = replace(sharp, weir=1e7)
+    levels = [x.simulate(z, z, 0.01) for x in (sharp, long)]
+    assert levels[0].max() == 0.5
+    np.testing.assert_allclose(levels[1], levels[0], atol=1e-4)
+
+
+@pytest.mark.parametrize(("exponent", "first"), [(0.5, 2.0), (1.0, 0.7)])
+def test_a_store_that_settles_above_a_weir_rests_there(exponent, first):
+    z = np.full(200, first)
+    tank = replace(TANK, exponent=exponent, height=0.4, weir=0.5, start="settled")
+    level = tank.simulate(z, z, 0.01)
+    assert level[0] > 0.4
+    np.testing.assert_allclose(level, level[0], rtol=1e-5)
+
+
 def test_half_of_what_is_spilt_is_caught():
     z = np.full(500, 3.0)
     tank = replace(TANK, height=1.0, output="outflow")

@@ -222,6 +222,15 @@ def mixed():
             ("store", {**EXAMPLES["store"], "gain": 400.0, "bias": 100.0,
                        "start_level": 0.5, "output": "outflow"}),
         ),
+        "a store that runs over a weir": chain_of(
+            ("store", {**EXAMPLES["store"], "gain": 400.0, "bias": 100.0,
+                       "start_level": 0.5, "weir": 3.0, "output": "outflow"}),
+        ),
+        "a store that settles above a weir": chain_of(
+            ("gain", {"value": 1.0, "offset": 3.0}),
+            ("store", {**EXAMPLES["store"], "gain": 400.0, "bias": 100.0,
+                       "weir": 3.0, "start": "settled"}),
+        ),
         "a long delay": chain_of(("input-delay", {"delay_s": 0.03})),
         "a delay from rest": chain_of(
             ("gain", {"value": 1.0, "offset": 3.0}),

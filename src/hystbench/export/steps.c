@@ -304,20 +304,45 @@ static double hb_outflow(double rate, double exponent, double h)
     return h > 0 ? rate * pow(h, exponent) : 0;
 }
 
+/* A level above a rim after a time in which it runs over a weir. */
+static double hb_over_rim(double h, double height, double weir, double t)
+{
+    const double by = 1 + 0.5 * weir * t * sqrt(h - height);
+    return height + (h - height) / (by * by);
+}
+
+/* Where as much leaves a store as enters it. */
+static double hb_settled_store(double inflow, double rate, double exponent, double height,
+                               double weir)
+{
+    const double rests = inflow > 0 ? pow(inflow / rate, 1 / exponent) : 0;
+    if (!(rests > height) || weir >= 1e30) return hb_least(height, rests);
+    double low = height, high = height + pow(inflow / weir, 2.0 / 3);
+    for (int i = 0; i < 60; i++) {
+        const double middle = (low + high) / 2, over = middle - height;
+        if (rate * pow(middle, exponent) + weir * over * sqrt(over) < inflow)
+            low = middle;
+        else
+            high = middle;
+    }
+    return high;
+}
+
 /* Runge-Kutta method of second order, over straight lines as for the mechanism; with an
  * exponent of one and no rim (a height of 1e30) it is exact. */
 static double hb_store(double gain, double bias, int segments, int points,
                        int ahead, const double *corners, double ramp, int parts, double t,
-                       double rate, double exponent, double height, double start,
+                       double rate, double exponent, double height, double weir, double start,
                        int settled, int outflow, double caught, double *level, double *history,
                        double z)
 {
+    const int sharp = weir >= 1e30;
     const int moves = history[0] > ahead;
     hb_remember(points, history, gain * z + bias);
     if (history[0] <= ahead) return 0;
     const double first = history[1 + ahead];
-    if (settled) start = first > 0 ? pow(first / rate, 1 / exponent) : 0;
-    double h = moves ? *level : hb_least(start, height), over = 0;
+    if (settled) start = hb_settled_store(first, rate, exponent, height, weir);
+    double h = moves ? *level : sharp ? hb_least(start, height) : start, over = 0;
     const double lost = rate * t, kept = exp(-lost);
     const double steady = lost > 1e-5 ? (1 - kept) / rate : t;
     const double rising = lost > 1e-5 ? (t - steady) / lost : t / 2;
@@ -327,17 +352,24 @@ static double hb_store(double gain, double bias, int segments, int points,
         const double slope = ramp * (then - now) / parts;
         for (int s = 0; s < parts; s++) {
             const double from = now + s * slope;
+            if (h > height && !sharp) {
+                const double left = hb_over_rim(h, height, weir, t / 2);
+                over += h - left;
+                h = left;
+            }
             if (exponent == 1 && height >= 1e30) {
                 h = hb_most(0, kept * h + steady * from + rising * slope);
             } else {
                 const double rise = t / 2 * (from - hb_outflow(rate, exponent, h));
-                const double half = hb_least(height, hb_most(0, h + rise));
-                const double left = hb_outflow(rate, exponent, half);
+                const double half = hb_most(0, h + rise);
+                const double middle = sharp ? hb_least(height, half) : half;
+                const double left = hb_outflow(rate, exponent, middle);
                 h = hb_most(0, h + t * (from + slope / 2 - left));
             }
             if (h > height) {
-                over += h - height;
-                h = height;
+                const double left = sharp ? height : hb_over_rim(h, height, weir, t / 2);
+                over += h - left;
+                h = left;
             }
         }
     }

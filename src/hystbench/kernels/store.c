@@ -12,16 +12,30 @@ static inline double hb_outflow(double rate, double exponent, double h)
 /* fmax is a call of a library's. */
 static inline double hb_above_zero(double h) { return h > 0 ? h : 0; }
 
-/* Level h of a store, h' = inflow - rate h^exponent, held below the height: what would
- * rise above it is spilt, as a mean over the interval before each sample.  Runge-Kutta
- * of second order (midpoint) in equal parts of each interval; with an exponent of
- * one and no rim (a height of 1e30) it is exact. The inflow moves by the share
- * ramp of a straight line in each interval (1: straight, 0: a staircase). */
+/* A level above a rim after a time t in which nothing else moves it, and what it changes
+ * by for each unit of the level before, and of the weir's.  x = h - height falls by
+ * x' = -weir x^1.5, to x / (1 + weir t sqrt(x) / 2)^2. */
+typedef struct { double level, kept, weir; } hb_rim_t;
+
+static inline hb_rim_t hb_over_rim(double h, double height, double weir, double t)
+{
+    const double x = h - height, root = sqrt(x), by = 1 / (1 + 0.5 * weir * t * root);
+    return (hb_rim_t){height + x * by * by, by * by * by, -t * x * root * by * by * by};
+}
+
+/* Level h of a store, h' = inflow - rate h^exponent - weir max(0, h - height)^1.5; with a
+ * weir of 1e30 it is held below the height, as what would rise above it is spilt.  What
+ * is spilt is a mean over the interval before each sample.  Runge-Kutta of second order
+ * (midpoint) in equal parts of each interval, with half of the spill before and half
+ * after; with an exponent of one and no rim (a height of 1e30) it is exact. The inflow
+ * moves by the share ramp of a straight line in each interval (1: straight, 0: a
+ * staircase). */
 EXPORT void hb_store(index_t n, index_t parts, double dt, double ramp, double rate,
-                     double exponent, double height, const double *z, double *level,
-                     double *outflow, double *spilt)
+                     double exponent, double height, double weir, const double *z,
+                     double *level, double *outflow, double *spilt)
 {
     const double t = dt / parts, lost = rate * t;
+    const int sharp = weir >= 1e30;
     /* Of a level, and what a steady inflow and a rising one bring, in one part. */
     const double kept = exp(-lost), steady = lost > 1e-5 ? (1 - kept) / rate : t;
     const double rising = lost > 1e-5 ? (t - steady) / lost : t / 2;
@@ -32,15 +46,23 @@ EXPORT void hb_store(index_t n, index_t parts, double dt, double ramp, double ra
         double h = level[k], over = 0;
         for (index_t s = 0; s < parts; s++) {
             const double from = z[k] + s * slope;
+            if (h > height && !sharp) {
+                const double left = hb_over_rim(h, height, weir, t / 2).level;
+                over += h - left, h = left;
+            }
             if (exponent == 1 && height >= 1e30) {
                 h = hb_above_zero(kept * h + steady * from + rising * slope);
             } else {
                 const double rise = from - hb_outflow(rate, exponent, h);
                 const double half = hb_above_zero(h + t / 2 * rise);
-                const double left = hb_outflow(rate, exponent, half < height ? half : height);
+                const double middle = sharp && half > height ? height : half;
+                const double left = hb_outflow(rate, exponent, middle);
                 h = hb_above_zero(h + t * (from + slope / 2 - left));
             }
-            if (h > height) over += h - height, h = height;
+            if (h > height) {
+                const double left = sharp ? height : hb_over_rim(h, height, weir, t / 2).level;
+                over += h - left, h = left;
+            }
         }
         level[k + 1] = h;
         outflow[k + 1] = hb_outflow(rate, exponent, h);
@@ -59,18 +81,30 @@ static inline hb_slopes_t hb_outflow_slopes(double rate, double exponent, double
     return (hb_slopes_t){flow, exponent * flow / h, unit, bends ? flow * log(h) : 0};
 }
 
+/* What a store near another has above its rim, and has spilt, to first order. */
+static inline void hb_spill_near(hb_rim_t rim, double height, double weir, double *level,
+                                 double *over)
+{
+    const double left = height + rim.kept * (*level - height) + rim.weir * weir;
+    *over += *level - left;
+    *level = left;
+}
+
 /* A store as in hb_store, and by how much others near it differ, to first order: their
- * numbers and inflows differ by rates, exponents, heights and inflows, which are small.
+ * numbers and inflows differ by rates, exponents, heights, weirs and inflows, which are
+ * small.
  * Tables have a row a sample and a column for each of the others; the first row of
  * levels is given. */
 EXPORT void hb_store_near(index_t n, index_t parts, double dt, double ramp, double rate,
-                          double exponent, double height, const double *z, double *level,
-                          double *outflow, double *spilt, index_t count,
+                          double exponent, double height, double weir, const double *z,
+                          double *level, double *outflow, double *spilt, index_t count,
                           const double *restrict rates, const double *restrict exponents,
-                          const double *restrict heights, const double *inflows,
-                          double *levels, double *outflows, double *spills)
+                          const double *restrict heights, const double *restrict weirs,
+                          const double *inflows, double *levels, double *outflows,
+                          double *spills)
 {
     const double t = dt / parts;
+    const int sharp = weir >= 1e30;
     int bends = 0; /* whether an exponent differs: else no logarithm is needed */
     for (index_t i = 0; i < count; i++) bends |= exponents[i] != 0;
     for (index_t k = 0; k < n; k++) {
@@ -88,13 +122,19 @@ EXPORT void hb_store_near(index_t n, index_t parts, double dt, double ramp, doub
         for (index_t i = 0; i < count; i++) next[i] = d[i], over[i] = 0;
         for (index_t s = 0; s < parts; s++) {
             const double from = z[k] + s * slope;
+            if (h > height && !sharp) {
+                const hb_rim_t rim = hb_over_rim(h, height, weir, t / 2);
+                for (index_t i = 0; i < count; i++)
+                    hb_spill_near(rim, heights[i], weirs[i], next + i, over + i);
+                lost += h - rim.level, h = rim.level;
+            }
             const hb_slopes_t first = hb_outflow_slopes(rate, exponent, h, bends);
             const double to = h + t / 2 * (from - first.flow);
-            const double half = hb_above_zero(to < height ? to : height);
+            const double half = hb_above_zero(!sharp || to < height ? to : height);
             const hb_slopes_t second = hb_outflow_slopes(rate, exponent, half, bends);
             const double reached = h + t * (from + slope / 2 - second.flow);
-            const double moves = to > 0 && to < height, held = to >= height;
-            const double stays = reached > 0, spills_now = reached > height;
+            const double held = sharp && to >= height, moves = to > 0 && !held;
+            const double stays = reached > 0;
             for (index_t i = 0; i < count; i++) {
                 const double rise = ramp * (then[i] - now[i]) / parts;
                 const double inflow = now[i] + s * rise;
@@ -104,12 +144,16 @@ EXPORT void hb_store_near(index_t n, index_t parts, double dt, double ramp, doub
                                       + held * heights[i];
                 const double leaves = second.level * middle + second.rate * rates[i]
                                       + second.exponent * exponents[i];
-                const double end = stays * (next[i] + t * (inflow + rise / 2 - leaves));
-                over[i] += spills_now * (end - heights[i]);
-                next[i] = spills_now * heights[i] + (1 - spills_now) * end;
+                next[i] = stays * (next[i] + t * (inflow + rise / 2 - leaves));
             }
             h = hb_above_zero(reached);
-            if (h > height) lost += h - height, h = height;
+            if (h > height) {
+                const hb_rim_t rim = sharp ? (hb_rim_t){height, 0, 0}
+                                           : hb_over_rim(h, height, weir, t / 2);
+                for (index_t i = 0; i < count; i++)
+                    hb_spill_near(rim, heights[i], weirs[i], next + i, over + i);
+                lost += h - rim.level, h = rim.level;
+            }
         }
         for (index_t i = 0; i < count; i++) over[i] /= dt;
         level[k + 1] = h;

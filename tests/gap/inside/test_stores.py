@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.input_delay import InputDelay
+from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.load import load_base
@@ -83,6 +84,40 @@ def test_an_outflow_by_the_root_of_the_level_is_named():
                for store in best.state.chain)  # fmt: skip
     left = np.sqrt(np.mean(best.state.residual**2))
     assert left < 1.5 * NOISE
+
+
+def over_a_weir(height, weir, seed=6):
+    """One linear tank, whose wall has a notch."""
+    rng = np.random.default_rng(seed)
+    u = np.clip(3 + np.repeat(rng.normal(0, 1.5, COUNT // 20), 20), 0, 7)
+    level, out = 50.0, []
+    for volts in u.tolist():
+        out.append(level)
+        for _ in range(FINE):
+            over = weir * max(level - height, 0.0) ** 1.5
+            level += DT / FINE * (volts - 0.03 * level - over)
+    noise = NOISE * rng.standard_normal(COUNT)
+    return Record("run", DT, u, np.array(out) / 20 + noise, *CHANNELS, "measured")
+
+
+def test_an_overflow_over_a_weir_is_told_with_its_edge():
+    record = over_a_weir(height=90.0, weir=0.02)
+    assert record.y.max() * 20 > 105  # the level goes on rising above the edge
+    begun = next(stores((record,), "zero-order", NOISE, 1))
+    score = Score(begun.sample, np.zeros((COUNT, 0)), NOISE**2)
+    best = chosen(search(best_host([begun], score), score), score.floor)
+    assert best.effects == ("overflow",)
+    (store,) = best.state.chain
+    # In volts, of which one is 20 of the level.
+    assert store.height == pytest.approx(90 / 20, rel=0.02)
+    assert store.weir == pytest.approx(0.02 * 20**0.5, rel=0.1)
+    assert np.sqrt(np.mean(best.state.residual**2)) < 1.1 * NOISE
+    errors = np.full(len(best.state.free), np.nan)
+    told = parameters_of(best.state.added[0], best.state, errors)
+    assert told["weir"]["unit"] == "V^-0.5/s"
+    # One that spills at once has no weir to tell of.
+    sharp = replace(best.state, chain=(replace(store, weir=HUGE),))
+    assert "weir" not in parameters_of(best.state.added[0], sharp, errors)
 
 
 @pytest.mark.parametrize("powers", [(1.0, 0.5), (0.5, 1.0)])

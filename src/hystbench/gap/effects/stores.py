@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from hystbench.gap.effects.effect import StoreEffect
 from hystbench.gap.effects.law import Changed, Filled
@@ -51,6 +51,9 @@ SHARES = (0.95, 0.75)
 """Shares of the highest level without it: where overflow begins."""
 CAUGHT = 0.3
 """Share of what is spilt that the next store catches, where a fit begins."""
+ABOVE = 0.1
+"""Share of the highest level by which a level above a weir is, as a fit begins, where
+as much runs over it as leaves below."""
 
 
 class Overflow(StoreEffect):
@@ -58,13 +61,14 @@ class Overflow(StoreEffect):
 
     name = "overflow"
     shows = "amplitude"
-    numbers = ("height", "caught")
+    numbers = ("height", "caught", "weir")
 
     def stored(self, filled: Filled) -> Iterator[Changed]:
         """Offer heights met late and early; the next store catches a part.
 
         The last level is measured: it is seen where it stays. But a model without the
-        overflow may rise higher, and spills nothing there.
+        overflow may rise higher, and spills nothing there. Over a weir the level goes
+        on rising: its edge is met early.
         """
         last, _, highest = filled.tops[-1]
         lower = min(highest, filled.measured or highest)
@@ -73,15 +77,32 @@ class Overflow(StoreEffect):
         for form, places in groups.items():
             if not places or (form == "all" and len(every) == 1):
                 continue
-            for share, seen in zip(SHARES, (highest, lower), strict=True):
-                values, free = {}, []
-                for place, _, top in filled.tops:
-                    if place not in places:
-                        continue
-                    height = seen if place == last else share * top
-                    values[place] = {"height": height}
-                    free.append((place, "height"))
-                    if place != last:
-                        values[place]["caught"] = CAUGHT
-                        free.append((place, "caught"))
-                yield Changed(form, values, tuple(free))
+            late, early = SHARES
+            yield _spilling(filled, form, places, late, highest)
+            yield _spilling(filled, form, places, early, lower)
+            yield _spilling(filled, form, places, early, early * lower, over_weirs=True)
+
+
+def _spilling(
+    filled: Filled,
+    form: str,
+    places: Sequence[int],
+    share: float,
+    seen: float,
+    over_weirs: bool = False,
+) -> Changed:
+    """Give stores that spill at shares of their tops; the last at a level seen."""
+    last, *_ = filled.tops[-1]
+    values: dict[int, dict[str, float]] = {}
+    free: list[tuple[int, str]] = []
+    for place, store, top in filled.tops:
+        if place not in places:
+            continue
+        own = values[place] = {"height": seen if place == last else share * top}
+        if place != last:
+            own["caught"] = CAUGHT
+        if over_weirs:
+            leaves = store.rate * top**store.exponent
+            own["weir"] = leaves / (ABOVE * top) ** 1.5
+        free += [(place, name) for name in own]
+    return Changed(f"{form}, over a weir" if over_weirs else form, values, tuple(free))

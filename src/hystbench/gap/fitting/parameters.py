@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -81,6 +82,7 @@ def parameters_of(
         return found
     numbers = effects()[item.effect].numbers
     fitted = {(free.block, free.parameter) for free in state.free}
+    met: Counter[str] = Counter()
     for place in item.blocks:
         block = state.chain[place]
         if block.name not in (item.effect, *effects()[item.effect].laws):
@@ -92,9 +94,11 @@ def parameters_of(
                 continue
             if not numbers and value == usual[key] and (place, key) not in fitted:
                 continue  # no law that was named has it
+            met[key] += 1
+            if value == usual[key] == HUGE:
+                continue  # a store without a rim or a weir
             error = _errors_of(place, key, value, state, errors)
-            count = 1 + sum(name.partition("#")[0] == key for name in found)
-            label = key if count == 1 else f"{key}#{count}"
+            label = key if met[key] == 1 else f"{key}#{met[key]}"
             found[label] = _number(value, error, _unit(about.unit, place, state))
     return found
 
