@@ -183,7 +183,7 @@ def worse_than_a_constant(left: float, still: float, unit: str) -> list[str]:
         f"on the hold-out records the model leaves {sized(left, unit)} rms, and a "
         f"constant, the mean output of the fit records, {sized(still, unit)}: as it "
         "is, the model predicts nothing. Check its columns, its units, its start and "
-        "its numbers"
+        "its numbers; if they are right, what it lacks has no name here"
     ]
 
 
