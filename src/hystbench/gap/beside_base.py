@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
-from hystbench.gap.fitting.own_values import OwnValues
+from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.re_tuning_gain import (
     charge_of_base,
     re_tuned_score,
@@ -30,11 +30,11 @@ class BesideBase:
     start: ModelState
     """The same on the fit records."""
     floor: Floor
-    chain: Named | None
+    chain: Named | None = None
     """Effects in a chain; none where forces were enough."""
-    inside: Inside | None
+    inside: Inside | None = None
     """Forces inside the dynamics, where they do better than a chain."""
-    own: OwnValues
+    own: OwnValues = NONE
     tried: Inside | None = None
     """Forces inside that were found, whether they do better or not."""
 

@@ -140,20 +140,21 @@ class GapSearch:
         closed = (*NOT_IN_WINDOWS, *beside)
         return tuple(name for name in offered if name not in closed)
 
-    def started(
-        self, records: tuple[Record, ...], base: Model
-    ) -> tuple[ModelState, Floor]:
-        """Give a base on records, and their floor."""
+    def started(self, records: tuple[Record, ...], base: Model) -> BesideBase:
+        """Give a base on records, with nothing named beside it yet."""
         hold, noise = self.evidence.input_hold, self.evidence.noise_rms
-        return start_state(records, base, hold, declared=noise, offered=self.offered)
+        begun = start_state(records, base, hold, declared=noise, offered=self.offered)
+        return BesideBase(base, *begun)
 
-    def without_leads(
-        self, records: tuple[Record, ...], base: Model, beside: Model
-    ) -> tuple[Record, ...]:
-        """Leave out the leads that a model shows which was found beside a base."""
+    def without_leads(self, found: BesideBase, model: Model) -> BesideBase:
+        """Start without the leads that a model shows; the same where there are none.
+
+        The model was found beside the base. What was named goes with the leads.
+        """
         hold, takes = self.evidence.input_hold, self.evidence.quantities
-        say = self.asked.say
-        return without_leads(records, base, hold, takes, say, found=beside)
+        records, say = found.start.records, self.asked.say
+        shorter = without_leads(records, found.base, hold, takes, say, found=model)
+        return found if shorter is records else self.started(shorter, found.base)
 
     def identified_again(self, found: BesideBase, named: Named) -> BesideBase:
         """Name beside a hysteresis that is identified again, where that is better."""
@@ -189,145 +190,128 @@ class GapSearch:
         if base is None:
             return found
         records, say = found.start.records, self.asked.say
-        start, floor = self.started(records, base)
-        alone, _ = finished(start, make_score(start, floor.rms))
-        base = replace(base, chain=alone.chain)
-        start, floor = self.started(records, base)
-        chain = named_beside_them(found.named, start, floor.rms, say)
+        begun = self.started(records, base)
+        alone, _ = finished(begun.start, make_score(begun.start, begun.floor.rms))
+        begun = self.started(records, replace(base, chain=alone.chain))
+        chain = named_beside_them(found.named, begun.start, begun.floor.rms, say)
         if chain is None:
             return found
         say("the base may have the poles that were named: they are no effect")
-        return replace(found, base=base, start=start, floor=floor, chain=chain)
+        return replace(begun, chain=chain, tried=found.tried)
 
     def beside(self, base: Model, kinds: tuple[Kind, ...] = ()) -> BesideBase:
         """Name in a chain and inside the dynamics, on the records as they are.
 
         Forces are tried in hosts of some kinds; in all by default.
         """
-        quantities = self.quantities
         say, share = self.asked.say, self.asked.unnamed_share
-        start, floor = self.started(self.evidence.fit, base)
-        inside, own = None, NONE
-        identified = is_identified_linear(base)
+        quantities, identified = self.quantities, is_identified_linear(base)
 
         @cache
-        def in_a_chain(start: ModelState, floor: Floor) -> Named:
+        def named(start: ModelState, floor: Floor) -> Named:
             return add_effects(start, floor.rms, self.asked)
 
-        def begun_so(start: ModelState, floor: Floor) -> tuple[ModelState, Floor]:
-            """Begin without the leads that what is named in a chain shows."""
-            model = augmented(base, in_a_chain(start, floor).state)
-            shorter = self.without_leads(start.records, base, model)
-            whole = shorter is start.records
-            return (start, floor) if whole else self.started(shorter, base)
+        def in_a_chain(found: BesideBase) -> Named:
+            return named(found.start, found.floor)
 
-        known = bool(places_between_halves(start.simulation) or found_with(base))
+        def without_its_leads(found: BesideBase) -> BesideBase:
+            return self.without_leads(found, augmented(base, in_a_chain(found).state))
+
+        found = self.started(self.evidence.fit, base)
+        known = bool(places_between_halves(found.start.simulation) or found_with(base))
         if known:  # what that effect hides of a start is no reason to try forces
-            start, floor = begun_so(start, floor)
+            found = without_its_leads(found)
         # A base of two filters tells that a curve lies between them. One that was found
         # beside an effect tells that there is this effect. So the chain is tried first.
         # So it is beside a given base: forces must beat that.
         if known or (quantities is not None and not identified):
-            chain = in_a_chain(start, floor)
-            enough = known and _why_enough(start, chain.state, floor, share)
-            if quantities is not None and (enough or most_inside(chain, floor.rms) < 1):
+            chain = in_a_chain(found)
+            enough = known and _why_enough(found.start, chain.state, found.floor, share)
+            none_could = enough or most_inside(chain, found.floor.rms) < 1
+            if quantities is not None and none_could:
                 say("no force could gain what matters, so none is tried inside")
                 quantities = None
         if quantities is not None:
-            whole = start, floor
-            start, floor, inside, own = self.with_forces(
-                base, start, floor, quantities, partial(in_a_chain, *whole), kinds
-            )
-            if inside is not None and not beats_base(inside, start, floor.rms):
-                say("inside: what stands for the base leaves more than the base does")
-                (start, floor), inside, own = whole, None, NONE
-        if inside is not None:
-            start, inside, own = self.not_of_the_input(start, floor, inside, own)
+            found = self.with_forces(found, quantities, in_a_chain, kinds)
         # A base that was given is re-tuned where it is a host: that may stand for a
         # chain.
+        inside = found.inside
         if inside is not None and identified:
-            enough = _why_enough(inside.start, inside.named.state, floor, share)
+            state = inside.named.state
+            enough = _why_enough(inside.start, state, found.floor, share)
             if enough:
                 say(f"inside: {enough}, so no chain of effects is tried")
-                return BesideBase(base, start, floor, None, inside, own, inside)
-        chain = in_a_chain(start, floor)
-        if inside is None and chain.state.added:
-            start, floor = begun_so(start, floor)
-            chain = in_a_chain(start, floor)
-        tried = inside
-        if inside is not None and not beats_chain(inside, chain, floor.rms, say):
+                return found
+        if inside is None and in_a_chain(found).state.added:
+            found = without_its_leads(found)
+        chain = in_a_chain(found)
+        if inside is not None and not beats_chain(inside, chain, found.floor.rms, say):
             inside = None
-        return BesideBase(base, start, floor, chain, inside, own, tried)
+        return replace(found, chain=chain, inside=inside)
 
     def with_forces(
         self,
-        base: Model,
-        start: ModelState,
-        floor: Floor,
+        whole: BesideBase,
         quantities: Quantities,
-        in_a_chain: Callable[[], Named],
+        in_a_chain: Callable[[BesideBase], Named],
         kinds: tuple[Kind, ...],
-    ) -> tuple[ModelState, Floor, Inside | None, OwnValues]:
+    ) -> BesideBase:
         """Look for forces inside the dynamics, beside what is a record's own.
 
         After the first look only such hosts are tried as it has found best. Records get
         offsets of their own only where a chain leaves much as well. Wrong forces leave
-        much, and an offset would take some of it.
-
-        Returns
-        -------
-        start : ModelState
-            The base on the records, without what was found to be their own.
-        floor : Floor
-        inside : Inside or None
-        own : OwnValues
+        much, and an offset would take some of it. What does not beat the base is left
+        out, with all that was found beside it.
         """
-        shorter, whole, own = start.records, (start, floor), NONE
-        say = self.asked.say
+        found, say = whole, self.asked.say
 
-        @cache
         def most() -> float:
-            return most_inside(in_a_chain(), whole[1].rms)
+            return most_inside(in_a_chain(whole), whole.floor.rms)
 
-        def shows_leads(found: Model) -> bool:
-            nonlocal shorter
-            shorter = self.without_leads(start.records, base, found)
-            return shorter is not start.records
+        def shows_leads(model: Model) -> bool:
+            nonlocal found
+            before, found = found, self.without_leads(found, model)
+            return found is not before
 
         def forces(
             start: ModelState, again: Callable[[Model], bool] = lambda found: False
         ) -> Inside | None:
             nonlocal kinds
-            found = named_inside(
-                base,
+            inside = named_inside(
+                whole.base,
                 start,
-                floor.rms,
+                found.floor.rms,
                 quantities,
-                identified=is_identified_linear(base),
+                identified=is_identified_linear(whole.base),
                 asked=self.asked,
                 most=most,
                 again=again,
                 kinds=kinds,
             )
-            kinds = kinds if found is None else (found.host,)
-            return found
+            kinds = kinds if inside is None else (inside.host,)
+            return inside
 
-        while True:  # each time fewer records are whole
-            inside = forces(start, shows_leads)
+        before = None
+        while found is not before:  # each time fewer records are whole
+            before, inside = found, forces(found.start, shows_leads)
             if inside is not None:
                 shows_leads(augmented(inside.base, inside.named.state))
-            if shorter is start.records:
-                break
-            start, floor = self.started(shorter, base)
         if inside is None:  # no force shows where a motion begins
-            start, floor = whole
+            found = whole
+        start, floor, own = found.start, found.floor, NONE
         if (
             not _leaves_little(inside, floor)
             and self.evidence.own_offsets
-            and leaves_much(in_a_chain().state, *whole)
+            and leaves_much(in_a_chain(whole).state, whole.start, whole.floor)
         ):
             start, inside, own = apart_inside(start, inside, floor.rms, forces, say)
-        return start, floor, inside, own
+        if inside is None:
+            return whole
+        if not beats_base(inside, start, floor.rms):
+            say("inside: what stands for the base leaves more than the base does")
+            return whole
+        start, inside, own = self.not_of_the_input(start, floor, inside, own)
+        return replace(found, start=start, inside=inside, own=own, tried=inside)
 
     def not_of_the_input(
         self, start: ModelState, floor: Floor, inside: Inside, own: OwnValues
