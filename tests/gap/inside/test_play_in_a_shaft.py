@@ -1,7 +1,5 @@
 """Play in the shaft between a motor and its load: two bodies that turn freely."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 
@@ -9,12 +7,11 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.combine_forces import singles
-from hystbench.gap.inside.insert_law import laws_for
 from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
+from tests.gap.inside_host import each_alone
 
 MOTOR, LOAD, SHAFT, DAMPER, DRAG, PLAY = 0.002, 0.002, 12.0, 0.02, 0.02, 0.02
 DT, NOISE = 0.002, 0.05
@@ -62,8 +59,7 @@ def test_it_is_a_stop_in_the_place_of_the_shaft_s_spring(base):
     (host,) = hosts(*asked, kinds=("structure",))
     assert [x.name for x in host.fitted.state.chain][:2] == ["structure", "other-modes"]
     offered = ["stop", "stiffness-hardening"]
-    offer = partial(laws_for, offered=offered)
-    best = min(singles(host.fitted, offer, score), key=lambda item: item.score)
+    best = min(each_alone(host.fitted, score, offered), key=lambda item: item.score)
     assert best.effects == ("stop",)
     before, after = host.fitted.state.power(NOISE**2), best.state.power(NOISE**2)
     assert after < 0.05 * before

@@ -16,10 +16,10 @@ from hystbench.gap.fitting.state import Added
 from hystbench.gap.inside import combine_forces
 from hystbench.gap.inside import named_inside as named_inside_module
 from hystbench.gap.inside.choose import as_rounds, chosen
+from hystbench.gap.inside.combine_forces import ForceSearch
 from hystbench.gap.inside.named_inside import Inside, beats_chain
 from hystbench.gap.inside.other_names import of_one_name
 from hystbench.gap.naming.add_effects import Named, add_effects
-from hystbench.gap.progress import silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.free_mass import windows
 from hystbench.model import Model
@@ -130,7 +130,7 @@ def test_threes_are_tried_where_a_pair_pays_or_no_single_does(
     """Forces that gain little alone may gain much together."""
     tried_levels = []
 
-    def one_more(carried, *_):
+    def one_more(self, carried, *_):
         tried_levels.append(len(carried[0].effects) + 1)
         return [chained(pair, *carried[0].effects, "drag")]
 
@@ -138,13 +138,13 @@ def test_threes_are_tried_where_a_pair_pays_or_no_single_does(
         state = SimpleNamespace(chain=(), added=added(effects), freedom=0.0)
         return Fitted(state, score)
 
-    monkeypatch.setattr(combine_forces, "_one_more", one_more)
+    monkeypatch.setattr(ForceSearch, "one_more", one_more)
     monkeypatch.setattr(combine_forces, "with_one_fewer", lambda *_: [])
-    monkeypatch.setattr(combine_forces, "_with_another", lambda *_: [])
+    monkeypatch.setattr(ForceSearch, "with_another", lambda *_: [])
     monkeypatch.setattr(combine_forces, "by_other_laws", lambda *_: [])
     score = SimpleNamespace(least=lambda freedom: -5000.0)
     found = [chained(0.0), chained(single, "friction")]
-    combine_forces.together(found, lambda _: {}, score)
+    ForceSearch(lambda _: {}, score).together(found)
     assert tried_levels == [2, 3][:levels]
 
 
@@ -163,10 +163,10 @@ def test_another_effect_is_put_where_the_search_has_not_gone_on(monkeypatch):
     monkeypatch.setattr(combine_forces, "without_effect", without)
     monkeypatch.setattr(combine_forces, "fitted", lambda state, _: Fitted(state, 0.0))
     monkeypatch.setattr(
-        combine_forces, "_one_more", lambda found, *_: begun.extend(found)
+        ForceSearch, "one_more", lambda self, found, *_: begun.extend(found)
     )
     best = of("friction", "drag")
-    combine_forces._with_another(best, [of("friction")], None, None, 0.0, None)
+    ForceSearch(None, None).with_another(best, [of("friction")], 0.0)
     assert [item.effects for item in begun] == [("drag",)]
 
 
@@ -342,7 +342,7 @@ def test_nothing_is_put_into_a_model_that_runs_away():
     def offer(before):
         raise AssertionError("asked what may be put in")
 
-    assert combine_forces._one_more([away], offer, None, 1, 0.0, silent) == []
+    assert ForceSearch(offer, None).one_more([away], 1, 0.0) == []
 
 
 def test_of_two_names_for_a_curve_behind_a_mass_the_sensor_is_tried():

@@ -21,6 +21,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside import stores as of_stores
 from hystbench.gap.inside.choose import chosen
+from hystbench.gap.inside.combine_forces import ForceSearch
 from hystbench.gap.inside.insert_law import how_it_fills
 from hystbench.gap.inside.known_host import with_best_beside_free
 from hystbench.gap.inside.one_coordinate import best_host
@@ -477,4 +478,4 @@ def test_a_base_of_stores_has_no_mass_whose_numbers_could_be_free():
     state = ModelState((tank,), (record,), ScoredSamples.of((record,)))
     score = Score.plain(state.sample, NOISE**2)
     given = [Fitted(state, 0.0)]
-    assert with_best_beside_free(given, lambda _: {}, score) == given
+    assert with_best_beside_free(given, ForceSearch(lambda _: {}, score)) == given

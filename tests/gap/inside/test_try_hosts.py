@@ -7,13 +7,13 @@ import pytest
 
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.inside import try_hosts
+from hystbench.gap.inside.combine_forces import ForceSearch
 from hystbench.gap.inside.try_hosts import (
     HostTrial,
     Tried,
     best_with_several,
     in_each_host,
 )
-from hystbench.gap.progress import silent
 
 LEAST = -1000.0
 
@@ -39,7 +39,11 @@ def host(counts=0, kind="coordinate"):
 def trial():
     start = SimpleNamespace(power=lambda floor: 1.0)
     score = SimpleNamespace(floor=0.0, least=lambda freedom: LEAST)
-    return HostTrial(start, score, lambda _: {}, 0.01, True, silent)
+    return HostTrial(start, ForceSearch(lambda _: {}, score), 0.01, True)
+
+
+def offering(trial, laws):
+    return replace(trial, forces=replace(trial.forces, offer=lambda _: laws))
 
 
 @pytest.mark.parametrize(
@@ -72,7 +76,7 @@ def tried_in(trial, monkeypatch, lefts, most, hosts=None, begins_again=lambda _:
         asked.append(True)
         return most
 
-    monkeypatch.setattr(try_hosts, "singles", singles)
+    monkeypatch.setattr(ForceSearch, "singles", singles)
     monkeypatch.setattr(try_hosts, "chosen", lambda found, *_: found[-1])
     hosts = [host() for _ in lefts] if hosts is None else hosts
     found = in_each_host(trial, hosts, limit, begins_again)
@@ -126,32 +130,32 @@ def test_in_a_host_with_a_timing_the_best_force_is_tried_and_others_are_fitted_o
 ):
     asked = []
 
-    def singles(host, offer, *_):
-        asked.append(set(offer(host)))
-        return [host, hypothesis(-800.0, 0.2, *offer(host))]
+    def singles(self, host, *_):
+        asked.append(set(self.offer(host)))
+        return [host, hypothesis(-800.0, 0.2, *self.offer(host))]
 
     def to_the_end(begun, *_):
         return [Fitted(item.state, item.score - 10.0) for item in begun]
 
-    monkeypatch.setattr(try_hosts, "singles", singles)
+    monkeypatch.setattr(ForceSearch, "singles", singles)
     monkeypatch.setattr(try_hosts, "to_the_end", to_the_end)
     monkeypatch.setattr(try_hosts, "gentlest", lambda state: ())
     monkeypatch.setattr(try_hosts, "chosen", lambda found, *_: found[-1])
     late = SimpleNamespace(**vars(host()) | {"fitted": hypothesis(-1.0, 1.0)})
     late.carry = lambda state: state
     forces = {"friction": [], "drag": [], "gravity": []}
-    offering = replace(trial, offer=lambda _: forces)
+    told = offering(trial, forces)
     found = [
         hypothesis(score, 0.2, *names)
         for score, *names in ((0.0,), (-600.0, "drag"), (-700.0, "friction"))
     ]
     before = Tried(host(), found, found[-1])
-    tried = offering.with_one(late, before)
+    tried = told.with_one(late, before)
     assert asked == [{"friction"}]
     effects = {item.effects: item.score for item in tried.found}
     assert effects == {(): -1.0, ("friction",): -800.0, ("drag",): -610.0}
     assert tried.before is before
-    offering.with_one(late)  # nothing was found before it
+    told.with_one(late)  # nothing was found before it
     assert asked[-1] == set(forces)
 
 
@@ -161,11 +165,11 @@ def test_beside_a_timing_the_host_without_it_is_tried_with_lags_alone(
 ):
     asked = []
 
-    def together(found, offer, *_):
-        asked.append(set(offer(found[-1])))
+    def together(self, found, *_):
+        asked.append(set(self.offer(found[-1])))
         return found
 
-    monkeypatch.setattr(try_hosts, "together", together)
+    monkeypatch.setattr(ForceSearch, "together", together)
     monkeypatch.setattr(try_hosts, "chosen", lambda found, *_: found[-1])
     monkeypatch.setattr(try_hosts, "charged", lambda item, *_: item.score)
     monkeypatch.setattr(try_hosts, "more_for_numbers", lambda *_: 0.0)
@@ -180,8 +184,6 @@ def test_beside_a_timing_the_host_without_it_is_tried_with_lags_alone(
     first = tried(-500.0, 2)
     late = tried(-600.0, 3, first)
     forces = {"friction": [], "drive-lag": [], "drag": []}
-    best = best_with_several(
-        replace(trial, offer=lambda _: forces), [first, late], float("inf")
-    )
+    best = best_with_several(offering(trial, forces), [first, late], float("inf"))
     assert asked == [{"drive-lag"}, set(forces)][:wanted]
     assert best.best is late.best

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -27,6 +27,7 @@ from hystbench.gap.inside.average_force import evened
 from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.choose import best_of_each, least, may_gain, with_a_way
 from hystbench.gap.inside.insert_law import (
+    Laws,
     Offer,
     of_stores,
     with_changed,
@@ -45,77 +46,140 @@ SINGLES, PAIRS = 4, 2
 that gain little alone may gain much together."""
 
 
-def singles(
-    host: Fitted,
-    offer: Offer,
-    score: Score,
-    say: Say = silent,
-    other: ModelState | None = None,
-) -> list[Fitted]:
-    """Try each force alone: the host without one first, then the least score.
+@dataclass(frozen=True)
+class ForceSearch:
+    """What forces are offered, and what they are judged by."""
 
-    Forces are put into the host, or into another model that is as good without them.
-    """
-    begun = host if other is None else replace(host, state=other)
-    return [host, *_one_more([begun], offer, score, SINGLES, host.score, say)]
+    offer: Offer
+    score: Score
+    say: Say = silent
 
+    def of(self, names: Collection[str]) -> ForceSearch:
+        """Offer some effects only."""
 
-def together(
-    found: Sequence[Fitted],
-    offer: Offer,
-    score: Score,
-    say: Say = silent,
-    most: float = np.inf,
-) -> list[Fitted]:
-    """Go on from singles to pairs, and to threes.
+        def some(fitted: Fitted) -> Laws:
+            laws = self.offer(fitted)
+            return {name: own for name, own in laws.items() if name in names}
 
-    Forces that gain little alone may gain much together. But where one pays alone and
-    no second one pays beside it, no three are tried, and none where two gain nothing.
+        return replace(self, offer=some)
 
-    Parameters
-    ----------
-    found : sequence of Fitted
-        The host alone, and with one force each.
-    offer : callable
-        Gives what may be put in.
-    score : Score
-    say : callable
-    most : float
-        How many forces, at most.
+    def singles(self, host: Fitted, other: ModelState | None = None) -> list[Fitted]:
+        """Try each force alone: the host without one first, then the least score.
 
-    Returns
-    -------
-    list of Fitted
-        The host alone first; of each set of effects the best laws.
-    """
-    every, alone, carried = list(found), found[0].score, list(found[1:])
-    went_on: list[Fitted] = []
-    asked: list[Fitted] = []
-    for count, keep in ((2, PAIRS), (3, 1)):
-        if (
-            count > most
-            or not may_gain(least(every), score)
-            or _in_vain(every, carried)
-        ):
-            break
-        if not of_stores(found[0]):
-            carried = [item for item in carried if item.score < alone]
-        went_on += carried
-        carried = _one_more(carried, offer, score, keep, alone, say)
-        asked.append(least([*carried, found[0]]))
-        carried += by_other_laws(asked[-1], score)
-        carried = sorted(best_of_each(carried), key=lambda item: item.score)
-        every += carried
-    best = least(every)
-    if not of_stores(best):
-        every += with_one_fewer(best, every, score)
-        paying = best_that_pays(every)
-        every += with_one_fewer(paying, every, score, _laws)
-        every += _with_another(paying, went_on, offer, score, alone, say)
-        last = best_that_pays(every)
-        if not any(last is item for item in asked):
-            every += by_other_laws(last, score)
-    return with_a_way(best_of_each(every))
+        Forces are put into the host, or into another model that is as good without
+        them.
+        """
+        begun = host if other is None else replace(host, state=other)
+        return [host, *self.one_more([begun], SINGLES, host.score)]
+
+    def together(self, found: Sequence[Fitted], most: float = np.inf) -> list[Fitted]:
+        """Go on from singles to pairs, and to threes.
+
+        Forces that gain little alone may gain much together. But where one pays alone
+        and no second one pays beside it, no three are tried, and none where two gain
+        nothing.
+
+        Parameters
+        ----------
+        found : sequence of Fitted
+            The host alone, and with one force each.
+        most : float
+            How many forces, at most.
+
+        Returns
+        -------
+        list of Fitted
+            The host alone first; of each set of effects the best laws.
+        """
+        score = self.score
+        every, alone, carried = list(found), found[0].score, list(found[1:])
+        went_on: list[Fitted] = []
+        asked: list[Fitted] = []
+        for count, keep in ((2, PAIRS), (3, 1)):
+            if (
+                count > most
+                or not may_gain(least(every), score)
+                or _in_vain(every, carried)
+            ):
+                break
+            if not of_stores(found[0]):
+                carried = [item for item in carried if item.score < alone]
+            went_on += carried
+            carried = self.one_more(carried, keep, alone)
+            asked.append(least([*carried, found[0]]))
+            carried += by_other_laws(asked[-1], score)
+            carried = sorted(best_of_each(carried), key=lambda item: item.score)
+            every += carried
+        best = least(every)
+        if not of_stores(best):
+            every += with_one_fewer(best, every, score)
+            paying = best_that_pays(every)
+            every += with_one_fewer(paying, every, score, _laws)
+            every += self.with_another(paying, went_on, alone)
+            last = best_that_pays(every)
+            if not any(last is item for item in asked):
+                every += by_other_laws(last, score)
+        return with_a_way(best_of_each(every))
+
+    def with_another(
+        self, best: Fitted, went_on: Sequence[Fitted], alone: float
+    ) -> list[Fitted]:
+        """Put another effect in the place of each of several.
+
+        One that came early may stand for another that is only seen beside the rest. Not
+        where the search went on from the rest already.
+        """
+        if len(best.effects) < 2:
+            return []
+        fewer = [
+            Fitted(without_effect(best.state, k), np.inf)
+            for k in range(len(best.effects))
+        ]
+        known = {_laws(item) for item in went_on}
+        carried = fit_each(
+            lambda item: fitted(item.state, self.score),
+            [x for x in fewer if _laws(x) not in known],
+            EVALUATIONS,
+        )
+        return self.one_more(carried, PAIRS, alone)
+
+    def one_more(
+        self, carried: Sequence[Fitted], keep: int, alone: float
+    ) -> list[Fitted]:
+        """Put one more force into each hypothesis; give the best, by their scores.
+
+        Nothing is put into one that diverges: it tells no sizes.
+        """
+        score = self.score
+        carried = [
+            before
+            for before in carried
+            if np.isfinite(before.score) and may_gain(before, score)
+        ]
+        if not carried:
+            return []
+        stores = any(of_stores(item) for item in carried)
+        first = carried[0].state
+        beginnings = (Beginnings.all_of if stores else Beginnings.of)(first, score)
+        begun: list[Fitted] = []
+        for before in carried:
+            short = beginnings.cut(before.state)  # its tangents serve all effects
+            begun += _each_begun(before, short, self.offer, beginnings)
+        if not begun:
+            return []
+        gentle = () if first.added else gentlest(first)
+        if stores:
+            inside = [item for item in begun if item.state.added[-1].place == "inside"]
+            around = [item for item in begun if item.state.added[-1].place != "inside"]
+            best_first = fitted_each(inside, score, gentle)
+            best_first += fitted_likely(around, beginnings, score, 1, gentle)
+            best_first.sort(key=lambda item: item.score)
+        else:
+            best_first = fitted_likely(begun, beginnings, score, keep, gentle)
+        for item in best_first[:3]:
+            gain = alone - item.score
+            self.say(f"inside: {' + '.join(item.effects)}: gain {gain:.1f}")
+        return best_first
 
 
 def best_that_pays(every: Sequence[Fitted]) -> Fitted:
@@ -167,77 +231,8 @@ def with_one_fewer(
     return to_the_end(left, score)
 
 
-def _with_another(
-    best: Fitted,
-    went_on: Sequence[Fitted],
-    offer: Offer,
-    score: Score,
-    alone: float,
-    say: Say,
-) -> list[Fitted]:
-    """Put another effect in the place of each of several.
-
-    One that came early may stand for another that is only seen beside the rest. Not
-    where the search went on from the rest already.
-    """
-    if len(best.effects) < 2:
-        return []
-    fewer = [
-        Fitted(without_effect(best.state, k), np.inf) for k in range(len(best.effects))
-    ]
-    known = {_laws(item) for item in went_on}
-    carried = fit_each(
-        lambda item: fitted(item.state, score),
-        [x for x in fewer if _laws(x) not in known],
-        EVALUATIONS,
-    )
-    return _one_more(carried, offer, score, PAIRS, alone, say)
-
-
 def _laws(item: Fitted) -> frozenset[tuple[str, str]]:
     return frozenset(zip(item.effects, item.forms, strict=True))
-
-
-def _one_more(
-    carried: Sequence[Fitted],
-    offer: Offer,
-    score: Score,
-    keep: int,
-    alone: float,
-    say: Say,
-) -> list[Fitted]:
-    """Put one more force into each hypothesis; give the best, the least score first.
-
-    Nothing is put into one that diverges: it tells no sizes.
-    """
-    carried = [
-        before
-        for before in carried
-        if np.isfinite(before.score) and may_gain(before, score)
-    ]
-    if not carried:
-        return []
-    stores = any(of_stores(item) for item in carried)
-    first = carried[0].state
-    beginnings = (Beginnings.all_of if stores else Beginnings.of)(first, score)
-    begun: list[Fitted] = []
-    for before in carried:
-        short = beginnings.cut(before.state)  # its tangents serve all effects
-        begun += _each_begun(before, short, offer, beginnings)
-    if not begun:
-        return []
-    gentle = () if first.added else gentlest(first)
-    if stores:
-        inside = [item for item in begun if item.state.added[-1].place == "inside"]
-        around = [item for item in begun if item.state.added[-1].place != "inside"]
-        best_first = fitted_each(inside, score, gentle)
-        best_first += fitted_likely(around, beginnings, score, 1, gentle)
-        best_first.sort(key=lambda item: item.score)
-    else:
-        best_first = fitted_likely(begun, beginnings, score, keep, gentle)
-    for item in best_first[:3]:
-        say(f"inside: {' + '.join(item.effects)}: gain {alone - item.score:.1f}")
-    return best_first
 
 
 def _each_begun(

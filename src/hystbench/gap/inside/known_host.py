@@ -9,21 +9,15 @@ from typing import Any
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import Fitted, fitted, fitted_to_the_end
-from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.choose import best_of_each, least
-from hystbench.gap.inside.combine_forces import PAIRS, singles, together
+from hystbench.gap.inside.combine_forces import PAIRS, ForceSearch
 from hystbench.gap.inside.host_places import LINEAR, host_of, own_numbers
-from hystbench.gap.inside.insert_law import Offer, of_stores
-from hystbench.gap.progress import Say, silent
+from hystbench.gap.inside.insert_law import of_stores
 
 
 def with_best_beside_free(
-    found: Sequence[Fitted],
-    offer: Offer,
-    score: Score,
-    say: Say = silent,
-    beside_free: Sequence[Fitted] = (),
+    found: Sequence[Fitted], forces: ForceSearch, beside_free: Sequence[Fitted] = ()
 ) -> list[Fitted]:
     """Add the forces and pairs that do best where the host's own numbers are free.
 
@@ -38,10 +32,7 @@ def with_best_beside_free(
     ----------
     found : sequence of Fitted
         The host alone first, then with forces.
-    offer : callable
-        Gives what may be put in.
-    score : Score
-    say : callable
+    forces : ForceSearch
     beside_free : sequence of Fitted
         What was found with those numbers free, if that was looked for.
 
@@ -54,15 +45,17 @@ def with_best_beside_free(
     host = found[0].state
     if of_stores(found[0]):
         return list(found)
-    place = host_of(host)
+    place, score = host_of(host), forces.score
     if not isinstance(host.chain[place], Mechanism) or not _known(host, place):
         return list(found)
     if not beside_free:
         others = (item for item in host.free if item.block != place)
         free = (*others, *own_numbers(host, place))
         begun = fitted(replace(host, free=free), score)
-        say("inside: with its own numbers free, to see which forces belong together")
-        beside_free = together(singles(begun, offer, score, say), offer, score, say, 2)
+        forces.say(
+            "inside: with its own numbers free, to see which forces belong together"
+        )
+        beside_free = forces.together(forces.singles(begun), 2)
     likely = sorted(beside_free, key=lambda item: item.score)
     one, *_ = (item for item in likely if len(item.effects) < 2)
     pairs = [item for item in likely if len(item.effects) == 2]
@@ -75,7 +68,7 @@ def with_best_beside_free(
         every += [beside, *(fitted_to_the_end(state, score) for state in each)]
     best, alone = least(every), found[0].score
     if best.effects:
-        say(f"inside: {' + '.join(best.effects)}: gain {alone - best.score:.1f}")
+        forces.say(f"inside: {' + '.join(best.effects)}: gain {alone - best.score:.1f}")
     return best_of_each(every)
 
 

@@ -34,6 +34,7 @@ from hystbench.gap.inside.choose import (
     not_taken,
     way_to,
 )
+from hystbench.gap.inside.combine_forces import ForceSearch
 from hystbench.gap.inside.fewer import OnAll, on_fewer
 from hystbench.gap.inside.fitted_numbers import re_tuning
 from hystbench.gap.inside.host import Host, Kind
@@ -123,7 +124,7 @@ def named_inside(
     turns = angle_in(start.records[0].output.unit)
     times = Times.of(start.records, identified)
     offer = partial(laws_for, turns=turns, offered=start.offered, times=times)
-    trial = HostTrial(fewer, score, offer, share, identified, say)
+    trial = HostTrial(fewer, ForceSearch(offer, score, say), share, identified)
 
     def begins_again(tried: Tried) -> bool:
         in_place = of_free_numbers(base, tried.found[0].state)

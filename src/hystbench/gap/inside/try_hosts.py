@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -13,14 +12,12 @@ from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.choose import best_of_each, charged, chosen, may_gain
-from hystbench.gap.inside.combine_forces import singles, together
+from hystbench.gap.inside.combine_forces import ForceSearch
 from hystbench.gap.inside.fitted_numbers import more_for_numbers
 from hystbench.gap.inside.host import Host
-from hystbench.gap.inside.insert_law import Laws, Offer
 from hystbench.gap.inside.known_host import with_best_beside_free
 from hystbench.gap.inside.lags_of_base import LAGS
 from hystbench.gap.inside.likeliest import to_the_end
-from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import MOST
 
 
@@ -42,13 +39,16 @@ class HostTrial:
 
     start: ModelState
     """The base, on the samples that the search takes."""
-    score: Score
-    offer: Offer
+    forces: ForceSearch
     share: float
     """Share of the gap that may stay unnamed."""
     identified: bool
     """Whether the base was identified from the records."""
-    say: Say
+
+    @property
+    def score(self) -> Score:
+        """What hypotheses are judged by."""
+        return self.forces.score
 
     def of(self, host: Host, found: Sequence[Fitted]) -> Tried:
         """Choose among the hypotheses in a host."""
@@ -57,13 +57,11 @@ class HostTrial:
     def with_one(self, host: Host, before: Tried | None = None) -> Tried:
         """Try each force alone in a host, or what did best in the one before."""
         if before is not None and before.best.effects and host.carry is not None:
-            self.say(f"inside: {host.words}; forces are fitted on in it")
+            self.forces.say(f"inside: {host.words}; forces are fitted on in it")
             found = self._carried(host, host.carry, before)
             return replace(self.of(host, found), before=before)
-        self.say(f"inside: {host.words}; forces are tried in it")
-        found = singles(
-            host.fitted, self.offer, self.score, self.say, host.unfitted_start
-        )
+        self.forces.say(f"inside: {host.words}; forces are tried in it")
+        found = self.forces.singles(host.fitted, host.unfitted_start)
         return self.of(host, found)
 
     def _carried(
@@ -77,29 +75,22 @@ class HostTrial:
         They are fitted to the end in any case, and no others are tried.
         """
         best, *others = sorted(before.found[1:], key=lambda item: item.score)
-        of_best = partial(self._offered, names=best.effects)
-        found = singles(host.fitted, of_best, self.score, self.say, host.unfitted_start)
+        of_best = self.forces.of(best.effects)
+        found = of_best.singles(host.fitted, host.unfitted_start)
         begun = [Fitted(carry(item.state), item.score) for item in others]
         gentle = gentlest(host.fitted.state)
         return best_of_each([*found, *to_the_end(begun, self.score, gentle)])
 
     def with_several(self, tried: Tried, most: float, lags: bool = False) -> Tried:
         """Go on to several forces in a host, so many at most; or to lags alone."""
-        host = tried.host
-        offer = partial(self._offered, names=LAGS) if lags else self.offer
-        about = offer, self.score, self.say, most - host.counts
-        return self.of(host, together(tried.found, *about))
-
-    def _offered(self, fitted: Fitted, names: Collection[str]) -> Laws:
-        """Give what may be put into a hypothesis, of some effects."""
-        return {
-            name: laws for name, laws in self.offer(fitted).items() if name in names
-        }
+        forces = self.forces.of(LAGS) if lags else self.forces
+        most -= tried.host.counts
+        return self.of(tried.host, forces.together(tried.found, most))
 
     def with_best_beside_free(self, tried: Tried, free: Sequence[Fitted]) -> Tried:
         """Add what does best where the host's known numbers are free."""
-        about = self.offer, self.score, self.say, free
-        return self.of(tried.host, with_best_beside_free(tried.found, *about))
+        found = with_best_beside_free(tried.found, self.forces, free)
+        return self.of(tried.host, found)
 
     def leaves_more(self, item: Fitted, share: float) -> bool:
         """Tell whether more than a share of the gap is left."""
