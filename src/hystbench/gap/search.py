@@ -282,7 +282,6 @@ class GapSearch:
                 start,
                 found.floor.rms,
                 quantities,
-                identified=is_identified_linear(whole.base),
                 asked=self.asked,
                 most=most,
                 again=again,

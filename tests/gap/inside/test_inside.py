@@ -18,7 +18,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.resonance import Resonance
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.bases.linear import IdentifiedModel
+from hystbench.gap.bases.linear import IdentifiedModel, with_its_numbers_free
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.fitting.least_squares import Fitted
@@ -705,9 +705,10 @@ def test_a_spring_whose_acceleration_is_measured_is_no_friction():
         y = mode.simulate(u, u, DT) + NOISE * random.standard_normal(1600)
         given.append(record(f"{k}", u, y, ("N", "m/s^2")))
     start = transfer(tuple(given))
-    base = IdentifiedModel("linear", given[0].input, given[0].output, start.chain)
+    channels = given[0].input, given[0].output
+    base = with_its_numbers_free(IdentifiedModel("linear", *channels, start.chain))
     moves = Quantities("force", "acceleration")
-    found = named_inside(base, start, NOISE, moves, True)
+    found = named_inside(base, start, NOISE, moves)
     assert found is None or not found.named.state.added
 
 

@@ -12,7 +12,9 @@ from hystbench.blocks.starts import plainest_start, possible_starts
 from hystbench.gap.fitting.least_squares import Fitted, fitted, judged
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.choose import way_to
 from hystbench.gap.inside.race import FEW
+from hystbench.gap.inside.try_hosts import Tried
 from hystbench.gap.records.coarser import coarser, left_out
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
@@ -118,6 +120,22 @@ class OnAll:
                 else Fitted(state, judged(state, self.score))
             )
         return on_all
+
+
+def on_all_samples(
+    tried: Tried, start: ModelState, score: Score, identified: bool
+) -> Tried:
+    """Give what was tried in a host on fewer samples on all of them, the best the same.
+
+    The base and the score are on all samples. An identified host is fitted anew.
+    """
+    host, best = tried.host, tried.best
+    on_all = OnAll.of(start, score, host.alone, identified)
+    way = (tried.found[0], *way_to(best, tried.found))
+    found = on_all.hypotheses(tried.found, way)
+    place = [item is best for item in tried.found].index(True)
+    alone = found[0].state if identified else on_all.state(host.alone)
+    return Tried(replace(host, alone=alone), found, found[place])
 
 
 def _simulated(whole: ModelState, chain: tuple[Block, ...]) -> FloatArray:

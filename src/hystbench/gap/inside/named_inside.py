@@ -6,7 +6,7 @@ Whether they do better than those in the chain is asked afterwards
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -14,12 +14,12 @@ import numpy as np
 
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.gap.asked import USUAL, Asked
+from hystbench.gap.bases.linear import is_identified_linear
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.cross_validation import (
     gain_held_back,
     shows_in_one_record,
 )
-from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.on_records import on_records
 from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
@@ -29,15 +29,13 @@ from hystbench.gap.inside.as_late import with_others_as_late
 from hystbench.gap.inside.choose import (
     as_rounds,
     bends,
-    chosen,
     may_gain,
     not_taken,
-    way_to,
 )
 from hystbench.gap.inside.combine_forces import ForceSearch
-from hystbench.gap.inside.fewer import OnAll, on_fewer
+from hystbench.gap.inside.fewer import on_all_samples, on_fewer
 from hystbench.gap.inside.fitted_numbers import re_tuning
-from hystbench.gap.inside.host import Host, Kind
+from hystbench.gap.inside.host import Kind
 from hystbench.gap.inside.host_places import host_places
 from hystbench.gap.inside.insert_law import Times, laws_for
 from hystbench.gap.inside.lags_of_base import LAGS, with_lags_of_base
@@ -83,7 +81,6 @@ def named_inside(
     start: ModelState,
     floor_rms: float,
     quantities: Quantities,
-    identified: bool,
     asked: Asked = USUAL,
     most: Callable[[], float] = lambda: np.inf,
     again: Callable[[Model], bool] = lambda found: False,
@@ -103,8 +100,6 @@ def named_inside(
     floor_rms : float
     quantities : Quantities
         What the device takes and gives: they tell which hosts there are.
-    identified : bool
-        Whether the base is the linear model that was identified from the records.
     asked : Asked
         A further effect that takes less than may stay unnamed does not matter.
     most : callable
@@ -118,93 +113,97 @@ def named_inside(
     kinds : collection of str
         Hosts that are tried; all by default.
     """
-    say, share = asked.say, asked.unnamed_share
+    say, identified = asked.say, is_identified_linear(base)
     fewer = on_fewer(start, quantities)
     score, score_of_all = (Score.plain(x.sample, floor_rms**2) for x in (fewer, start))
     turns = angle_in(start.records[0].output.unit)
     times = Times.of(start.records, identified)
     offer = partial(laws_for, turns=turns, offered=start.offered, times=times)
-    trial = HostTrial(fewer, ForceSearch(offer, score, say), share, identified)
+    forces = ForceSearch(offer, score, say)
+    trial = HostTrial(fewer, forces, asked.unnamed_share, identified)
 
     def begins_again(tried: Tried) -> bool:
         in_place = of_free_numbers(base, tried.found[0].state)
         return again(augmented(in_place, tried.best.state))
 
-    about = fewer, quantities, identified, score, base.exact
-    ones = in_each_host(trial, hosts(*about, kinds=kinds), most, begins_again)
+    wanted = hosts(fewer, quantities, identified, score, base.exact, kinds=kinds)
+    ones = in_each_host(trial, wanted, most, begins_again)
     if ones is None:
         return None
-    tried = best_with_several(trial, *ones)
-    host, found, best, alone = tried.host, tried.found, tried.best, tried.host.alone
-    found = with_others_as_late(best, found, offer, score)
-    best = chosen(found, score.floor, share)
-    found = with_other_names(best, found, offer)
-    words = host.words
-    if identified and not LAGS.isdisjoint(best.effects):
-        found = with_lags_of_base(best, found, score)
-        best, alone = chosen(found, score.floor, share), found[0].state
-        words += ", with a lag"
-    if not best.effects:
+    tried = with_likenesses(trial, best_with_several(trial, *ones))
+    if not tried.best.effects:
         say("inside: no force pays")
-        if identified and fewer is start and not may_gain(best, score):
-            return without_forces(base, start, host, words, found, floor_rms)
+        if identified and fewer is start and not may_gain(tried.best, score):
+            return without_forces(base, start, tried, score.floor)
         return None
     if fewer is not start:
-        on_all = OnAll.of(start, score_of_all, alone, identified)
-        way = (found[0], *way_to(best, found))
-        place = [item is best for item in found].index(True)
-        found = on_all.hypotheses(found, way)
-        best = found[place]
-        alone = found[0].state if identified else on_all.state(alone)
-    re_tuned = found[0].state
-    state = in_short_steps(replace(best.state, offered=start.offered), score_of_all)
-    alone = replace(alone, offered=start.offered).settled()
-    before, after = lefts((start, alone), floor_rms, base.output.unit)
+        tried = on_all_samples(tried, start, score_of_all, identified)
+    return with_forces(base, start, tried, score_of_all)
+
+
+def with_likenesses(trial: HostTrial, tried: Tried) -> Tried:
+    """Add what may stand in the place of the effects that do best in a host.
+
+    That is what is as late, the same curve by another name, and the host with a lag.
+    """
+    host, offer, score = tried.host, trial.forces.offer, trial.score
+    tried = trial.of(host, with_others_as_late(tried.best, tried.found, offer, score))
+    tried = replace(tried, found=with_other_names(tried.best, tried.found, offer))
+    if trial.identified and not LAGS.isdisjoint(tried.best.effects):
+        found = with_lags_of_base(tried.best, tried.found, score)
+        host = replace(host, alone=found[0].state, words=f"{host.words}, with a lag")
+        tried = trial.of(host, found)
+    return tried
+
+
+def with_forces(base: Model, start: ModelState, tried: Tried, score: Score) -> Inside:
+    """Give a host with effects inside in place of a base, and tell what it does."""
+    host, found, floor = tried.host, tried.found, score.floor
+    state, alone, re_tuned = (
+        replace(x, offered=start.offered)
+        for x in (tried.best.state, host.alone, found[0].state)
+    )
+    state, alone = in_short_steps(state, score), alone.settled()
+    before, after = lefts((start, alone), floor, base.output.unit)
     sentence = (
-        f"{words}, and effects act inside it (without them it leaves {after} rms "
+        f"{host.words}, and effects act inside it (without them it leaves {after} rms "
         f"of the fit records above the noise floor, the base {before})"
     )
     if host.counts:
-        square = floor_rms**2
-        taken = re_tuned.share(start, square, max(start.power(square), square))
+        taken = re_tuned.share(start, floor, max(start.power(floor), floor))
         sentence += f"; its numbers fitted without them take {finely(taken)} of the gap"
-    if not identified:
+    if not is_identified_linear(base):
         sentence += re_tuning(alone, state)
     # The first rung is the host re-tuned, so that no effect has the credit of that.
-    rounds = as_rounds(replace(re_tuned, offered=start.offered).settled(), best, found)
+    rounds = as_rounds(re_tuned.settled(), tried.best, found)
     model = of_free_numbers(base, alone)
-    return Inside(
-        model, alone, Named(state, tuple(rounds)), sentence, host.counts, host.kind
-    )
+    named = Named(state, tuple(rounds))
+    return Inside(model, alone, named, sentence, host.counts, host.kind)
 
 
 def without_forces(
-    base: Model,
-    start: ModelState,
-    host: Host,
-    words: str,
-    found: Sequence[Fitted],
-    floor_rms: float,
+    base: Model, start: ModelState, tried: Tried, floor: float
 ) -> Inside:
     """Give a host that leaves nothing but noise in place of an identified base.
 
     It may begin as the base cannot: a store has a level of its own at the first sample,
     where a transfer function is at rest or settled.
     """
+    host, found = tried.host, tried.found
     alone = found[0].state.settled()
-    before, after = lefts((start, alone), floor_rms, base.output.unit)
+    before, after = lefts((start, alone), floor, base.output.unit)
     sentence = (
-        f"{words}; then {after} rms of the fit records is left above the noise floor, "
-        f"with the base {before}"
+        f"{host.words}; then {after} rms of the fit records is left above the noise "
+        f"floor, with the base {before}"
     )
     rounds = (not_taken(alone, found),) if len(found) > 1 else ()
     model = of_free_numbers(base, alone)
     return Inside(model, alone, Named(alone, rounds), sentence, host.counts, host.kind)
 
 
-def lefts(states: Iterable[ModelState], floor_rms: float, unit: str) -> list[str]:
+def lefts(states: Iterable[ModelState], floor: float, unit: str) -> list[str]:
     """Give in words what models leave above the noise floor."""
-    powers = (state.power(floor_rms**2) for state in states)
+    powers = (state.power(floor) for state in states)
     return [sized(float(np.sqrt(max(power, 0.0))), unit) for power in powers]
 
 
