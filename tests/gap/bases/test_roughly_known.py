@@ -1,7 +1,5 @@
 """Bases of a laboratory: numbers of a data sheet, channels not read at one time."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.signal import lfilter, lsim
@@ -225,10 +223,9 @@ def test_what_moved_most_is_told_with_the_timing():
     u = np.random.default_rng(1).normal(size=200)
     records = (record(u, dt=DT),)
     start, _ = start_state(records, roughly_known(base(), records), "linear")
-    chain = list(start.chain)
-    chain[0] = replace(chain[0], delay_s=chain[0].delay_s - 0.5 * DT)
-    chain[1] = replace(chain[1], value=2.88)
-    words = re_tuned_words(start, start.with_chain(tuple(chain)))
+    late = start.chain[0].delay_s - 0.5 * DT
+    tuned = start.with_values({0: {"delay_s": late}, 1: {"value": 2.88}})
+    words = re_tuned_words(start, tuned)
     assert words == "value moved most, by 4 %, its input counts as 0.5 samples early"
 
 

@@ -130,7 +130,7 @@ def test_a_refit_ends_where_a_plain_minimiser_does():
     after, value = refit(state, score)
 
     def plain(tau):
-        return score_of(state.with_chain(lagged(tau)), score)
+        return score_of(replace(state, chain=lagged(tau)), score)
 
     best = optimize.minimize_scalar(plain, bounds=(2e-3, 6e-3), method="bounded")
     assert value < best.fun + 0.1
@@ -166,18 +166,18 @@ def test_a_refit_takes_tangents_of_the_bases_numbers_where_it_has_come_far(
     for _ in range(8):
         every, best = refit(every, score, rounds=1)
     taken, moved = [], []
-    tangents, with_chain = ModelState.tangents_of, ModelState.with_chain
+    tangents, at = ModelState.tangents_of, ModelState.at
 
     def counted(self, numbers):
         taken.extend(numbers)
         return tangents(self, numbers)
 
-    def stepped(self, chain):
-        moved.append(chain)
-        return with_chain(self, chain)
+    def stepped(self, *values):
+        moved.append(values)
+        return at(self, *values)
 
     monkeypatch.setattr(ModelState, "tangents_of", counted)
-    monkeypatch.setattr(ModelState, "with_chain", stepped)
+    monkeypatch.setattr(ModelState, "at", stepped)
     _, value = refit(replace(state), score)
     assert value == pytest.approx(best, abs=PARAMETER / 10)
     assert len(taken) <= 2 * len(free) < 4 * len(free) <= len(moved) * len(free)

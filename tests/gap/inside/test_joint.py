@@ -79,7 +79,7 @@ def test_a_base_as_a_structure_does_what_it_did(base):
     np.testing.assert_allclose(
         whole.residual, base.residual, atol=1e-9 * np.ptp(base.measured)
     )
-    assert structure(base.with_chain((Gain(value=1.0),)), "position") is None
+    assert structure(replace(base, chain=(Gain(value=1.0),)), "position") is None
 
 
 @pytest.mark.parametrize("output", ["position", "velocity", "acceleration"])
@@ -90,7 +90,7 @@ def test_so_does_one_with_a_real_pole_and_what_passes_at_once(base, output):
     more = replace(
         block, numerator=tuple(up.tolist()), denominator=tuple(down.tolist())
     )
-    start = base.with_chain((more, *base.chain[1:]))
+    start = base.with_blocks({0: more})
     start = replace(start, correction=None).settled()
     whole = structure(start, output, others_too=True)
     assert [x.name for x in whole.chain] == ["structure", "other-modes", "gain"]
@@ -102,7 +102,7 @@ def test_so_does_one_with_a_real_pole_and_what_passes_at_once(base, output):
 @pytest.mark.parametrize("identified", [True, False])
 def test_the_offset_of_a_base_is_fitted_if_the_base_was_identified(base, identified):
     """A curve behind the modes has a mean, which such a base took for an offset."""
-    off = base.with_chain((*base.chain, Gain(value=1.0, offset=0.05)))
+    off = replace(base, chain=(*base.chain, Gain(value=1.0, offset=0.05)))
     whole = structure(off, "position", others_too=identified)
     place = len(whole.chain) - 1
     assert (Free(place, "offset") in whole.free) == identified

@@ -14,7 +14,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Filled
-from hystbench.gap.fitting.edit_chain import without_effect
+from hystbench.gap.fitting.edit_chain import rearranged, without_effect
 from hystbench.gap.fitting.least_squares import Fitted, judged
 from hystbench.gap.fitting.parameters import parameters_of
 from hystbench.gap.fitting.score import Score
@@ -242,7 +242,7 @@ def test_an_outflow_goes_out_again_from_behind_a_delay():
     late = InputDelay(delay_s=DT)
     state = best.state
     moved = {k: k + 1 for k in range(len(state.chain))}
-    behind = state.rearranged((late, *state.chain), moved)
+    behind = rearranged(state, (late, *state.chain), moved)
     short = without_effect(behind, 0)
     assert short.chain[0] == late
     assert all(store.exponent == 1.0 for store in short.chain[1:])

@@ -82,5 +82,5 @@ def test_hosts_of_one_kind_alone_are_given_when_asked(base):
 
 def test_a_base_of_two_poles_has_no_second_mass(base):
     block = TransferFunction(numerator=(1.0,), denominator=(1.0, 0.2, 40.0))
-    assert further_modes_of(base.with_chain((block, *base.chain[1:]))) == []
+    assert further_modes_of(base.with_blocks({0: block})) == []
     assert len(further_modes_of(base)) == 1

@@ -325,9 +325,7 @@ def test_the_augmented_model_keeps_limits_and_where_numbers_came_from():
     after = with_named(state, "asymmetry", "bias", bias=0.1, zero=-1.5)
     (place,) = (k for k, x in enumerate(after.chain) if x == chain[1])
     tuned = replace(chain[1], value=1.05)
-    after = after.with_chain(
-        tuple(tuned if k == place else x for k, x in enumerate(after.chain))
-    )
+    after = after.with_blocks({place: tuned})
     model = augmented(base, after)
     assert model.value("gain#3.value") == 1.05
     assert dict(model.tolerances) == {

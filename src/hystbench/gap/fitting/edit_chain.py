@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -56,7 +56,7 @@ def with_effect(state: ModelState, variant: Variant, values: Values) -> ModelSta
     smooths = any(
         chain[new] != state.chain[was] for was, new in zip(came, stays, strict=True)
     )
-    state = state.rearranged(chain, dict(zip(came, stays, strict=True)))
+    state = rearranged(state, chain, dict(zip(came, stays, strict=True)))
     numbers = (free for k in places for free in numbers_of(chain[k], k, variant))
     return replace(
         state,
@@ -84,7 +84,7 @@ def without_effect(state: ModelState, number: int) -> ModelState:
             chain.append(gone.replaced)
     smooths = gone.smooths
     taken = held_until_smooth(chain, "zero-order") if smooths else tuple(chain)
-    left = replace(state, added=rest).rearranged(taken, moved)
+    left = rearranged(replace(state, added=rest), taken, moved)
     return _without_joint(left, gone.blocks[0] - 1) if gone.blocks[0] else left
 
 
@@ -103,23 +103,58 @@ def _without_joint(state: ModelState, place: int) -> ModelState:
     acts = any(isinstance(block, Force) for block in behind[:1])
     if acts or not (isinstance(host, Structure) and shapes):
         return state
-    bare = replace(host, joint=())
-    chain = (*state.chain[:place], bare, *behind)
     free = tuple(x for x in state.free if x not in shapes)
-    return replace(state, chain=chain, free=free)
+    return replace(state, free=free).with_values({place: {"joint": ()}})
 
 
 def _with_old_numbers(
     state: ModelState, gone: Added, rest: tuple[Added, ...]
 ) -> ModelState:
     """Give blocks the numbers back that an effect changed, free as they were before."""
-    chain, changed = list(state.chain), gone.old_numbers
+    changed = gone.old_numbers
+    old: dict[int, dict[str, float]] = {}
     for (place, name), value in changed.items():
-        own = {name: value}
-        chain[place] = replace(chain[place], **own)
+        old.setdefault(place, {})[name] = value
     stays = (item for item in state.free if (item.block, item.parameter) not in changed)
     free = (*stays, *gone.was_free)
-    return replace(state, chain=tuple(chain), free=free, added=rest)
+    return replace(state, free=free, added=rest).with_values(old)
+
+
+def rearranged(
+    state: ModelState, chain: tuple[Block, ...], moved: Mapping[int, int]
+) -> ModelState:
+    """Give a model with its blocks at other places, in a chain of others too.
+
+    Free numbers and effects follow their blocks; what has no place any more goes.
+
+    Parameters
+    ----------
+    state : ModelState
+    chain : tuple of Block
+    moved : mapping of int to int
+        Places in it of the blocks that stay, by their places now.
+    """
+    return replace(
+        state,
+        chain=chain,
+        free=_moved_numbers(state.free, moved),
+        added=tuple(_moved_effect(item, moved) for item in state.added),
+    )
+
+
+def _moved_effect(item: Added, moved: Mapping[int, int]) -> Added:
+    """Give an effect whose blocks stand elsewhere; values name some by their place."""
+    values = {key: value for key, value in item.values.items() if "." not in key}
+    for (place, name), value in item.old_numbers.items():
+        if place in moved:
+            values[f"{moved[place]}.{name}"] = value
+    blocks = tuple(moved[k] for k in item.blocks if k in moved)
+    was_free = _moved_numbers(item.was_free, moved)
+    return item._replace(blocks=blocks, values=values, was_free=was_free)
+
+
+def _moved_numbers(free: Iterable[Free], moved: Mapping[int, int]) -> tuple[Free, ...]:
+    return tuple(x._replace(block=moved[x.block]) for x in free if x.block in moved)
 
 
 def last_to(state: ModelState, number: int) -> ModelState:

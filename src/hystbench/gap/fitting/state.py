@@ -329,36 +329,21 @@ class ModelState:
                 numbers = list(own.get(free.parameter, getattr(block, free.parameter)))
                 numbers[free.element] = value
                 own[free.parameter] = tuple(numbers)
-        chain = list(self.chain)
-        for place, own in new.items():
+        for own in new.values():
             if reflected and "denominator" in own:
                 own["denominator"] = stable(own["denominator"])
-            chain[place] = replace(chain[place], **own)
-        return self.with_chain(tuple(chain))
+        return self.with_values(new)
 
-    def with_chain(self, chain: tuple[Block, ...]) -> ModelState:
-        """Give the state with other values in its chain."""
-        return replace(self, chain=chain)
-
-    def rearranged(
-        self, chain: tuple[Block, ...], moved: Mapping[int, int]
-    ) -> ModelState:
-        """Give the state with its blocks at other places, in a chain of others too.
-
-        Free numbers and effects follow their blocks; what has no place any more goes.
-
-        Parameters
-        ----------
-        chain : tuple of Block
-        moved : mapping of int to int
-            Places in it of the blocks that stay, by their places now.
-        """
-        return replace(
-            self,
-            chain=chain,
-            free=_moved_numbers(self.free, moved),
-            added=tuple(_moved_effect(item, moved) for item in self.added),
+    def with_values(self, values: Mapping[int, Mapping[str, Any]]) -> ModelState:
+        """Give the state with other numbers in its blocks, by place."""
+        return self.with_blocks(
+            {k: replace(self.chain[k], **own) for k, own in values.items()}
         )
+
+    def with_blocks(self, blocks: Mapping[int, Block]) -> ModelState:
+        """Give the state with other blocks at some places of its chain."""
+        chain = tuple(blocks.get(k, block) for k, block in enumerate(self.chain))
+        return replace(self, chain=chain)
 
     def _change(self, k: int, by: float) -> FloatArray:
         """How the output changes where one free number is another."""
@@ -379,21 +364,6 @@ class ModelState:
         # A tolerance may leave less room than that.
         size = min(size, (free.high - free.low) / 4)
         return -size if value + size > self.range_of(free)[1] else size
-
-
-def _moved_effect(item: Added, moved: Mapping[int, int]) -> Added:
-    """Give an effect whose blocks stand elsewhere; values name some by their place."""
-    values = {key: value for key, value in item.values.items() if "." not in key}
-    for (place, name), value in item.old_numbers.items():
-        if place in moved:
-            values[f"{moved[place]}.{name}"] = value
-    blocks = tuple(moved[k] for k in item.blocks if k in moved)
-    was_free = _moved_numbers(item.was_free, moved)
-    return item._replace(blocks=blocks, values=values, was_free=was_free)
-
-
-def _moved_numbers(free: Iterable[Free], moved: Mapping[int, int]) -> tuple[Free, ...]:
-    return tuple(x._replace(block=moved[x.block]) for x in free if x.block in moved)
 
 
 def _stack(columns: Sequence[FloatArray], rows: int) -> FloatArray:

@@ -111,10 +111,9 @@ def relieved(
     Of a structure that much at the joint: each mode loses it as far as it moves that.
     A share of them stays in any case.
     """
-    chain = list(state.chain)
-    host: Any = chain[place]
+    host: Any = state.chain[place]
     shape = np.array(host.joint) if isinstance(host, Structure) else np.ones(1)
-    values = {}
+    values: dict[str, Any] = {}
     for name, less in (("stiffness", spring), ("damping", damper)):
         free = _unknown(state, place).get(name)
         if free is None:
@@ -125,8 +124,7 @@ def relieved(
         values[name] = (
             tuple(left.tolist()) if isinstance(host, Structure) else float(left[0])
         )
-    chain[place] = replace(host, **values)
-    return state.with_chain(tuple(chain))
+    return state.with_values({place: values})
 
 
 def without_spring(state: ModelState, place: int) -> ModelState:
@@ -136,10 +134,8 @@ def without_spring(state: ModelState, place: int) -> ModelState:
         return state
     if host.start not in free_starts(host.output) or host.stiffness == 0.0:
         return state
-    chain = list(state.chain)
-    chain[place] = replace(host, stiffness=0.0)
-    free = [x for x in state.free if (x.block, x.parameter) != (place, "stiffness")]
-    return replace(state.with_chain(tuple(chain)), free=tuple(free))
+    free = (x for x in state.free if (x.block, x.parameter) != (place, "stiffness"))
+    return replace(state.with_values({place: {"stiffness": 0.0}}), free=tuple(free))
 
 
 def _as_strong(state: ModelState, place: int) -> ModelState:
@@ -150,18 +146,16 @@ def _as_strong(state: ModelState, place: int) -> ModelState:
     times = float(np.sqrt(behind / before)) if before > 0 else 1.0
     if not (np.isfinite(times) and times > 0):
         return state
-    chain = list(state.chain)
-    for k, block in enumerate(chain):
+    values: dict[int, dict[str, Any]] = {}
+    for k, block in enumerate(state.chain):
         if isinstance(block, Mechanism):
-            chain[k] = replace(block, gain=block.gain / times)
+            values[k] = {"gain": block.gain / times}
         elif isinstance(block, Structure):
             constants = tuple(x / times for x in block.modal_constant)
-            passes = block.direct / times
-            chain[k] = replace(block, modal_constant=constants, direct=passes)
+            values[k] = {"modal_constant": constants, "direct": block.direct / times}
         elif isinstance(block, OtherModes):
-            up = tuple(x / times for x in block.numerator)
-            chain[k] = replace(block, numerator=up)
-    return state.with_chain(tuple(chain))
+            values[k] = {"numerator": tuple(x / times for x in block.numerator)}
+    return state.with_values(values)
 
 
 def _unknown(state: ModelState, place: int) -> dict[str, Free]:

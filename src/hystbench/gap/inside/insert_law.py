@@ -17,6 +17,7 @@ from hystbench.blocks.store import Store
 from hystbench.gap.effects import among
 from hystbench.gap.effects.effect import goes_both_ways, start_of
 from hystbench.gap.effects.law import Changed, Filled, Law, Moved, Passed
+from hystbench.gap.fitting.edit_chain import rearranged
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.average_force import (
@@ -173,7 +174,7 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
         block = replace(block, start=begun)
     chain = (*base[:place], block, *base[place:])
 
-    state = state.rearranged(chain, {k: k + (k >= place) for k in range(len(base))})
+    state = rearranged(state, chain, {k: k + (k >= place) for k in range(len(base))})
     free = list(state.free)
     for name in law.free:
         low, high = law.ranges.get(name, (-np.inf, np.inf))
@@ -189,14 +190,11 @@ def with_changed(state: ModelState, effect: str, changed: Changed) -> ModelState
 
     The tolerance of such a number is dropped.
     """
-    chain = list(state.chain)
     old = {
-        f"{place}.{name}": float(getattr(chain[place], name))
+        f"{place}.{name}": float(getattr(state.chain[place], name))
         for place, values in changed.values.items()
         for name in values
     }
-    for place, values in changed.values.items():
-        chain[place] = replace(chain[place], **values)
     places = tuple(changed.values)
     was_free = tuple(x for x in state.free if f"{x.block}.{x.parameter}" in old)
     free = tuple(
@@ -206,6 +204,5 @@ def with_changed(state: ModelState, effect: str, changed: Changed) -> ModelState
     more = tuple(x for x in (Free(*own) for own in changed.free) if x not in free)
     charge = max(float(len(more)), 1.0)
     item = Added(effect, "inside", changed.form, places, old, charge, was_free=was_free)
-    return replace(
-        state, chain=tuple(chain), free=(*free, *more), added=(*state.added, item)
-    )
+    state = replace(state, free=(*free, *more), added=(*state.added, item))
+    return state.with_values(changed.values)

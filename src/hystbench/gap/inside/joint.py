@@ -147,12 +147,11 @@ def joints(state: ModelState) -> Iterator[ModelState]:
         shares = np.full(count, LITTLE)
         shares[list(moved)] = list(moved.values())
         first = next(iter(moved))
-        chain = list(state.chain)
-        chain[place] = replace(host, joint=tuple((shares * drive).tolist()))
+        joint = {"joint": tuple((shares * drive).tolist())}
         others = (k for k in range(count) if k != first)
         shapes = (Free(place, name, k) for k in others for name in SHAPES)
         free = (*state.free, *shapes)
-        yield replace(state.with_chain(tuple(chain)), free=free)
+        yield replace(state.with_values({place: joint}), free=free)
 
 
 def has_no_joint(block: Block) -> bool:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.fitting.edit_chain import without_effect
@@ -82,12 +81,11 @@ def _beside_known(state: ModelState, host: ModelState) -> ModelState:
     """Give a host of a model with forces its known numbers back, or about."""
     place, was = host_of(state), host_of(host)
     about = [x for x in host.free if x.block == was]
-    chain: list[Any] = list(state.chain)
-    found = chain[place]
-    chain[place] = host.chain[was]
+    found = state.chain[place]
     others = (x for x in state.free if x.block != place)
     own = tuple(x._replace(block=place) for x in about)
-    known = replace(state, free=(*others, *own)).with_chain(tuple(chain))
+    known = replace(state, free=(*others, *own))
+    known = known.with_blocks({place: host.chain[was]})
     moved = {
         k: float(getattr(found, free.parameter))
         for k, free in enumerate(known.free)

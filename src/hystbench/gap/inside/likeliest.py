@@ -174,11 +174,10 @@ def _vanishes(item: Fitted, score: Score) -> bool:
         effect = effects()[added.effect]
         for place in added.blocks:
             for block, name in effect.vanishing(added.form, state.chain[place]):
-                chain = (*state.chain[:place], block, *state.chain[place + 1 :])
                 free = (
                     x for x in state.free if (x.block, x.parameter) != (place, name)
                 )
-                bare = replace(state.with_chain(chain), free=tuple(free))
+                bare = replace(state.with_blocks({place: block}), free=tuple(free))
                 if fitted(bare, score, FEW).score < item.score + SCALE:
                     return True
     return False

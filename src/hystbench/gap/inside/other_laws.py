@@ -51,8 +51,7 @@ def _begun(state: ModelState) -> Iterator[ModelState]:
 
 
 def _with(state: ModelState, number: int, place: int, law: Law) -> ModelState:
-    chain, every = list(state.chain), list(state.added)
-    chain[place] = law.block
+    every = list(state.added)
     fewer = sum(x.block == place for x in state.free) - len(law.free)
     own = (x for x in state.free if x.block != place or x.parameter in law.free)
     added = every[number]
@@ -61,4 +60,5 @@ def _with(state: ModelState, number: int, place: int, law: Law) -> ModelState:
         values={name: getattr(law.block, name) for name in law.free},
         charge=added.charge - fewer,
     )
-    return replace(state, chain=tuple(chain), free=tuple(own), added=tuple(every))
+    state = replace(state, free=tuple(own), added=tuple(every))
+    return state.with_blocks({place: law.block})

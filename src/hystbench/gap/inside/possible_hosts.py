@@ -27,6 +27,7 @@ from hystbench.blocks.structure import Structure
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.bases.roughly_known import stated
+from hystbench.gap.fitting.edit_chain import rearranged
 from hystbench.gap.fitting.least_squares import Fitted, fitted
 from hystbench.gap.fitting.on_records import free_within
 from hystbench.gap.fitting.score import Score
@@ -197,12 +198,10 @@ def _in_time(one: Fitted, score: Score) -> Iterator[Host]:
 def _with_timing(state: ModelState) -> ModelState:
     """Let a model of one coordinate take its input late, in place of a zero."""
     place = host_of(state)
-    block = state.chain[place]
-    if isinstance(block, Mechanism):
+    if isinstance(state.chain[place], Mechanism):
         free = (x for x in state.free if (x.block, x.parameter) != (place, "blend"))
-        chain = list(state.chain)
-        chain[place] = replace(block, blend=0.0)
-        state = replace(state.with_chain(tuple(chain)), free=tuple(free))
+        state = state.with_values({place: {"blend": 0.0}})
+        state = replace(state, free=tuple(free))
     return with_free_timing(state)
 
 
@@ -232,7 +231,7 @@ def _behind(start: ModelState) -> ModelState:
 def _without_timing(start: ModelState) -> ModelState:
     """Give a base without the timing of its input, on the records as they are."""
     moved = {k: k - 1 for k in range(1, len(start.chain))}
-    return start.rearranged(start.chain[1:], moved).settled()
+    return rearranged(start, start.chain[1:], moved).settled()
 
 
 def _in_front(delay: Block, start: ModelState, state: ModelState) -> ModelState:
@@ -339,7 +338,8 @@ def _split(state: ModelState, frequency: float, share: float) -> ModelState:
         damping=2 * RATIO * frequency * reduced,
         stiffness=frequency**2 * reduced,
     )
-    split = state.rearranged(
+    split = rearranged(
+        state,
         (replace(whole, mass=own), other, *behind),
         {k: k + (k > 0) for k in range(len(state.chain))},
     )
@@ -356,9 +356,7 @@ def _sized(state: ModelState) -> ModelState | None:
     gain = float(np.linalg.lstsq(columns, state.measured, rcond=1e-10)[0][0])
     if gain <= 0.0:
         return None
-    return state.with_chain(
-        (*(_over(x, gain) for x in state.chain[:2]), *state.chain[2:])
-    )
+    return state.with_blocks({k: _over(state.chain[k], gain) for k in (0, 1)})
 
 
 def _over(block: Block, gain: float) -> Block:

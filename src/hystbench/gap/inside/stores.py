@@ -137,7 +137,7 @@ def in_other_order(state: ModelState) -> Iterator[ModelState]:
         replace(upper, rate=last.rate, start_level=level),
         replace(last, rate=upper.rate, gain=last.gain * ratio),
     )
-    yield state.with_chain((upper, last))
+    yield replace(state, chain=(upper, last))
 
 
 STORES = {1: "a store stands", 2: "two stores in series stand"}

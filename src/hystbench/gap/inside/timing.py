@@ -11,6 +11,7 @@ from dataclasses import replace
 from hystbench.blocks.base import Block
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.other_modes import OtherModes
+from hystbench.gap.fitting.edit_chain import rearranged
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.score import Score
@@ -101,7 +102,7 @@ def _shift(block: Block) -> float:
 def in_front(block: Block, state: ModelState) -> ModelState:
     """Put a block before all others of a model."""
     moved = {k: k + 1 for k in range(len(state.chain))}
-    return state.rearranged((block, *state.chain), moved)
+    return rearranged(state, (block, *state.chain), moved)
 
 
 def with_free_timing(found: ModelState) -> ModelState:
@@ -113,7 +114,7 @@ def with_free_timing(found: ModelState) -> ModelState:
     first = found.chain[0]
     if isinstance(first, InputDelay):
         late = replace(first, delay_s=first.delay_s + step, lead_s=first.lead_s + step)
-        state = found.with_chain((late, *found.chain[1:]))
+        state = found.with_blocks({0: late})
     else:
         late = InputDelay(delay_s=step, lead_s=step, hold=found.hold)
         state = in_front(late, found)

@@ -12,6 +12,7 @@ from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.bases.linear import with_its_numbers_free
+from hystbench.gap.fitting.edit_chain import rearranged
 from hystbench.gap.fitting.model_score import score_of, score_of_numbers
 from hystbench.gap.fitting.refit import finished_to_the_end
 from hystbench.gap.fitting.score import Score
@@ -97,7 +98,7 @@ def named_beside_them(
         chain[place] = block
     moved = {x.place: k for k, x in enumerate(pieces) if not x.of_base}
     others = tuple(x for k, x in enumerate(state.added) if k not in linear)
-    state = replace(state, added=others).rearranged(tuple(chain), moved)
+    state = rearranged(replace(state, added=others), tuple(chain), moved)
     free = (item._replace(block=own[item.block]) for item in start.free)
     state = replace(state, free=(*free, *state.free), correction=None).settled()
     state = finished_to_the_end(state, score_of_numbers(state, floor_rms))

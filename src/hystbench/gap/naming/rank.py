@@ -342,10 +342,7 @@ def does_without_itself(
     bare = effects()[item.effect].without_itself([state.chain[k] for k in item.blocks])
     if bare is None:
         return False
-    chain = list(state.chain)
-    for place, block in zip(item.blocks, bare, strict=True):
-        chain[place] = block
-    without = state.with_chain(tuple(chain))
+    without = state.with_blocks(dict(zip(item.blocks, bare, strict=True)))
     free = tuple(
         x for x in state.free if x.block not in item.blocks or without.value(x) != 0.0
     )
