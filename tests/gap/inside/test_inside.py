@@ -804,7 +804,7 @@ def test_fewer_effects_of_a_chain_stand_where_they_leave_as_little(
     named = "drift" if form else "eddy-diffusion"
     law = Added(named, "sensor", form, (), {}, 1.0)
     force = Added("friction", "inside", "", (), {}, 1.0)
-    gap = SimpleNamespace(power=lambda floor: 100 * state.power(floor))
+    gap = SimpleNamespace(gap=lambda floor: 100 * state.power(floor))
     before = SimpleNamespace(before=gap)
     inside = Inside(None, state, Named(replace(state, added=(force,) * forces), ()), "")
     given = Named(replace(state, added=(law,) * chain), (before,))

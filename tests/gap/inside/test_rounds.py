@@ -84,6 +84,8 @@ class Told(SimpleNamespace):
     def power(self, floor):
         return self.left - floor
 
+    gap = power
+
     def share(self, other, floor, gap):
         return (other.power(floor) - self.power(floor)) / gap
 
@@ -415,6 +417,7 @@ def test_a_law_of_many_numbers_is_no_rival_of_few_that_leave_as_little(
         return SimpleNamespace(
             added=tuple(map(effect, charges)),
             power=lambda floor: power,
+            gap=lambda floor: power,
             share=lambda other, floor, gap: (other.power(floor) - power) / gap,
         )
 

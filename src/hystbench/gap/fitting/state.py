@@ -282,6 +282,10 @@ class ModelState:
         """Mean square of the residual above the floor, of the records alike."""
         return float(np.mean(self.squares)) - floor
 
+    def gap(self, floor: float) -> float:
+        """Give its power as a gap that shares are taken of: the noise's at least."""
+        return max(self.power(floor), floor)
+
     @cached_property
     def steps(self) -> tuple[float, ...]:
         """A small change of each free number, inside its bounds."""

@@ -34,7 +34,7 @@ def charged(
     A further one must take a share of the gap that matters, or be beyond doubt: what is
     left after the right force is also what its law, or the simulation, misses.
     """
-    gap, value = max(found[0].state.power(floor), floor), item.score
+    gap, value = found[0].state.gap(floor), item.score
     for before, after in pairwise((found[0], *way_to(item, found))):
         taken = after.state.share(before.state, floor, gap)
         value += for_a_further(taken, share) if before.effects else PAYS

@@ -170,7 +170,7 @@ def with_forces(base: Model, start: ModelState, tried: Tried, score: Score) -> I
         f"of the fit records above the noise floor, the base {before})"
     )
     if host.counts:
-        taken = re_tuned.share(start, floor, max(start.power(floor), floor))
+        taken = re_tuned.share(start, floor, start.gap(floor))
         sentence += f"; its numbers fitted without them take {finely(taken)} of the gap"
     if not is_identified_linear(base):
         sentence += re_tuning(alone, state)
@@ -325,8 +325,7 @@ def _no_better(
     state: ModelState, other: ModelState, named: Named, floor: float
 ) -> bool:
     """Tell whether a model takes no more of the gap than another one does as well."""
-    gap = max(named.rounds[0].before.power(floor), floor)
-    return state.share(other, floor, gap) < AS_GOOD
+    return state.share(other, floor, named.rounds[0].before.gap(floor)) < AS_GOOD
 
 
 def quantities_if_linear(base: Model, evidence: Evidence) -> Quantities | None:

@@ -176,7 +176,7 @@ def what_is_unnamed(
         What may stay: of what sort it is, is looked for where more does.
     """
     floor = floor_rms**2
-    power = max(base.power(floor), floor)
+    power = base.gap(floor)
     own, generic = owned(state), generic_groups(base, state)
     changing: dict[str, FloatArray] = {}
     slow_power: dict[str, FloatArray] = {}

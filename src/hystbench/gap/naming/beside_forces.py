@@ -39,12 +39,11 @@ def beside_forces(
         Of the gap, that may stay unnamed.
     say : callable
     """
-    floor = floor_rms**2
     state, gone = without_what_goes(named.state, floor_rms, None, say)
     if gone:  # what went was judged beside other forms of those that stay
         state = finished_to_the_end(state, make_score(state, floor_rms, forms=False))
     named = replace(named, state=state, gone=(*named.gone, *gone))
-    gap = max(start.power(floor), floor)
+    gap = start.gap(floor_rms**2)
     while (more := _with_one_beside(named, floor_rms, gap, share)) is not None:
         if len(more.rounds) > len(named.rounds):
             first = more.rounds[-1].ranking[0]
