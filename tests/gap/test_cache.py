@@ -38,7 +38,7 @@ def searched(given, store, offered=FEW):
         state, floor = start_state(
             evidence.fit, base, evidence.input_hold, evidence.noise_rms, offered
         )
-        ranking = rank(state, make_score(state, floor.rms))
+        ranking = rank(state, make_score(state, floor))
     return [
         (x.effect, x.form, x.score, x.gain, x.held_back, x.state and x.state.chain)
         for x in ranking

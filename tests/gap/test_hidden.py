@@ -46,7 +46,7 @@ def first_round(name, family, offered):
     """The ranking of one round beside a base."""
     records, base = hidden((name,), family)
     state, floor = start_state(records, base, offered=offered)
-    return rank(state, make_score(state, floor.rms))
+    return rank(state, make_score(state, floor))
 
 
 def told(ranking):
@@ -89,10 +89,10 @@ def verdict(names, family, offered=None):
     """What the search says, round after round: the word, and the effects by name."""
     records, base = hidden(names, family)
     start, floor = start_state(records, base, offered=offered)
-    state = naming.add_effects(start, floor.rms, Asked()).state
-    left = what_is_left(start, state, floor.rms)
+    state = naming.add_effects(start, floor, Asked()).state
+    left = what_is_left(start, state, floor)
     bound = floor.method == "upper-bound"
-    unnamed = what_is_unnamed(start, state, floor.rms)
+    unnamed = what_is_unnamed(start, state, floor)
     word, _ = judge(
         left, bool(state.added), floor_is_upper_bound=bound, unnamed=unnamed
     )

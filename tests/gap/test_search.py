@@ -241,7 +241,7 @@ def test_all_members_of_all_sets_are_told_apart_by_one_excitation(alike, monkeyp
 
     monkeypatch.setattr(Model, "simulate", counted)
     experiment, why = tell_apart.tell_apart(
-        base, Named(whole, rounds), start.records, floor.rms, None
+        base, Named(whole, rounds), start.records, floor, None
     )
     assert not why
     assert list(experiment.pairs) == [
@@ -298,19 +298,19 @@ def test_forces_have_to_be_fewer_than_what_leaves_nothing(alike, effects, most):
     _, _, floor, found = alike
     state = found["sensor-lag"]
     named = Named(replace(state, added=state.added * effects), ())
-    assert most_inside(named, floor.rms) == most
+    assert most_inside(named, floor) == most
     # Where a gap is left as many may be more as could pay for themselves.
     base = replace(named, state=alike[1])
     score = Score.plain(base.state.sample, floor.rms**2)
     left = score_of(base.state, score) - score.least(base.state.freedom)
     there = len(base.state.added)
-    assert most_inside(base, floor.rms) == there + (left - PAYS) // FURTHER > there
+    assert most_inside(base, floor) == there + (left - PAYS) // FURTHER > there
     # A path bends to whatever is there, and leaves nothing to any law. So do plays.
     path = state.added[0]._replace(effect="drift", form="winding path")
     plays = state.added[0]._replace(effect="hysteresis", charge=16.0)
     for bends in (path, plays):
         free = replace(named, state=replace(state, added=(bends,)))
-        assert most_inside(free, floor.rms) == np.inf
+        assert most_inside(free, floor) == np.inf
 
 
 def test_a_path_that_leaves_nothing_is_no_reason_to_try_no_forces(monkeypatch):

@@ -51,7 +51,7 @@ def test_an_effect_that_is_not_offered_is_not_tried(tiny):
     state, floor = start_state(
         evidence.fit, load_model(base), evidence.input_hold, evidence.noise_rms, offered
     )
-    ranking = rank(state, make_score(state, floor.rms), folds=False)
+    ranking = rank(state, make_score(state, floor), folds=False)
     assert {item.effect for item in ranking} == {*offered}
 
 

@@ -70,8 +70,8 @@ class BesideBase:
         one of them names it.
         """
         if self.named.state.has_shape or other.named.state.has_shape:
-            return Score.plain(self.start.sample, self.floor.rms**2)
-        return make_score(self.start, self.floor.rms, forms=False)
+            return Score.plain(self.start.sample, self.floor.square)
+        return make_score(self.start, self.floor, forms=False)
 
     @property
     def margin(self) -> float:
@@ -144,13 +144,13 @@ def stays(found: BesideBase, again: BesideBase, re_tuned: bool = False) -> bool:
 
 def leaves_much(state: ModelState, start: ModelState, floor: Floor) -> bool:
     """Tell whether effects leave more of the base's gap than a name may."""
-    square = floor.rms**2
+    square = floor.square
     return state.power(square) > LOOSE * start.power(square)
 
 
 def _by_laws_of_fewer_numbers(found: BesideBase, again: BesideBase) -> bool:
     """Tell whether a re-tuned base needs no laws of many numbers for as little left."""
-    square = found.floor.rms**2
+    square = found.floor.square
     return (
         again.laws_of_many_numbers < found.laws_of_many_numbers
         and again.counts <= found.counts

@@ -43,12 +43,11 @@ def identified_again(
     offered : collection of str
         Effects that the device may have.
     """
-    floor = found.floor.rms
-    freed = freed_of_laws(found.base, named, evidence, floor)
+    freed = freed_of_laws(found.base, named, evidence, found.floor)
     latest = _in_turns(found, freed, evidence, named_beside, say)
     laws = without(found.named.state, found.named.state.paths)  # a path is no law
     if latest is found and leaves_much(laws, found.start, found.floor):
-        freed = freed_of_slow_law(found.base, evidence, floor, offered)
+        freed = freed_of_slow_law(found.base, evidence, found.floor, offered)
         latest = _in_turns(found, freed, evidence, named_beside, say)
     return latest
 
@@ -74,7 +73,7 @@ def _in_turns(
         if turn and stays(latest, again):
             break
         latest = again
-        freed = freed_of_laws(found.base, again.named, evidence, found.floor.rms)
+        freed = freed_of_laws(found.base, again.named, evidence, found.floor)
     if latest is not found and stays(found, latest):
         say("that explains no more: the base stays")
         return found

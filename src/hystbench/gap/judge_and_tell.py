@@ -82,11 +82,11 @@ def judge_and_tell(
     say, share = asked.say, asked.unnamed_share
     around = found.inside or found  # what the effects are in
     base, start, floor, named = around.base, around.start, found.floor, found.named
-    left = what_is_left(start, named.state, floor.rms)
+    left = what_is_left(start, named.state, floor)
     if named.state.added and left.little_named:
         say(f"{LITTLE}: none named")
         named = named.taken_back()
-        left = what_is_left(start, named.state, floor.rms)
+        left = what_is_left(start, named.state, floor)
     state, model = named.state, augmented(base, named.state)
     before, after = compared_records(start), compared_records(state)
     left = replace(
@@ -108,7 +108,7 @@ def judge_and_tell(
     moved = beside_level(where, places, closed=left.share <= share)
     moved = "" if judged.verdict == "no-gap" else moved
     reason = "; ".join(part for part in (judged.reason, moved) if part)
-    experiment, why_none = tell_apart(base, named, start.records, floor.rms, limits)
+    experiment, why_none = tell_apart(base, named, start.records, floor, limits)
     unit = start.records[0].output.unit
     content: dict[str, Any] = {
         "dataset": dataset,
@@ -168,7 +168,7 @@ def _judged(
 ) -> _Judged:
     """Give the verdict on what was named, and say why."""
     state = named.state
-    unnamed = what_is_unnamed(start, state, floor.rms, share)
+    unnamed = what_is_unnamed(start, state, floor, share)
     bound = floor.method == "upper-bound"
     size_tells = bound or left.is_new or unnamed.follows_nothing
     verdict, why = judge(
@@ -203,7 +203,7 @@ def _effects(
     """Tell the effects with their numbers and errors."""
     state, by_effect = named.state, named.reasons
     finer = on_more_samples(state)
-    score = make_score(finer, floor.rms, forms=False)
+    score = make_score(finer, floor, forms=False)
     errors, of_beside = standard_errors(finer, score), beside_errors(finer, score)
     rows = [
         effect_mapping(
@@ -213,7 +213,7 @@ def _effects(
             of_beside,
             by_effect.get(item.effect, ()),
             left,
-            size_error(finer, floor.rms**2, number),
+            size_error(finer, floor.square, number),
             trust,
         )
         | {"blocks": blocks_of(item, state, model)}
@@ -256,7 +256,7 @@ def _fit(
     start: ModelState, state: ModelState, floor: Floor, left: Leftover
 ) -> dict[str, Any]:
     """Tell what is gone on the fit records, and how much no other record knows."""
-    square = floor.rms**2
+    square = floor.square
     before, after = (each.power(square) for each in (start, state))
     alone = replace(state, beside=()).power(square)
     there = before > 0

@@ -25,6 +25,7 @@ from hystbench.gap.inside.one_coordinate import best_host, one_coordinate
 from hystbench.gap.judge_and_tell import Decision
 from hystbench.gap.naming.ladder import FitResult
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.observer import observed, observer_for
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.vocabulary import Vocabulary
@@ -147,13 +148,13 @@ class FreeRun:
             With which an unknown velocity dies out without it, in windows of a free
             mass.
         """
-        state, noise = found.state, found.floor.rms**2
+        state, noise = found.state, found.floor.square
         alone = tuple(
             replace(record, injected=None, decay_s=decay_s) for record in state.records
         )
         chain, sample = without_damper(state.chain, damper), ScoredSamples.of(alone)
         free = on_records(replace(state, chain=chain, sample=sample), alone)
-        errors = _errors(state, found.floor.rms)
+        errors = _errors(state, found.floor)
         beside = _moved(state, errors)
         growth = _moved(free, errors) / beside if beside > 0.0 else 1.0
         return cls(noise, max(free.power(noise), 0.0), growth)
@@ -164,10 +165,10 @@ class FreeRun:
         return self.left <= self.growth * self.noise
 
 
-def _errors(state: ModelState, floor_rms: float) -> dict[int, float]:
+def _errors(state: ModelState, floor: Floor) -> dict[int, float]:
     """Give standard errors of the free numbers that the records tell of."""
     finer = on_more_samples(state)
-    errors = standard_errors(finer, make_score(finer, floor_rms, forms=False))
+    errors = standard_errors(finer, make_score(finer, floor, forms=False))
     return {k: float(x) for k, x in enumerate(errors) if np.isfinite(x)}
 
 

@@ -169,7 +169,7 @@ class GapSearch:
         It does if the other effects are then named, and nothing else.
         """
         state, say = found.named.state, self.asked.say
-        begun = begun_as_named(found.base, state, self.evidence.fit, found.floor.rms)
+        begun = begun_as_named(found.base, state, self.evidence.fit, found.floor)
         if begun is None:
             return found
         say("the records may begin otherwise: naming beside that")
@@ -191,9 +191,9 @@ class GapSearch:
             return found
         records, say = found.start.records, self.asked.say
         begun = self.started(records, base)
-        alone, _ = finished(begun.start, make_score(begun.start, begun.floor.rms))
+        alone, _ = finished(begun.start, make_score(begun.start, begun.floor))
         begun = self.started(records, replace(base, chain=alone.chain))
-        chain = named_beside_them(found.named, begun.start, begun.floor.rms, say)
+        chain = named_beside_them(found.named, begun.start, begun.floor, say)
         if chain is None:
             return found
         say("the base may have the poles that were named: they are no effect")
@@ -209,7 +209,7 @@ class GapSearch:
 
         @cache
         def named(start: ModelState, floor: Floor) -> Named:
-            return add_effects(start, floor.rms, self.asked)
+            return add_effects(start, floor, self.asked)
 
         def in_a_chain(found: BesideBase) -> Named:
             return named(found.start, found.floor)
@@ -227,7 +227,7 @@ class GapSearch:
         if known or (quantities is not None and not identified):
             chain = in_a_chain(found)
             enough = known and _why_enough(found.start, chain.state, found.floor, share)
-            none_could = enough or most_inside(chain, found.floor.rms) < 1
+            none_could = enough or most_inside(chain, found.floor) < 1
             if quantities is not None and none_could:
                 say("no force could gain what matters, so none is tried inside")
                 quantities = None
@@ -245,7 +245,7 @@ class GapSearch:
         if inside is None and in_a_chain(found).state.added:
             found = without_its_leads(found)
         chain = in_a_chain(found)
-        if inside is not None and not beats_chain(inside, chain, found.floor.rms, say):
+        if inside is not None and not beats_chain(inside, chain, found.floor, say):
             inside = None
         return replace(found, chain=chain, inside=inside)
 
@@ -266,7 +266,7 @@ class GapSearch:
         found, say = whole, self.asked.say
 
         def most() -> float:
-            return most_inside(in_a_chain(whole), whole.floor.rms)
+            return most_inside(in_a_chain(whole), whole.floor)
 
         def shows_leads(model: Model) -> bool:
             nonlocal found
@@ -280,7 +280,7 @@ class GapSearch:
             inside = named_inside(
                 whole.base,
                 start,
-                found.floor.rms,
+                found.floor,
                 quantities,
                 asked=self.asked,
                 most=most,
@@ -303,10 +303,10 @@ class GapSearch:
             and self.evidence.own_offsets
             and leaves_much(in_a_chain(whole).state, whole.start, whole.floor)
         ):
-            start, inside, own = apart_inside(start, inside, floor.rms, forces, say)
+            start, inside, own = apart_inside(start, inside, floor, forces, say)
         if inside is None:
             return whole
-        if not beats_base(inside, start, floor.rms):
+        if not beats_base(inside, start, floor):
             say("inside: what stands for the base leaves more than the base does")
             return whole
         start, inside, own = self.not_of_the_input(start, floor, inside, own)
@@ -317,10 +317,10 @@ class GapSearch:
     ) -> tuple[ModelState, Inside, OwnValues]:
         """Name beside forces what the input does not explain: signals, or offsets."""
         say, share = self.asked.say, self.asked.unnamed_share
-        beside = beside_forces(inside.named, inside.start, floor.rms, share, say)
+        beside = beside_forces(inside.named, inside.start, floor, share, say)
         inside = replace(inside, named=beside)
         if beside.state.paths and self.evidence.own_offsets and not own.records:
-            start, named, own = offsets_for_paths(start, beside, floor.rms, say)
+            start, named, own = offsets_for_paths(start, beside, floor, say)
             alone = on_records(inside.start, start.records)
             inside = replace(inside, start=alone, named=named)
         return start, inside, own
@@ -329,7 +329,7 @@ class GapSearch:
 def _in_better_time(found: BesideBase) -> Model | None:
     """Give an identified base with the timing that effects show, if that is another."""
     tried = found.tried
-    better = tried and better_timed(found.base, tried.named.state, found.floor.rms)
+    better = tried and better_timed(found.base, tried.named.state, found.floor)
     return better or timed_as_named(found.base, found.named.state)
 
 
@@ -340,11 +340,11 @@ def _apart(found: BesideBase, asked: Asked) -> BesideBase:
     inside, floor = found.inside, found.floor
     if _leaves_little(inside, floor):
         return found
-    start, chain, own = named_apart(found.start, floor.rms, found.chain, asked)
+    start, chain, own = named_apart(found.start, floor, found.chain, asked)
     if (
         inside is not None
         and own.records
-        and not beats_chain(inside, chain, floor.rms, asked.say)
+        and not beats_chain(inside, chain, floor, asked.say)
     ):
         inside = None
     own = found.own if inside is not None else own
@@ -369,7 +369,7 @@ def _why_enough(
     """
     if has_free_form(state):
         return ""
-    square = floor.rms**2
+    square = floor.square
     before, after = start.power(square), state.power(square)
     if after < square:
         return "less than the noise's own power is left above it"

@@ -17,12 +17,14 @@ from hystbench.gap.naming import rank as ranked
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.naming.rivals import on_folds
 from hystbench.gap.naming.rounds import Candidate
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.folds import make_folds
 from hystbench.gap.thresholds import CERTAIN, PARAMETER, PAYS, SCALE
 from tests.gap.made import multisine, record, steady
 from tests.gap.small import block, plain_score, state_of
 
 NOISE = 0.05
+FLOOR = Floor(NOISE, "declared")
 SPREAD = [1.09, 1.11, 1.1, 1.12, 1.08, 1.1]
 UNSURE = [1.02, 1.06, 0.99, 1.05, 0.99, 1.07]
 
@@ -154,7 +156,7 @@ def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
     """Folds may put one first that was too far behind to be simulated exactly."""
     given = measured(lines(6), [1.0] * 6, bend=0.03)
     before = state_of((block("gain", value=1.0),), given)
-    score = make_score(before, NOISE)
+    score = make_score(before, FLOOR)
     plain, finished = rank(before, score), []
     last = [item for item in plain if item.held_back is not None][-1]
 
@@ -179,7 +181,7 @@ def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
 def test_a_ranking_of_effects_that_all_decline_is_no_ranking_of_folds():
     given = measured(lines(6), [1.0] * 6)
     before = state_of((block("gain", value=1.0),), given)
-    score = make_score(before, NOISE)
+    score = make_score(before, FLOOR)
     (only,) = rank(before, score, [effects()["hysteresis-shape"]])
     assert only.declined
 
@@ -207,7 +209,7 @@ def test_what_does_not_pay_or_was_not_refitted_is_not_put_to_folds():
 def test_finalists_are_ranked_by_records_held_back():
     given = measured(lines(6), [1.0] * 6, bend=0.08)
     before = state_of((block("gain", value=1.0),), given)
-    score = make_score(before, NOISE)
+    score = make_score(before, FLOOR)
     ranking = rank(before, score)
     judged = [item for item in ranking if item.held_back is not None]
     assert judged[0] is ranking[0]

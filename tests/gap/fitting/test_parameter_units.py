@@ -13,6 +13,7 @@ from hystbench.gap.fitting.parameter_units import unit_at, unit_behind
 from hystbench.gap.judging.effect_rows import effect_mapping
 from hystbench.gap.judging.leftover import Leftover
 from hystbench.gap.naming.rank import rank
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import PAYS
 from tests.gap.small import ENVELOPE, GPI, block, hysteresis, measured, state_of
 
@@ -52,7 +53,7 @@ def test_every_candidate_gains_the_same_in_any_unit(base, hidden):
         (scaled, base(INPUT, OUTPUT), NOISE * OUTPUT),
     ):
         state = state_of((chain,), records)
-        ranking = rank(state, make_score(state, noise))
+        ranking = rank(state, make_score(state, Floor(noise, "declared")))
         found.append({item.effect: item for item in ranking})
     before, after = found
     assert list(after) == list(before)

@@ -32,6 +32,7 @@ from hystbench.gap.fitting.refit import (
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.fitting.variant_search import Attempt, fine
 from hystbench.gap.naming.rank import rank
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import PARAMETER, SCALE
 from hystbench.model import Model
 from hystbench.record import Channel, Record
@@ -49,6 +50,7 @@ from tests.gap.small import (
 )
 
 NOISE = 0.02
+FLOOR = Floor(NOISE, "declared")
 CHANNELS = Channel("force", "N"), Channel("position", "mm")
 
 
@@ -114,7 +116,7 @@ def test_a_refit_of_many_numbers_never_scores_worse(seed):
     names = ["frequency_hz", "damping_ratio", "participation"]
     free = (*free_of(chain, names), *(Free(0, "weights", k) for k in range(4)))
     state = state_of(chain, given_records, free=free)
-    score = make_score(state, NOISE)
+    score = make_score(state, FLOOR)
     after, value = refit(state, score)
     assert value <= score_of(state, score)
     for item in after.free:
@@ -247,7 +249,7 @@ def test_numbers_are_found_below_a_floor_that_is_too_high():
     state = state_of((block("gain", value=12.02),), found, free=free)
     floor = 3 * float(np.sqrt(state.power(0.0)))
     flat, _ = finished(state, plain_score(state, floor**2))
-    best, _ = finished(state, score_of_numbers(state, floor))
+    best, _ = finished(state, score_of_numbers(state, Floor(floor, "declared")))
     least = float(np.mean(state.squares))
     assert np.mean(best.squares) <= np.mean(flat.squares) <= least * 1.001
     truth = [r.u @ r.y / (r.u @ r.u) for r in found]
@@ -351,7 +353,7 @@ def test_an_effect_is_not_added_twice():
 
 def test_gains_are_what_the_score_falls_by():
     state = state_of((hysteresis(),), measured(lagged(4e-3), NOISE))
-    score = make_score(state, NOISE)
+    score = make_score(state, FLOOR)
     now = score_of(state, score)
     names = ("resonance", "input-delay", "asymmetry")
     ranking = rank(state, score, [effects()[x] for x in names])

@@ -12,10 +12,12 @@ from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.refit import refit, scanned
 from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.floor import Floor
 from tests.gap.made import record
 from tests.gap.small import state_of
 
 DT, LAG_S, NOISE = 0.01, 0.3, 1e-3
+FLOOR = Floor(NOISE, "declared")
 GRAINS = """
 import numpy as np
 
@@ -51,8 +53,8 @@ def test_a_lag_before_relays_is_found_from_where_its_slopes_lead_nowhere(
     free = Free(0, "time_constant_s", None, None, 0.01, 3.0)
     lag = Added("drive-lag", "drive", "", (0,), {}, 1.0)
     state = replace(state, free=(free,), added=(lag,))
-    score = make_score(state, NOISE, forms=False)
+    score = make_score(state, FLOOR, forms=False)
     stuck = refit(state, score)[0].chain[0].time_constant_s
     assert abs(stuck / LAG_S - 1) > 0.02  # else the test would hold nothing
-    told = scanned(state, NOISE).chain[0].time_constant_s
+    told = scanned(state, FLOOR).chain[0].time_constant_s
     assert told == pytest.approx(LAG_S, rel=0.01)

@@ -55,7 +55,7 @@ def test_a_model_comes_back_from_its_file(tiny, added):
     """Every effect, added to a chain that lags: it simulates the same."""
     start, floor = tiny
     state = start
-    score = make_score(state, floor.rms)
+    score = make_score(state, floor)
     chain = ["drive-lag", *NEEDS.get(added, []), added]
     for effect in dict.fromkeys(chain):
         try:

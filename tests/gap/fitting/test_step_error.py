@@ -13,12 +13,14 @@ from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.naming import add_effects as naming
 from hystbench.gap.naming.add_effects import SoFar, advance
 from hystbench.gap.progress import silent
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record
 from tests.gap.small import block, hysteresis, plain_score, records
 
 NOISE = 0.02
+FLOOR = Floor(NOISE, "declared")
 
 
 def steps_of(chain, one):
@@ -99,7 +101,7 @@ def test_no_effect_is_tried_where_steps_hold_what_is_left(monkeypatch, error):
     )
     progress = SoFar(state, 8 * NOISE**2)  # all that the base leaves is still there
     if error:
-        assert advance(progress, NOISE, silent).done
+        assert advance(progress, FLOOR, silent).done
     else:
         with pytest.raises(SearchedError):
-            advance(progress, NOISE, silent)
+            advance(progress, FLOOR, silent)

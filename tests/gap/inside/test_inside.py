@@ -54,6 +54,7 @@ from hystbench.gap.inside.one_coordinate import (
 )
 from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.naming.add_effects import Named
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.free_mass import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
 from hystbench.gap.records.scored_samples import ScoredSamples
@@ -66,6 +67,7 @@ from tests.gap.solved import motion
 
 DT = 0.005
 NOISE = 0.02
+FLOOR = Floor(NOISE, "declared")
 TIME = np.arange(1600) * DT
 SPRINGS = ["gravity", "stiffness-hardening", "stop"]
 """A weight that turns, and what it may be taken for."""
@@ -708,7 +710,7 @@ def test_a_spring_whose_acceleration_is_measured_is_no_friction():
     channels = given[0].input, given[0].output
     base = with_its_numbers_free(IdentifiedModel("linear", *channels, start.chain))
     moves = Quantities("force", "acceleration")
-    found = named_inside(base, start, NOISE, moves)
+    found = named_inside(base, start, FLOOR, moves)
     assert found is None or not found.named.state.added
 
 
@@ -767,7 +769,7 @@ def test_an_effect_that_makes_up_for_what_its_host_lacks_is_not_missing(after, p
     )
     model = Model("rig", *(Channel("in", "V"), Channel("out", "mm")), base.chain)
     inside = Inside(model, base, Named(found, ()), "")
-    assert beats_base(inside, base, 0.01) == pays
+    assert beats_base(inside, base, Floor(0.01, "declared")) == pays
 
 
 @pytest.mark.parametrize(
@@ -784,7 +786,7 @@ def test_what_a_chain_needs_more_counts_against_it(monkeypatch, chain, gain, bet
         "hystbench.gap.inside.named_inside.gain_held_back",
         lambda _, found, *__: gain if found is inside.named.state else 0.0,
     )
-    assert beats_chain(inside, named, NOISE) == better
+    assert beats_chain(inside, named, FLOOR) == better
 
 
 @pytest.mark.parametrize(
@@ -812,7 +814,7 @@ def test_fewer_effects_of_a_chain_stand_where_they_leave_as_little(
         "hystbench.gap.inside.named_inside.gain_held_back",
         lambda _, found, *__: 1000.0 if found is inside.named.state else 0.0,
     )
-    assert beats_chain(inside, given, NOISE) == stands
+    assert beats_chain(inside, given, FLOOR) == stands
 
 
 def test_a_stop_on_both_sides_without_a_clearance_is_a_spring_and_no_stop():

@@ -21,6 +21,7 @@ from hystbench.gap.inside.named_inside import Inside, beats_chain
 from hystbench.gap.inside.other_names import of_one_name
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.free_mass import windows
 from hystbench.model import Model
 from hystbench.quantities import Quantities
@@ -382,7 +383,7 @@ def test_where_one_record_shows_a_force_both_answers_are_judged_on_blocks(monkey
     monkeypatch.setattr(named_inside_module, "shows_in_one_record", shows)
     monkeypatch.setattr(named_inside_module, "gain_held_back", gain)
     inside = Inside(None, start, Named(state), "")
-    assert beats_chain(inside, Named(chain), 1e-3)
+    assert beats_chain(inside, Named(chain), Floor(1e-3, "declared"))
     assert asked == [
         ("start", "state"),
         ("chain", "state", True),

@@ -25,6 +25,7 @@ from hystbench.gap.inside.timing import (
     with_free_timing,
 )
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
@@ -53,13 +54,13 @@ def moved(later):
     free = tuple(Free(0, x) for x in ("mass", "damping", "stiffness"))
     records = tuple(given)
     state = ModelState((MASS,), records, ScoredSamples.of(records), free=free)
-    return state, noise
+    return state, Floor(noise, "declared")
 
 
 @pytest.mark.parametrize("later", [0.5, -0.4])
 def test_a_timing_that_pays_is_put_before_the_base(later):
-    state, noise = moved(later)
-    found = better_timed(BASE, state, noise)
+    state, floor = moved(later)
+    found = better_timed(BASE, state, floor)
     assert found is not None
     delay, mass = found.chain
     assert (delay.delay_s - delay.lead_s) / DT == pytest.approx(later, abs=0.02)
@@ -68,8 +69,8 @@ def test_a_timing_that_pays_is_put_before_the_base(later):
 
 
 def test_a_base_in_time_stays():
-    state, noise = moved(0.0)
-    assert better_timed(BASE, state, noise) is None
+    state, floor = moved(0.0)
+    assert better_timed(BASE, state, floor) is None
 
 
 def test_a_base_that_is_late_already_becomes_later():
@@ -109,10 +110,10 @@ def test_a_delay_in_a_chain_is_timing_only_beside_an_effect_and_below_a_sample()
 
 
 def test_a_mass_is_tried_with_its_timing_in_place_of_a_zero():
-    state, noise = moved(0.5)
+    state, floor = moved(0.5)
     late = TransferFunction(numerator=(1.0,), denominator=(0.5, 1.5, 60.0))
     start = ModelState((late,), state.records, state.sample)
-    score = Score.plain(state.sample, noise**2)
+    score = Score.plain(state.sample, floor.square)
     kinds = Quantities("force", "position")
     plain, timing, *_ = hosts(start, kinds, True, score)
     assert any(x.parameter == "blend" for x in plain.fitted.state.free)

@@ -18,6 +18,7 @@ from hystbench.gap.judging.verdict import (
     what_mends,
 )
 from hystbench.gap.naming.rounds import Candidate, near
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import (
     ABOVE_NOISE,
     FOREIGN,
@@ -304,7 +305,7 @@ def test_what_is_left_of_a_gap_is_counted_in_floors():
         records,
         count=600,
     )
-    found = what_is_left(wrong, there, noise)
+    found = what_is_left(wrong, there, Floor(noise, "declared"))
     plain = np.mean(
         [np.mean(wrong.residual[part] ** 2) for part in wrong.sample.slices]
     )

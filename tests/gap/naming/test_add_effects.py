@@ -14,10 +14,12 @@ from hystbench.gap.naming import add_effects
 from hystbench.gap.naming.add_effects import SoFar, advance
 from hystbench.gap.naming.rounds import Candidate, Round
 from hystbench.gap.progress import silent
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import PAYS
 from tests.gap.small import MODE, block, measured, record, records, state_of
 
 NOISE = 0.02
+FLOOR = Floor(NOISE, "declared")
 LAG_S = 0.004
 LIKE_A_MODE = ("eddy-diffusion", "input-delay", "sensor-lag", "hysteresis")
 """What depends on frequency too, and plays, which have an envelope of eight numbers."""
@@ -30,7 +32,7 @@ def progress_with(lag_s, more=()):
     before = state_of((gain,), given)
     variant = next(iter(effects()["drive-lag"].variants(before.simulation)))
     after = with_effect(before, variant, {"time_constant_s": lag_s})
-    return replace(SoFar.begun(before, NOISE), state=after.settled())
+    return replace(SoFar.begun(before, FLOOR), state=after.settled())
 
 
 @pytest.mark.parametrize("lag_s", [LAG_S, 1.3 * LAG_S])
@@ -39,7 +41,7 @@ def test_effects_that_do_nothing_gain_nothing_from_the_refit(lag_s):
 
     However far the model's own number is from its best: that refit comes first.
     """
-    after = advance(progress_with(lag_s, (block("resonance", **MODE),)), NOISE, print)
+    after = advance(progress_with(lag_s, (block("resonance", **MODE),)), FLOOR, print)
     (one,) = after.rounds
     gains = {x.effect: x.gain for x in one.ranking if x.state is not None}
     assert gains.pop("resonance") > PAYS
@@ -50,7 +52,7 @@ def test_effects_that_do_nothing_gain_nothing_from_the_refit(lag_s):
 
 
 def test_a_round_beside_a_model_that_has_all_is_none():
-    after = advance(progress_with(LAG_S), NOISE, print)
+    after = advance(progress_with(LAG_S), FLOOR, print)
     assert after.closed
     assert after.done
     assert not after.rounds
@@ -62,7 +64,7 @@ def test_the_search_ends_where_no_more_is_left_than_may_stay_unnamed(share, clos
     progress = progress_with(LAG_S, (block("resonance", **MODE),))
     left = progress.state.power(NOISE**2)
     asked = replace(progress, gap=10 * left, share=share)
-    assert advance(asked, NOISE, print).closed is closed
+    assert advance(asked, FLOOR, print).closed is closed
 
 
 def two_effects():
@@ -92,7 +94,7 @@ def test_what_would_still_pay_is_tried_in_the_place_of_what_was_added(
 
     monkeypatch.setattr(add_effects, "reconsidered", looked)
     found = SoFar(state, 1.0, rounds=tuple(rounds))
-    add_effects.looked_over(found, rounds[0].before, NOISE, silent)
+    add_effects.looked_over(found, rounds[0].before, FLOOR, silent)
     assert asked == ([{"eddy-diffusion"}] if tried else [])
 
 
@@ -110,7 +112,7 @@ def test_where_an_effect_gives_way_all_are_tried_once_more(monkeypatch):
 
     monkeypatch.setattr(add_effects, "reconsidered", looked)
     found = SoFar(state, 1.0, rounds=tuple(rounds))
-    add_effects.looked_over(found, rounds[0].before, NOISE, silent)
+    add_effects.looked_over(found, rounds[0].before, FLOOR, silent)
     assert asked[0] == {"eddy-diffusion"}
     assert asked[1] > {"creep", "drive-lag"}
     assert len(asked) == 2
@@ -145,14 +147,15 @@ def test_another_shape_is_fitted_to_what_it_is_to_take():
         )
     )
     start = state_of(one, measured(five, 0.006, given=given), count=1000)
-    score = make_score(start, 0.006)
+    floor = Floor(0.006, "declared")
+    score = make_score(start, floor)
     (trial,), _ = tried(effects()["hysteresis-shape"], start, score)
     state, value = added(start, trial, score)
     first = Candidate(trial.variant.effect, "material", score=value, state=state)
     rounds = (Round(start, value + 50.0, (first,), True),)
-    found = replace(SoFar.begun(start, 0.006), state=state, rounds=rounds)
-    named = add_effects.looked_over(found, start, 0.006, silent).state
+    found = replace(SoFar.begun(start, floor), state=state, rounds=rounds)
+    named = add_effects.looked_over(found, start, floor, silent).state
     assert [item.effect for item in named.added] == ["hysteresis-shape"]
-    gap = start.power(0.006**2)
-    assert state.power(0.006**2) > 0.1 * gap
-    assert named.power(0.006**2) < 0.05 * gap
+    gap = start.power(floor.square)
+    assert state.power(floor.square) > 0.1 * gap
+    assert named.power(floor.square) < 0.05 * gap

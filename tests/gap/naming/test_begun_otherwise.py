@@ -9,12 +9,14 @@ from scipy.signal import lfilter
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.state import Added
 from hystbench.gap.naming.begun_otherwise import begun_as_named
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record
 from tests.gap.small import block, state_of
 
 DT, LAG, NOISE = 0.01, 2.0, 1e-3
+FLOOR = Floor(NOISE, "declared")
 LAST = np.exp(-DT / LAG)
 
 
@@ -65,13 +67,13 @@ def a_path(records):
 @pytest.mark.parametrize("taken", ["moving", "settled"])
 def test_a_start_that_hid_the_curve_goes_with_it(records, taken):
     found = named(base(taken), records, a_path(records))
-    begun = begun_as_named(base(taken), found, records, NOISE)
+    begun = begun_as_named(base(taken), found, records, FLOOR)
     assert begun == base("rest")
 
 
 def test_a_base_that_begins_rightly_stays(records):
     found = named(base("rest"), records, a_path(records))
-    assert begun_as_named(base("rest"), found, records, NOISE) is None
+    assert begun_as_named(base("rest"), found, records, FLOOR) is None
 
 
 def test_a_start_is_not_taken_where_the_path_does_better(records):
@@ -82,18 +84,18 @@ def test_a_start_is_not_taken_where_the_path_does_better(records):
         for item, sign in zip(records, (1.0, -1.0), strict=True)
     )
     found = named(base("settled"), drifting, a_path(drifting))
-    assert begun_as_named(base("settled"), found, drifting, NOISE) is None
+    assert begun_as_named(base("settled"), found, drifting, FLOOR) is None
 
 
 def test_without_a_path_of_each_record_nothing_is_asked(records):
     found = named(base("settled"), records)
-    assert begun_as_named(base("settled"), found, records, NOISE) is None
+    assert begun_as_named(base("settled"), found, records, FLOOR) is None
     whole = replace(found, chain=base("settled").chain)
-    assert begun_as_named(base("settled"), whole, records, NOISE) is None
+    assert begun_as_named(base("settled"), whole, records, FLOOR) is None
 
 
 def test_a_path_alone_shows_no_start(records):
     """Nothing else was named that could have hidden one."""
     found = named(base("settled"), records, a_path(records))
     alone = replace(found, added=found.added[1:])
-    assert begun_as_named(base("settled"), alone, records, NOISE) is None
+    assert begun_as_named(base("settled"), alone, records, FLOOR) is None

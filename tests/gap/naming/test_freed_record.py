@@ -13,12 +13,14 @@ from hystbench.gap.bases.load import load_base
 from hystbench.gap.naming import freed_record
 from hystbench.gap.naming.freed_record import freed_of_laws, freed_of_slow_law
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.floor import Floor
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record
 from tests.gap.searched import among
 from tests.gap.small import hysteresis
 
 DT, TAU_S, HEAT_UM, NOISE = 0.02, 5.0, 0.04, 0.05
+FLOOR = Floor(NOISE, "declared")
 LAWS = among("thermal-drift", "drift", "creep", "calibration-error", "sensor-lag")
 
 
@@ -125,15 +127,15 @@ def test_a_law_that_does_less_than_noise_to_the_record_leaves_it(heated):
     evidence, base = heated
     found = module.GapSearch(evidence, Asked(vocabulary=LAWS), None).beside(base)
     about = base, found.named, evidence
-    assert freed_of_laws(*about, found.floor.rms) is not None
-    assert freed_of_laws(*about, 100.0 * found.floor.rms) is None
+    assert freed_of_laws(*about, found.floor) is not None
+    assert freed_of_laws(*about, Floor(100.0 * found.floor.rms, "declared")) is None
 
 
 def test_a_record_of_the_loop_alone_is_left_as_it_is():
     evidence = rod(0.0)
     base, _ = load_base("gpi", evidence)
     found = module.GapSearch(evidence, Asked(vocabulary=LAWS), None).beside(base)
-    about = found.named, evidence, found.floor.rms
+    about = found.named, evidence, found.floor
     assert freed_of_laws(base, *about) is None
 
 
@@ -141,8 +143,8 @@ def test_a_base_that_was_given_is_not_identified(heated):
     evidence, base = heated
     given = Model(base.name, base.input, base.output, base.chain)
     found = module.GapSearch(evidence, Asked(vocabulary=LAWS), None).beside(given)
-    assert freed_of_laws(base, found.named, evidence, found.floor.rms) is not None
-    assert freed_of_laws(given, found.named, evidence, found.floor.rms) is None
+    assert freed_of_laws(base, found.named, evidence, found.floor) is not None
+    assert freed_of_laws(given, found.named, evidence, found.floor) is None
 
 
 @pytest.fixture
@@ -167,7 +169,7 @@ def test_creep_that_hides_all_laws_is_named(monkeypatch):
 def test_a_record_is_freed_of_its_creep(ends):
     evidence, loop = stack(ends)
     base, _ = load_base("gpi", evidence)
-    freed = freed_of_slow_law(base, evidence, NOISE, LAWS.offered)
+    freed = freed_of_slow_law(base, evidence, FLOOR, LAWS.offered)
     slow = evidence.slowest
     without = loop.simulate(slow.u, DT)
     left = np.std(freed.slowest.y - without)
@@ -185,7 +187,7 @@ def test_samples_that_were_not_measured_hide_no_creep():
     y = np.where(lost, quick.y[0], quick.y)
     quick = replace(quick, y=y, interpolated=lost)
     freed = freed_of_slow_law(
-        base, replace(evidence, fit=(*others, quick)), NOISE, LAWS.offered
+        base, replace(evidence, fit=(*others, quick)), FLOOR, LAWS.offered
     )
     assert freed is not None
     slow = evidence.slowest
@@ -201,22 +203,24 @@ def test_a_law_that_acts_where_nothing_was_measured_leaves_the_record(heated):
     lost = np.ones(len(slow), dtype=bool)
     lost[:2] = False  # a body takes seconds to get warm
     fit = (replace(slow, interpolated=lost), *others)
-    assert freed_of_laws(base, found.named, evidence, found.floor.rms) is not None
+    assert freed_of_laws(base, found.named, evidence, found.floor) is not None
     missing = replace(evidence, fit=fit, identification="slow")
-    assert freed_of_laws(base, found.named, missing, found.floor.rms) is None
+    assert freed_of_laws(base, found.named, missing, found.floor) is None
 
 
 @pytest.mark.usefixtures("one_range")
 def test_a_loop_that_fits_its_record_is_freed_of_nothing():
     evidence = rod(0.0)
     base, _ = load_base("gpi", evidence)
-    assert freed_of_slow_law(base, evidence, NOISE, LAWS.offered) is None
+    assert freed_of_slow_law(base, evidence, FLOOR, LAWS.offered) is None
     creeping, _ = stack()
     base, _ = load_base("gpi", creeping)
     given = Model(base.name, base.input, base.output, base.chain)
-    assert freed_of_slow_law(given, creeping, NOISE, LAWS.offered) is None
-    assert freed_of_slow_law(base, creeping, 10.0, LAWS.offered) is None
-    assert freed_of_slow_law(base, creeping, NOISE, ("drift",)) is None
+    assert freed_of_slow_law(given, creeping, FLOOR, LAWS.offered) is None
+    assert (
+        freed_of_slow_law(base, creeping, Floor(10.0, "declared"), LAWS.offered) is None
+    )
+    assert freed_of_slow_law(base, creeping, FLOOR, ("drift",)) is None
 
 
 @pytest.mark.usefixtures("one_range")

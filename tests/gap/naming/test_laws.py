@@ -10,12 +10,14 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.naming.rank import rank
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import PAYS, SHAPE
 from tests.gap.made import record
 from tests.gap.small import block, hysteresis, measured, records, state_of
 
 NOISE = 0.01
+FLOOR = Floor(NOISE, "declared")
 GAIN = block("gain", value=12.0, offset=0.5)
 LOOP = hysteresis()
 PLAYS = block(
@@ -112,7 +114,7 @@ HIDDEN = {
 def test_a_law_is_found_under_its_name(form):
     name, base, chain = HIDDEN[form]
     state = state_of(base, measured(chain, NOISE, given=records()))
-    score = make_score(state, NOISE)
+    score = make_score(state, FLOOR)
     known = [effects()[item] for item in (name, SHAPE, "backlash", "sensor-lag")]
     ranking = rank(state, score, known, folds=False)
     first = ranking[0]
@@ -133,7 +135,7 @@ def test_friction_that_bends_late_is_found_with_its_scale():
     late = block("friction", coulomb=3.0, velocity_scale=0.6 * fastest)
     state = state_of((gain,), measured((gain, late), NOISE, given=records()))
     known = [effects()[item] for item in ("friction", "drive-lag")]
-    first = rank(state, make_score(state, NOISE), known, folds=False)[0]
+    first = rank(state, make_score(state, FLOOR), known, folds=False)[0]
     assert (first.effect, first.declined) == ("friction", "")
     (found,) = [x for x in first.state.chain if x.name == "friction"]
     assert found.velocity_scale == pytest.approx(0.6 * fastest, rel=0.1)
@@ -161,7 +163,7 @@ def test_thresholds_that_grow_with_a_logarithm_are_found_along_straight_lines():
         for one, y, rest in zip(given, outputs, noise, strict=True)
     )
     state = state_of((LOOP,), told, hold="linear")
-    score = make_score(state, NOISE)
+    score = make_score(state, FLOOR)
     known = [effects()[item] for item in ("rate-dependent-hysteresis", "sensor-lag")]
     first = rank(state, score, known, folds=False)[0]
     assert first.effect == "rate-dependent-hysteresis"

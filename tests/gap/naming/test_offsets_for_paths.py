@@ -12,9 +12,11 @@ from hystbench.gap.fitting.refit import refit
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.with_own_values import offsets_for_paths
 from hystbench.gap.progress import silent
+from hystbench.gap.records.floor import Floor
 from tests.gap.small import block, measured, state_of
 
 NOISE = 0.02
+FLOOR = Floor(NOISE, "declared")
 
 
 def moved(ways):
@@ -28,14 +30,14 @@ def moved(ways):
     offered = effects()["drift"].variants(start.simulation)
     path = next(item for item in offered if item.form == "path")
     state = with_effect(start, path, {}).settled()
-    state, _ = refit(state, make_score(state, NOISE))
+    state, _ = refit(state, make_score(state, FLOOR))
     assert state.paths == {"drift"}
     return start, Named(state)
 
 
 def test_offsets_of_the_records_are_no_drift():
     start, named = moved([lambda t: 0.5 + 0 * t, lambda t: -0.3 + 0 * t])
-    apart, again, own = offsets_for_paths(start, named, NOISE, silent)
+    apart, again, own = offsets_for_paths(start, named, FLOOR, silent)
     assert again.state.added == ()
     assert own.kinds == ("offset",)
     assert [one.offset for _, one in own.records] == pytest.approx(
@@ -47,6 +49,6 @@ def test_offsets_of_the_records_are_no_drift():
 
 def test_a_way_that_goes_on_stays_a_path():
     start, named = moved([lambda t: t - t**2, lambda t: -0.6 * t])
-    apart, again, own = offsets_for_paths(start, named, NOISE, silent)
+    apart, again, own = offsets_for_paths(start, named, FLOOR, silent)
     assert (apart, again) == (start, named)
     assert not own.records

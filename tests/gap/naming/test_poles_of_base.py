@@ -134,9 +134,9 @@ def test_what_is_named_beside_them_is_the_rest_and_leaves_as_little(records):
     state = named(given, ("saturation", CURVE), ("creep", LINEAR["creep"]))
     state = replace(state, free=free, chain=hidden).settled()
     base = with_poles_named(BASE, state)
-    start, _ = start_state(given, base, "linear", 0.01)
+    start, floor = start_state(given, base, "linear", 0.01)
     one = Round(start, 0.0, (), True)
-    found = named_beside_them(Named(state, (one, one)), start, 0.01, print)
+    found = named_beside_them(Named(state, (one, one)), start, floor, print)
     assert [item.effect for item in found.state.added] == ["saturation"]
     assert [item.name for item in found.gone] == ["creep"]
     assert found.state.power(1e-4) < 0.1 * 1e-4

@@ -20,6 +20,7 @@ from hystbench.gap.naming.rivals import (
     simplest_of_a_tie,
 )
 from hystbench.gap.naming.rounds import Candidate, best_forms
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import CERTAIN, LOOSE, PAYS, SCALE
 from tests.gap.made import record
@@ -36,6 +37,7 @@ from tests.gap.small import (
 )
 
 NOISE = 0.02
+FLOOR = Floor(NOISE, "declared")
 
 
 def ranked(chain, more=(), names=("calibration-error", "asymmetry")):
@@ -43,7 +45,7 @@ def ranked(chain, more=(), names=("calibration-error", "asymmetry")):
     given = measured(chain, NOISE, given=records() * 3)
     state = state_of(more, given)
     known = [effects()[name] for name in names]
-    return rank(state, make_score(state, NOISE), known)
+    return rank(state, make_score(state, FLOOR), known)
 
 
 @pytest.mark.parametrize("bias", [0.0, 4e-3, 8e-3])
@@ -82,7 +84,7 @@ def test_one_of_two_effects_may_widen_the_gap_of_a_linear_base():
     chain = (zone, block("drive-saturation", limit=1.0), gain)
     found = measured(chain, NOISE, given=given)
     state = state_of((block("gain", value=3.0),), found, free=(Free(0, "value"),))
-    score = make_score(state, NOISE)
+    score = make_score(state, FLOOR)
     state, _ = finished(state, score)
     first, _ = rank(state, score, [effects()[x] for x in ("dead-zone", "asymmetry")])
     assert first.effect == "dead-zone"
@@ -239,7 +241,7 @@ def test_a_wrong_shape_behind_a_lag_is_what_the_lagged_model_may_leave():
     """
     lag = block("sensor-lag", time_constant_s=0.02)
     state = state_of(LOOP, measured((OTHER, lag), NOISE, given=records() * 3))
-    score = make_score(state, NOISE)
+    score = make_score(state, FLOOR)
     (variant, *_) = effects()["sensor-lag"].variants(state.simulation)
     right = with_effect(state, variant, {"time_constant_s": 0.02}).settled()
     beside_the_base_s = score.of(right.residual) - score.least()
@@ -286,7 +288,7 @@ def test_a_loop_that_bends_is_a_hysteresis_alone():
     given = measured((loop,), NOISE, given=records() * 3)
     base = state_of((block("gain", value=20.7),), given)
     known = [effects()[name] for name in ("hysteresis", "saturation")]
-    first, *_ = rank(base, make_score(base, NOISE), known)
+    first, *_ = rank(base, make_score(base, FLOOR), known)
     assert (first.effect, first.form) == ("hysteresis", "generalized plays")
     assert first.state.power(NOISE**2) < 0.01 * base.power(NOISE**2)
 
@@ -294,7 +296,7 @@ def test_a_loop_that_bends_is_a_hysteresis_alone():
 def test_what_gains_too_little_of_what_is_needed_is_not_refitted():
     lag = block("sensor-lag", time_constant_s=0.004)
     state = state_of(LOOP, measured((*LOOP, lag), NOISE, given=records() * 3))
-    score = make_score(state, NOISE)
+    score = make_score(state, FLOOR)
     known = [effects()["sensor-lag"]]
     (alone,) = rank(state, score, known, folds=False)
     assert alone.state is not None
@@ -319,7 +321,7 @@ def test_what_is_far_behind_is_refitted_to_the_end_for_folds_alone(monkeypatch, 
     made = (block("drive-lag", time_constant_s=1e-2), base)
     state = state_of((base,), measured(made, NOISE, given=records() * 3))
     known = [effects()[name] for name in ("drive-lag", "sensor-lag", "input-delay")]
-    found = rank(state, make_score(state, NOISE), known, folds=folds)
+    found = rank(state, make_score(state, FLOOR), known, folds=folds)
     assert wanted[0] == np.inf
     assert len(wanted) > 1
     if folds:
@@ -338,6 +340,6 @@ def test_a_bias_of_the_field_is_more_than_the_zero_of_a_sensor(bias, alike):
     offered = effects()["asymmetry"].variants(state.simulation)
     form = next(item for item in offered if item.form == "bias")
     state = with_effect(state, form, {"bias": 0.01, "zero": 0.5}).settled()
-    score = make_score(state, NOISE, forms=False)
+    score = make_score(state, FLOOR, forms=False)
     state, value = finished(state, score)
     assert does_without_itself(state, state.added[-1], value, score) == alike

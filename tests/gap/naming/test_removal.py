@@ -19,10 +19,12 @@ from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.removal import TakenOut, needless, unknown, without_what_goes
 from hystbench.gap.naming.rounds import Round
 from hystbench.gap.progress import silent
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import CERTAIN, FURTHER, LOOSE, PAYS, SHAPE
 from tests.gap.small import block, hysteresis, measured, state_of
 
 NOISE = 0.02
+FLOOR = Floor(NOISE, "declared")
 LAG_S, BEND = 0.004, 0.2
 
 
@@ -54,8 +56,8 @@ def names(state):
 
 
 def test_a_curve_that_is_there_stays_and_one_that_is_not_goes():
-    assert unknown(with_two(BEND), NOISE) is None
-    gone, short = unknown(with_two(0.0), NOISE)
+    assert unknown(with_two(BEND), FLOOR) is None
+    gone, short = unknown(with_two(0.0), FLOOR)
     assert gone == TakenOut("asymmetry", "the records show nothing of it")
     assert names(short) == ["drive-lag"]
     assert [block.name for block in short.chain] == ["drive-lag", "gain"]
@@ -77,7 +79,7 @@ def test_an_error_of_more_than_half_the_size_decides(
     """Unless records that did not fit the effect are foretold beyond doubt."""
     monkeypatch.setattr(taken_out, "size_error", lambda *given: error)
     monkeypatch.setattr(taken_out, "gain_held_back", lambda *given: held_back)
-    found = unknown(with_two(BEND), NOISE)
+    found = unknown(with_two(BEND), FLOOR)
     assert names(with_two(BEND) if found is None else found[1]) == kept
 
 
@@ -94,9 +96,9 @@ def test_numbers_that_stand_in_for_each_other_do_not_hide_a_size():
     three = next(item for item in offered if item.form == "three elements")
     values = {f"magnitude {k}": 0.02 for k in (1, 2, 3)} | {"time_constant_s": 0.1}
     state = with_effect(state, three, values).settled()
-    state, _ = refit(state, make_score(state, NOISE))
+    state, _ = refit(state, make_score(state, FLOOR))
     finer = on_more_samples(state)
-    score = make_score(finer, NOISE, forms=False)
+    score = make_score(finer, FLOOR, forms=False)
     errors = standard_errors(finer, score)
     own = [
         k for k, free in enumerate(finer.free) if free.block in finer.added[1].blocks
@@ -104,7 +106,7 @@ def test_numbers_that_stand_in_for_each_other_do_not_hide_a_size():
     alone = [abs(finer.value(finer.free[k])) / errors[k] for k in own]
     assert np.nanmin(alone) < 1.0
     assert size_error(finer, NOISE**2, 1) < 0.2
-    assert unknown(state, NOISE) is None
+    assert unknown(state, FLOOR) is None
 
 
 def test_one_effect_alone_is_not_looked_at():
@@ -112,13 +114,13 @@ def test_one_effect_alone_is_not_looked_at():
     state = state_of((gain,), measured((gain,), NOISE))
     variant = next(iter(effects()["asymmetry"].variants(state.simulation)))
     state = with_effect(state, variant, {"coefficient": 0.0})
-    assert without_what_goes(state, NOISE, 1.0, silent) == (state, ())
+    assert without_what_goes(state, FLOOR, 1.0, silent) == (state, ())
 
 
 @pytest.mark.parametrize("given", [BEND, 0.1 * BEND])
 def test_an_effect_is_not_needless_for_numbers_found_under_another_score(given):
     """It is refitted as the model without it is, before the two are compared."""
-    assert needless(with_two(BEND, given), NOISE, 1.0) is None
+    assert needless(with_two(BEND, given), FLOOR, 1.0) is None
 
 
 @pytest.mark.parametrize(
@@ -148,7 +150,7 @@ def test_a_wrong_shape_stays_by_the_rule_by_which_it_came(
 
     monkeypatch.setattr(taken_out, "finished", fitted)
     monkeypatch.setattr(taken_out, "score_of", lambda one, score: 0.0)
-    found = needless(state, NOISE, gap / share)
+    found = needless(state, FLOOR, gap / share)
     assert (found is not None) == goes
     if found is not None:
         assert found[0].name == effect
@@ -157,7 +159,7 @@ def test_a_wrong_shape_stays_by_the_rule_by_which_it_came(
 def test_what_went_is_told_with_the_reason():
     """The lag gains much, the curve of no size nothing: it is needless before all."""
     said = []
-    state, gone = without_what_goes(with_two(0.0), NOISE, 1.0, said.append)
+    state, gone = without_what_goes(with_two(0.0), FLOOR, 1.0, said.append)
     assert names(state) == ["drive-lag"]
     (curve,) = gone
     assert curve.name == "asymmetry"
@@ -185,9 +187,9 @@ def test_what_a_wrong_shape_could_do_as_well_has_a_size_all_the_same():
         )
         state = with_effect(state, variant, values).settled()
     finer = on_more_samples(state)
-    score = make_score(finer, NOISE, forms=False)
+    score = make_score(finer, FLOOR, forms=False)
     added = without_effect(finer, 1).settled().residual - finer.residual
     inside = score.directions @ (score.directions.T @ added)
     assert np.std(added - inside) < 0.1 * np.std(added)
     assert size_error(finer, NOISE**2, 1) < 0.1
-    assert unknown(state, NOISE) is None
+    assert unknown(state, FLOOR) is None

@@ -16,10 +16,12 @@ from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import WIDER, Candidate, Round
 from hystbench.gap.naming.second_looks import reconsidered
 from hystbench.gap.progress import silent
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import PAYS, SCALE
 from tests.gap.small import block, measured, state_of
 
 NOISE = 0.02
+FLOOR = Floor(NOISE, "declared")
 FORMS = "generalized plays", "plays"
 
 
@@ -52,7 +54,7 @@ def test_a_second_look_counts_only_where_the_effect_itself_could_be_judged(
         return (Candidate(name, "drive", score=0.0, gain=1.0, state=state),)
 
     monkeypatch.setattr(reconsider, "rank", looked)
-    kept, looks = reconsidered(state, rounds, NOISE, silent)
+    kept, looks = reconsidered(state, rounds, FLOOR, silent)
     assert kept is state
     # Every look is kept; where it could not judge, the effect stays by an earlier one.
     assert [(look.instead_of, look.beside) for look in looks] == [
@@ -69,7 +71,7 @@ def test_a_second_look_counts_only_where_the_effect_itself_could_be_judged(
     assert by_effect["drive-lag"] is last
     # The model that is there scores better than what the second look came to.
     (own,) = by_effect["asymmetry"]
-    kept, now = finished(state, make_score(without_effect(state, 1), NOISE))
+    kept, now = finished(state, make_score(without_effect(state, 1), FLOOR))
     assert own.state.chain == kept.chain
     assert own.score == pytest.approx(now)
     assert own.score < 0.0
@@ -90,7 +92,7 @@ def test_an_effect_whose_refit_lost_its_way_is_looked_at_again(two, monkeypatch)
         return tuple(Candidate(name, "drive", state=state) for name in names)
 
     monkeypatch.setattr(reconsider, "rank", looked)
-    reconsidered(state, rounds, NOISE, silent)
+    reconsidered(state, rounds, FLOOR, silent)
     assert set(asked["drive-lag"]) == {"drive-lag", "eddy-diffusion"}
     # It was declined in the round of the other effect.
     assert asked["asymmetry"] == ["asymmetry"]
@@ -112,7 +114,7 @@ def test_a_rival_that_takes_a_place_is_seen_with_what_it_scored(two, monkeypatch
 
     monkeypatch.setattr(reconsider, "rank", looked)
     monkeypatch.setattr(reconsider, "gain_held_back", lambda *_: PAYS + 50.0)
-    after, (look,) = reconsidered(state, rounds, NOISE, silent, {"sensor-lag"})
+    after, (look,) = reconsidered(state, rounds, FLOOR, silent, {"sensor-lag"})
     assert after.chain is other.chain
     assert [item.effect for item in after.added] == ["sensor-lag", "asymmetry"]
     assert look.ranking[0].held_back == PAYS + 50.0
@@ -146,7 +148,7 @@ def test_of_a_tie_a_rival_of_fewer_numbers_takes_the_place(
 
     monkeypatch.setattr(reconsider, "rank", looked)
     monkeypatch.setattr(reconsider, "gain_held_back", lambda *_: PAYS + 50.0)
-    after, _ = reconsidered(state, rounds, NOISE, silent, {"sensor-lag"})
+    after, _ = reconsidered(state, rounds, FLOOR, silent, {"sensor-lag"})
     assert state.added[0].charge == 1.0
     assert ("sensor-lag" in {item.effect for item in after.added}) == taken
 
@@ -164,7 +166,7 @@ def test_a_rival_that_does_not_pay_on_records_held_back_takes_no_place(
 
     monkeypatch.setattr(reconsider, "rank", looked)
     monkeypatch.setattr(reconsider, "gain_held_back", lambda *_: PAYS - 1.0)
-    after, looks = reconsidered(state, rounds, NOISE, silent)
+    after, looks = reconsidered(state, rounds, FLOOR, silent)
     assert after is state
     assert [look.taken for look in looks] == ["drive-lag", "asymmetry"]
     for look in looks:
@@ -188,7 +190,7 @@ def test_the_model_that_is_there_stands_where_its_score_puts_it(two, monkeypatch
         )
 
     monkeypatch.setattr(reconsider, "rank", looked)
-    _, looks = reconsidered(state, rounds, NOISE, silent)
+    _, looks = reconsidered(state, rounds, FLOOR, silent)
     assert len(looks) == len(scores) == 2
     for look, now in zip(looks, scores, strict=True):
         assert [item.effect for item in look.ranking] == [look.instead_of, "creep"]
@@ -209,7 +211,7 @@ def test_what_an_effect_does_is_not_free_for_its_rivals(two, monkeypatch):
         return (Candidate(gone, "", score=0.0, gain=1.0, state=state),)
 
     monkeypatch.setattr(reconsider, "rank", looked)
-    reconsidered(state, rounds, NOISE, silent)
+    reconsidered(state, rounds, FLOOR, silent)
     assert set(free) == {"drive-lag", "asymmetry"}
     assert free["drive-lag"] < 0.5
 
@@ -245,7 +247,7 @@ def test_another_form_of_an_effect_is_taken_where_it_does_better(
 
     monkeypatch.setattr(reconsider, "rank", looked)
     monkeypatch.setattr(reconsider, "finished", fitted)
-    found, looks = reconsidered(state, rounds, NOISE, silent)
+    found, looks = reconsidered(state, rounds, FLOOR, silent)
     assert (found is state) is not bool(form)
     assert found.added == state.added  # in the order in which they came
     assert [look.taken for look in looks] == ["drive-lag", "asymmetry"]
@@ -263,10 +265,10 @@ def test_a_hysteresis_without_a_loop_gives_way_to_a_curve(loop):
         else block("saturation", level=0.6)
     )
     before = state_of((gain,), measured((device, gain), NOISE), count=600)
-    score = make_score(before, NOISE)
+    score = make_score(before, FLOOR)
     every, _ = tried(effects()["hysteresis"], before, score)
     plays = next(trial for trial in every if trial.variant.form == FORMS[loop])
     state, _ = added(before, plays, score)
-    kept, _ = reconsidered(state, (), NOISE, silent)
+    kept, _ = reconsidered(state, (), FLOOR, silent)
     names = [item.effect for item in kept.added]
     assert names == (["hysteresis"] if loop else ["saturation"])

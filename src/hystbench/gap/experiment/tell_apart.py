@@ -18,6 +18,7 @@ from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, near
+from hystbench.gap.records.floor import Floor
 from hystbench.model import Model
 from hystbench.record import Record
 
@@ -206,7 +207,7 @@ def tell_apart(
     base: Model,
     named: Named,
     records: Sequence[Record],
-    floor_rms: float,
+    floor: Floor,
     limits: Limits | None,
 ) -> tuple[Experiment | None, str]:
     """Look for the one excitation that tells all sets of likely effects apart.
@@ -217,7 +218,7 @@ def tell_apart(
     named : Named
     records : sequence of Record
         The fit records.
-    floor_rms : float
+    floor : Floor
     limits : Limits or None
         Those of the records where none are given.
 
@@ -253,7 +254,7 @@ def tell_apart(
     try:
         limits = Limits.of(records) if limits is None else limits
         excitations = candidates(limits, records[0].input.unit)
-        found = next_experiment(sets, records, floor_rms, excitations)
+        found = next_experiment(sets, records, floor.rms, excitations)
     except InputError as error:
         return None, "; ".join(filter(None, [str(error), unseen]))
     return replace(found, left_out=tuple(left_out)), ""

@@ -12,6 +12,7 @@ import numpy as np
 
 from hystbench.gap.fitting.score import Score, Shared
 from hystbench.gap.fitting.state import ROUNDING, ModelState
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.simulation.reshape import closing_reshapings, orthonormal
 from hystbench.gap.simulation.shared import Same
 from hystbench.gap.simulation.simulation import Simulation
@@ -22,23 +23,23 @@ LEAST = float(np.finfo(float).tiny)
 """Least floor, where the output is zero: the score has its logarithm."""
 
 
-def make_score(state: ModelState, floor_rms: float, forms: bool = True) -> Score:
+def make_score(state: ModelState, floor: Floor, forms: bool = True) -> Score:
     """Give the score for a model: what could be wrong in its shape is spanned anew.
 
     Parameters
     ----------
     state : ModelState
-    floor_rms : float
+    floor : Floor
     forms : bool
         Whether the added effects may be of another form too; not when their own
         numbers are to be found.
     """
     shape = state.wrong_shape
     directions = directions_of(shape, state) if forms else shape
-    return Score(state.sample, directions, floor_rms**2)
+    return Score(state.sample, directions, floor.square)
 
 
-def score_of_numbers(state: ModelState, floor_rms: float) -> Score:
+def score_of_numbers(state: ModelState, floor: Floor) -> Score:
     """Give the score by which the numbers of a model are found in the end.
 
     The score is flat below its floor. Where the noise is known only by an upper bound,
@@ -53,15 +54,15 @@ def score_of_numbers(state: ModelState, floor_rms: float) -> Score:
     ----------
     state : ModelState
         With all that was named.
-    floor_rms : float
+    floor : Floor
     """
-    floor = min(floor_rms**2, float(np.min(state.squares)) / 2)
+    square = min(floor.square, float(np.min(state.squares)) / 2)
     rounded = (ROUNDING * rms(state.measured)) ** 2
-    floor = max(floor, rounded, LEAST)
+    square = max(square, rounded, LEAST)
     if state.has_shape:
-        return Score.plain(state.sample, floor)
+        return Score.plain(state.sample, square)
     shape = closing_reshapings(state.simulation, state.sample)
-    return Score(state.sample, orthonormal(shape), floor)
+    return Score(state.sample, orthonormal(shape), square)
 
 
 def directions_of(wrong_shape: FloatArray, state: ModelState) -> FloatArray:

@@ -17,6 +17,7 @@ from hystbench.gap.fitting.score import Held, Score
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.variant_search import Trial
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import SCALE
 from hystbench.record import FloatArray
 
@@ -304,7 +305,7 @@ def finished_to_the_end(state: ModelState, score: Score) -> ModelState:
     return best
 
 
-def scanned(state: ModelState, floor_rms: float) -> ModelState:
+def scanned(state: ModelState, floor: Floor) -> ModelState:
     """Look over the numbers of effects before a simulator, one after the other.
 
     What a simulator of relays or of rounded numbers gives is a staircase of what it
@@ -330,7 +331,7 @@ def scanned(state: ModelState, floor_rms: float) -> ModelState:
         return state
     from scipy.optimize import minimize_scalar  # late: few searches need it
 
-    score = make_score(state, floor_rms, forms=False)
+    score = make_score(state, floor, forms=False)
     best, found = score_of(state, score), state
     for k in places:
         value, free = found.value(found.free[k]), found.free[k]

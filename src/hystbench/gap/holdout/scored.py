@@ -116,7 +116,7 @@ def as_recorded(
     return [
         output
         if output is None or not own.kinds
-        else own.fitted_first(record, output, floor.rms**2).of(output, record.dt)
+        else own.fitted_first(record, output, floor.square).of(output, record.dt)
         for record, output in zip(records, outputs, strict=True)
     ]
 

@@ -15,6 +15,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import CERTAIN, FURTHER, PAYS, SCALE, UNNAMED_SHARE
 
 
@@ -167,7 +168,7 @@ def bends(state: ModelState) -> bool:
     return has_free_form(state) or any(x.is_of_many_numbers for x in state.added)
 
 
-def most_inside(chain: Named, floor_rms: float) -> float:
+def most_inside(chain: Named, floor: Floor) -> float:
     """Give how many effects inside could do better than what a chain has found.
 
     They have to lower its score by what an effect has to gain, and by what a further
@@ -178,7 +179,7 @@ def most_inside(chain: Named, floor_rms: float) -> float:
     state = chain.state
     if bends(state):
         return np.inf
-    score = Score.plain(state.sample, floor_rms**2)
+    score = Score.plain(state.sample, floor.square)
     left = score_of(state, score) - score.least(state.freedom)
     return len(state.added) + float((left - PAYS) // FURTHER if left >= PAYS else -1)
 

@@ -52,6 +52,7 @@ from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.with_own_values import ROUNDS
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.simulation.memory import may_have_hysteresis
 from hystbench.gap.thresholds import AS_GOOD, FURTHER, PAYS
 from hystbench.model import Model
@@ -79,7 +80,7 @@ class Inside:
 def named_inside(
     base: Model,
     start: ModelState,
-    floor_rms: float,
+    floor: Floor,
     quantities: Quantities,
     asked: Asked = USUAL,
     most: Callable[[], float] = lambda: np.inf,
@@ -97,7 +98,7 @@ def named_inside(
     base : Model
     start : ModelState
         The same on the fit records.
-    floor_rms : float
+    floor : Floor
     quantities : Quantities
         What the device takes and gives: they tell which hosts there are.
     asked : Asked
@@ -115,7 +116,7 @@ def named_inside(
     """
     say, identified = asked.say, is_identified_linear(base)
     fewer = on_fewer(start, quantities)
-    score, score_of_all = (Score.plain(x.sample, floor_rms**2) for x in (fewer, start))
+    score, score_of_all = (Score.plain(x.sample, floor.square) for x in (fewer, start))
     turns = angle_in(start.records[0].output.unit)
     times = Times.of(start.records, identified)
     offer = partial(laws_for, turns=turns, offered=start.offered, times=times)
@@ -218,7 +219,7 @@ def of_free_numbers(base: Model, alone: ModelState) -> Model:
 def apart_inside(
     start: ModelState,
     inside: Inside | None,
-    floor_rms: float,
+    floor: Floor,
     look: Callable[[ModelState], Inside | None],
     say: Say,
 ) -> tuple[ModelState, Inside | None, OwnValues]:
@@ -234,7 +235,7 @@ def apart_inside(
         The base on the fit records.
     inside : Inside or None
         What was found on them as they are.
-    floor_rms : float
+    floor : Floor
     look : callable
         Finds forces beside a base.
     say : callable
@@ -246,7 +247,7 @@ def apart_inside(
     inside : Inside or None
     own : OwnValues
     """
-    square = floor_rms**2
+    square = floor.square
     score = Score.plain(start.sample, square)
     state = start if inside is None else inside.named.state
     found, least = (start, inside, NONE), score_of(state, score) - PAYS
@@ -268,19 +269,17 @@ def apart_inside(
     return found
 
 
-def beats_base(inside: Inside, start: ModelState, floor_rms: float) -> bool:
+def beats_base(inside: Inside, start: ModelState, floor: Floor) -> bool:
     """Tell whether effects inside lower the base's score by what one has to gain.
 
     A model of one coordinate may lack what a base of higher order has: an effect that
     makes up for that is not missing in the base.
     """
-    score = Score.plain(start.sample, floor_rms**2)
+    score = Score.plain(start.sample, floor.square)
     return score_of(start, score) - score_of(inside.named.state, score) >= PAYS
 
 
-def beats_chain(
-    inside: Inside, named: Named, floor_rms: float, say: Say = silent
-) -> bool:
+def beats_chain(inside: Inside, named: Named, floor: Floor, say: Say = silent) -> bool:
     """Tell whether effects inside do better than those in a chain.
 
     They have to lower the score on folds by as much as any effect; what either has to
@@ -289,13 +288,13 @@ def beats_chain(
     numbers stand, and beside a law of many numbers as many.
     """
     state, chain = inside.named.state, named.state
-    if _in_fewer_numbers(inside, named, floor_rms**2):
+    if _in_fewer_numbers(inside, named, floor.square):
         say("inside: laws of few numbers leave as little as a chain of many")
         return True
-    if _in_fewer_effects(inside, named, floor_rms**2):
+    if _in_fewer_effects(inside, named, floor.square):
         say("inside: a chain of fewer effects leaves as little")
         return False
-    score = Score.plain(state.sample, floor_rms**2)
+    score = Score.plain(state.sample, floor.square)
     # What the chain changes elsewhere says nothing of where forces show.
     about = score, shows_in_one_record(inside.start, state, score)
     gain = gain_held_back(chain, state, *about) - gain_held_back(chain, chain, *about)

@@ -16,6 +16,7 @@ from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import PAYS
 from hystbench.model import Model
 
@@ -27,7 +28,7 @@ TOLD = 0.05
 """Samples of timing that are worth a word: a twentieth of an interval."""
 
 
-def better_timed(base: Model, found: ModelState, floor_rms: float) -> Model | None:
+def better_timed(base: Model, found: ModelState, floor: Floor) -> Model | None:
     """Give an identified base with another timing, if that pays beside effects.
 
     Parameters
@@ -35,7 +36,7 @@ def better_timed(base: Model, found: ModelState, floor_rms: float) -> Model | No
     base : Model
     found : ModelState
         What stands for the base, with the effects that were found.
-    floor_rms : float
+    floor : Floor
 
     Returns
     -------
@@ -46,7 +47,7 @@ def better_timed(base: Model, found: ModelState, floor_rms: float) -> Model | No
         return None  # it was free beside the effects already
     if any(isinstance(block, OtherModes) for block in found.chain):
         return None  # the zeros of a structure of many modes hold it
-    score = Score.plain(found.sample, floor_rms**2)
+    score = Score.plain(found.sample, floor.square)
     now = score_of(found, score)
     if now - score.least(found.freedom) < PAYS:
         return None

@@ -10,6 +10,7 @@ from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.locate.forms import effective_count, f_test
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.lone_samples import much_stands_alone
 from hystbench.gap.thresholds import (
     ABOVE_NOISE,
@@ -161,16 +162,16 @@ class Leftover:
         )
 
 
-def what_is_left(base: ModelState, state: ModelState, floor_rms: float) -> Leftover:
+def what_is_left(base: ModelState, state: ModelState, floor: Floor) -> Leftover:
     """Measure what the base and what a model leaves, each beside its directions."""
-    floor = floor_rms**2
-    before, after = (_beyond(x, make_score(x, floor_rms)) for x in (base, state))
+    square = floor.square
+    before, after = (_beyond(x, make_score(x, floor)) for x in (base, state))
     return Leftover(
         before,
         after,
-        base.power(floor) / floor,
-        state.power(floor) / floor,
-        float(np.var(base.measured)) / floor,
+        base.power(square) / square,
+        state.power(square) / square,
+        float(np.var(base.measured)) / square,
     )
 
 

@@ -26,6 +26,7 @@ from hystbench.gap.judging.known_signals import (
     paths,
 )
 from hystbench.gap.locate.forms import f_test
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.simulation.reshape import orthonormal, products
 from hystbench.gap.thresholds import (
     BY_CHANCE,
@@ -155,7 +156,7 @@ class Unnamed:
 def what_is_unnamed(
     base: ModelState,
     state: ModelState,
-    floor_rms: float,
+    floor: Floor,
     share: float = UNNAMED_SHARE,
 ) -> Unnamed:
     """Measure what the effects of a model cannot own of what they leave.
@@ -170,13 +171,13 @@ def what_is_unnamed(
     ----------
     base, state : ModelState
         Without and with the effects.
-    floor_rms : float
+    floor : Floor
         RMS of the noise. A gap of less power than the noise counts as one of as much.
     share : float
         What may stay: of what sort it is, is looked for where more does.
     """
-    floor = floor_rms**2
-    power = base.gap(floor)
+    square = floor.square
+    power = base.gap(square)
     own, generic = owned(state), generic_groups(base, state)
     changing: dict[str, FloatArray] = {}
     slow_power: dict[str, FloatArray] = {}
@@ -205,7 +206,7 @@ def what_is_unnamed(
         structured,
         share,
         max(alone.noise - with_changing.noise, 0.0) / power if changing else None,
-        max(with_generic.noise - floor, 0.0) / power,
+        max(with_generic.noise - square, 0.0) / power,
         factors=_factors(state, increment) if changing else (),
     )
     if not found.told:

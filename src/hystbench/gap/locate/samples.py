@@ -110,7 +110,7 @@ class ViewSamples:
     @property
     def noise(self) -> float:
         """Variance of the noise floor."""
-        return self.floor.rms**2
+        return self.floor.square
 
     @cached_property
     def power(self) -> float:

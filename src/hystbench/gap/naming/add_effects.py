@@ -32,6 +32,7 @@ from hystbench.gap.naming.removal import (
 from hystbench.gap.naming.rounds import MOST_EFFECTS, Candidate, Round
 from hystbench.gap.naming.second_looks import reconsidered
 from hystbench.gap.progress import Say
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import (
     FURTHER,
     MOST,
@@ -80,20 +81,20 @@ class Named:
         return replace(self, state=self.rounds[0].before, gone=(*self.gone, *gone))
 
 
-def add_effects(state: ModelState, floor_rms: float, asked: Asked) -> Named:
+def add_effects(state: ModelState, floor: Floor, asked: Asked) -> Named:
     """Add effects to a model for as long as one pays, or until little is left."""
     say = asked.say
     foretell(state, say)
-    found = _one_by_one(state, floor_rms, say, asked.unnamed_share)
+    found = _one_by_one(state, floor, say, asked.unnamed_share)
     try:
-        return looked_over(found, state, floor_rms, say)
+        return looked_over(found, state, floor, say)
     except CallsUsedUp:
         return Named(found.state, found.rounds)
     finally:
         current().reserve = 0
 
 
-def looked_over(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> Named:
+def looked_over(found: SoFar, start: ModelState, floor: Floor, say: Say) -> Named:
     """Look over what was added one by one; where a wrong shape is to go first, anew.
 
     Where a wrong shape of the hysteresis takes more of the gap away than the effect
@@ -103,30 +104,28 @@ def looked_over(found: SoFar, start: ModelState, floor_rms: float, say: Say) -> 
     cut_short = current().refused()
     if not cut_short and found.deferred and found.state.has_shape:
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
-        found = _one_by_one(start, floor_rms, say, found.share, shape_first=True)
+        found = _one_by_one(start, floor, say, found.share, shape_first=True)
     if not cut_short:
-        found = _of_few_numbers(found, start, floor_rms, say)
-    state, gone = without_what_goes(found.state, floor_rms, found.gap, say)
+        found = _of_few_numbers(found, start, floor, say)
+    state, gone = without_what_goes(found.state, floor, found.gap, say)
     rounds = found.rounds
     while not cut_short and len(state.added) > 1:
         rivals = _rivals_of_all(state, rounds) | set(found.in_place_of)
         if not rivals:
             break
         before = names(state)
-        state, again = reconsidered(state, rounds, floor_rms, say, rivals)
+        state, again = reconsidered(state, rounds, floor, say, rivals)
         last = replace(rounds[-1], looks=(*rounds[-1].looks, *again))
         rounds = (*rounds[:-1], last)
         if names(state) == before:
             break
     if state.added:
         # Its own numbers are found without what other forms of it could do.
-        state = finished_to_the_end(state, score_of_numbers(state, floor_rms))
+        state = finished_to_the_end(state, score_of_numbers(state, floor))
     return Named(state, rounds, gone)
 
 
-def _of_few_numbers(
-    found: SoFar, start: ModelState, floor_rms: float, say: Say
-) -> SoFar:
+def _of_few_numbers(found: SoFar, start: ModelState, floor: Floor, say: Say) -> SoFar:
     """Add others one by one where one effect of many numbers leaves more than noise.
 
     So many numbers do much of what several laws of few do together. These are named if
@@ -135,12 +134,12 @@ def _of_few_numbers(
     if len(found.state.added) != 1 or found.state.has_shape:
         return found
     (effect,) = found.state.added
-    name, score = effect.effect, make_score(start, floor_rms, forms=False)
+    name, score = effect.effect, make_score(start, floor, forms=False)
     if not effect.is_of_many_numbers or above_floor(found.state, score) < FURTHER:
         return found
     say(f"{name} has many numbers and leaves more than noise: naming without it")
     others = tuple(x for x in among(start.offered) if x != name)
-    other = _one_by_one(replace(start, offered=others), floor_rms, say, found.share)
+    other = _one_by_one(replace(start, offered=others), floor, say, found.share)
     other = replace(other, state=replace(other.state, offered=start.offered))
     # They end with numbers that were fitted while other forms were allowed.
     state, value = finished(other.state, score)
@@ -195,24 +194,24 @@ class SoFar:
 
     @classmethod
     def begun(
-        cls, state: ModelState, floor_rms: float, share: float = UNNAMED_SHARE
+        cls, state: ModelState, floor: Floor, share: float = UNNAMED_SHARE
     ) -> SoFar:
         """Start from the base, re-tuned where it has free numbers.
 
         Those of a base in motion that is known roughly may have far to go.
         """
-        floor = floor_rms**2
         if state.free:
-            score = make_score(state, floor_rms)
+            score = make_score(state, floor)
             starts = [state]
             moves = any(isinstance(block, ForcedDynamics) for block in state.chain)
             if moves and any(free.tolerance is not None for free in state.free):
-                plain = Score.plain(state.sample, floor)
+                plain = Score.plain(state.sample, floor.square)
                 starts.append(fitted_far(state, plain).state)
             ends = (finished(each, score) for each in starts)
             state, _ = min(ends, key=itemgetter(1))
+        square = floor.square
         # A gap of nothing has no shares; where there is noise a millionth is nothing.
-        return cls(state, max(state.power(floor), floor * 1e-6), share)
+        return cls(state, max(state.power(square), square * 1e-6), share)
 
     @property
     def done(self) -> bool:
@@ -232,17 +231,17 @@ class SoFar:
 
 def _one_by_one(
     state: ModelState,
-    floor_rms: float,
+    floor: Floor,
     say: Say,
     share: float,
     shape_first: bool = False,
 ) -> SoFar:
     """Add effects one by one."""
-    progress = SoFar.begun(state, floor_rms, share)
+    progress = SoFar.begun(state, floor, share)
     calls = current()
     while not (progress.done or calls.refused()):
         try:
-            further = advance(progress, floor_rms, say, shape_first)
+            further = advance(progress, floor, say, shape_first)
         except CallsUsedUp:
             break
         # A round that was cut short counts only where nothing in it needed a call.
@@ -256,36 +255,36 @@ def _one_by_one(
 
 def advance(
     progress: SoFar,
-    floor_rms: float,
+    floor: Floor,
     say: Say,
     shape_first: bool = False,
 ) -> SoFar:
     """Try every effect beside the model and add the one that pays, if any does."""
-    floor = floor_rms**2
-    little = progress.little_left(floor)
-    found = None if little else _before_a_round(progress.state, floor_rms)
+    square = floor.square
+    little = progress.little_left(square)
+    found = None if little else _before_a_round(progress.state, floor)
     if found is None:
         say(NO_MORE_LEFT if little else "nothing is left that an effect could gain")
         return replace(progress, closed=True)
     state, score = found
     ranking = rank(state, score, needs=FURTHER if state.added else PAYS)
     deferred = progress.deferred
-    if _shape_takes_more(ranking, state, floor):
+    if _shape_takes_more(ranking, state, square):
         deferred = True
         if shape_first:
             ranking = tuple(sorted(ranking, key=lambda x: x.effect != SHAPE))
     first = ranking[0]
     for item in ranking[:SAID]:
         say(f"{item.effect} {item.form}: gain {item.gain:.1f}")
-    taken = pays(first, state, floor, progress.gap, progress.share)
+    taken = pays(first, state, square, progress.gap, progress.share)
     one = Round(state, first.score + first.gain, ranking, taken)
     state = progress.state
     if taken:
         assert first.state is not None  # noqa: S101  (for the type checker)
-        state = with_all_numbers(scanned(first.state, floor_rms), floor)
+        state = with_all_numbers(scanned(first.state, floor), square)
         if len(state.added) > 1:
             rounds = (*progress.rounds, one)
-            state, looks = reconsidered(state, rounds, floor_rms, say)
+            state, looks = reconsidered(state, rounds, floor, say)
             one = replace(one, looks=looks)
     return replace(
         progress, state=state, rounds=(*progress.rounds, one), deferred=deferred
@@ -309,16 +308,14 @@ def with_all_numbers(state: ModelState, floor: float) -> ModelState:
     return best.state if better else state
 
 
-def _before_a_round(
-    state: ModelState, floor_rms: float
-) -> tuple[ModelState, Score] | None:
+def _before_a_round(state: ModelState, floor: Floor) -> tuple[ModelState, Score] | None:
     """Refit a model under the score that a further effect is to lower.
 
     The score allows for other forms of the effects that the model has, which it was
     fitted without: what a refit gains no further effect may count as its own. None
     where the effects leave nothing to gain.
     """
-    score = make_score(state, floor_rms)
+    score = make_score(state, floor)
     if not state.added:
         return state, score
     if above_floor(state, score) < FURTHER:

@@ -12,6 +12,7 @@ from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.simulation.starting import starting
 from hystbench.model import Model
@@ -19,7 +20,7 @@ from hystbench.record import Record
 
 
 def begun_as_named(
-    base: Model, found: ModelState, records: tuple[Record, ...], floor_rms: float
+    base: Model, found: ModelState, records: tuple[Record, ...], floor: Floor
 ) -> Model | None:
     """Give an identified base with the start that does best beside its effects.
 
@@ -34,7 +35,7 @@ def begun_as_named(
         The base with effects, among them a path of each record's own.
     records : tuple of Record
         The fit records, scored from their first sample on.
-    floor_rms : float
+    floor : Floor
 
     Returns
     -------
@@ -59,7 +60,7 @@ def begun_as_named(
     chain = starting(base.chain, best)
     if chain == base.chain:
         return None
-    score = Score.plain(found.sample, floor_rms**2)
+    score = Score.plain(found.sample, floor.square)
     laws = without(found, found.paths)
     alone = replace(laws, chain=starting(laws.chain, best)).settled()
     if finished(alone, score)[1] > score_of(found, score):

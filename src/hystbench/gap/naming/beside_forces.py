@@ -14,6 +14,7 @@ from hystbench.gap.naming.rank import rank
 from hystbench.gap.naming.removal import without_what_goes
 from hystbench.gap.naming.rounds import Round
 from hystbench.gap.progress import Say
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import FURTHER
 
 NOT_OF_THE_INPUT = ("mains-pickup", "drift")
@@ -21,7 +22,7 @@ NOT_OF_THE_INPUT = ("mains-pickup", "drift")
 
 
 def beside_forces(
-    named: Named, start: ModelState, floor_rms: float, share: float, say: Say
+    named: Named, start: ModelState, floor: Floor, share: float, say: Say
 ) -> Named:
     """Take out forces of unknown size, and add signals that no force makes.
 
@@ -34,17 +35,17 @@ def beside_forces(
         Forces inside, by rounds.
     start : ModelState
         What stands for the base, without them.
-    floor_rms : float
+    floor : Floor
     share : float
         Of the gap, that may stay unnamed.
     say : callable
     """
-    state, gone = without_what_goes(named.state, floor_rms, None, say)
+    state, gone = without_what_goes(named.state, floor, None, say)
     if gone:  # what went was judged beside other forms of those that stay
-        state = finished_to_the_end(state, make_score(state, floor_rms, forms=False))
+        state = finished_to_the_end(state, make_score(state, floor, forms=False))
     named = replace(named, state=state, gone=(*named.gone, *gone))
-    gap = start.gap(floor_rms**2)
-    while (more := _with_one_beside(named, floor_rms, gap, share)) is not None:
+    gap = start.gap(floor.square)
+    while (more := _with_one_beside(named, floor, gap, share)) is not None:
         if len(more.rounds) > len(named.rounds):
             first = more.rounds[-1].ranking[0]
             say(f"inside: beside it {first.effect}: gain {first.gain:.1f}")
@@ -53,14 +54,14 @@ def beside_forces(
 
 
 def _with_one_beside(
-    named: Named, floor_rms: float, gap: float, share: float
+    named: Named, floor: Floor, gap: float, share: float
 ) -> Named | None:
     """Add the signal that the input does not explain and that does best, if it pays.
 
     Forces are refitted beside it. If the signal matters little then, it only freed them
     from a bad fit: they stay, it goes.
     """
-    floor, state = floor_rms**2, named.state
+    square, state = floor.square, named.state
     known = [
         item
         for item in among(state.offered).values()
@@ -68,17 +69,17 @@ def _with_one_beside(
     ]
     if not known:
         return None
-    ranking = rank(state, make_score(state, floor_rms), known, needs=FURTHER)
+    ranking = rank(state, make_score(state, floor), known, needs=FURTHER)
     first = ranking[0]
-    if not pays(first, state, floor, gap, share):
+    if not pays(first, state, square, gap, share):
         return None
     assert first.state is not None  # noqa: S101  (for the type checker)
     one = Round(state, first.score + first.gain, ranking, True)
     # They were fitted with the signal in what is left.
-    score = make_score(first.state, floor_rms, forms=False)
+    score = make_score(first.state, floor, forms=False)
     beside, _ = finished(first.state, score)
     alone = without_effect(beside, len(beside.added) - 1)
-    if alone.power(floor) - beside.power(floor) > share * gap:
+    if alone.power(square) - beside.power(square) > share * gap:
         return replace(named, state=beside, rounds=(*named.rounds, one))
     alone, value = finished(alone, score)
     better = value < score_of(state, score) - FURTHER

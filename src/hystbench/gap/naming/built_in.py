@@ -93,14 +93,14 @@ def build_in(
     )
     # Without directions: a wrong shape of the hysteresis is no excuse here. Numbers are
     # those with which the simulator fits the records best.
-    score = Score.plain(state.sample, floor.rms**2)
+    score = Score.plain(state.sample, floor.square)
     if state.free:
         state, _ = finished(state, score)
     for name in names:
         state, _ = finished(_with(state, score, name), score)
         say(f"{name} is in, as you asked")
     finer = on_more_samples(state)
-    errors = standard_errors(finer, make_score(finer, floor.rms, forms=False))
+    errors = standard_errors(finer, make_score(finer, floor, forms=False))
     told = tuple(
         {
             "name": item.effect,

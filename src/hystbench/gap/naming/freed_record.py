@@ -29,6 +29,7 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import ABOVE_NOISE, LOOSE, PAYS
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
@@ -53,7 +54,7 @@ ROUNDING = 1e-12
 
 
 def freed_of_laws(
-    base: Model, named: Named, evidence: Evidence, floor_rms: float
+    base: Model, named: Named, evidence: Evidence, floor: Floor
 ) -> Evidence | None:
     """Take what laws do off the record that a loop was identified from.
 
@@ -66,7 +67,7 @@ def freed_of_laws(
         first law that paid in a round is taken.
     evidence : Evidence
         With the fit records.
-    floor_rms : float
+    floor : Floor
 
     Returns
     -------
@@ -81,13 +82,13 @@ def freed_of_laws(
     bare = without(laws, {item.effect for item in laws.added})
     with_them, alone = (_simulated(base, own, slow) for own in (laws, bare))
     does = with_them - alone
-    if _power(does, slow) <= ABOVE_NOISE * floor_rms**2:
+    if _power(does, slow) <= ABOVE_NOISE * floor.square:
         return None
     return _with_record(evidence, replace(slow, y=slow.y - does).as_measured)
 
 
 def freed_of_slow_law(
-    base: Model, evidence: Evidence, floor_rms: float, offered: Collection[str]
+    base: Model, evidence: Evidence, floor: Floor, offered: Collection[str]
 ) -> Evidence | None:
     """Take creep or heat off the record that a loop was identified from.
 
@@ -99,7 +100,7 @@ def freed_of_slow_law(
     base : Model
     evidence : Evidence
         With the fit records.
-    floor_rms : float
+    floor : Floor
     offered : collection of str
         Effects that the device may have.
 
@@ -116,7 +117,7 @@ def freed_of_slow_law(
         return None
     outputs = run_base(base, evidence.fit, evidence.input_hold)
     left = _left(evidence.fit, outputs)
-    noise = floor_rms**2
+    noise = floor.square
     if left <= (1 + ABOVE_NOISE) * noise:
         return None
     # Late: few loops creep so much.

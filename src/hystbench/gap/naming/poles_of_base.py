@@ -20,6 +20,7 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.removal import TakenOut, without_what_goes
 from hystbench.gap.progress import Say
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import PAYS
 from hystbench.model import Model
 from hystbench.record import FloatArray
@@ -72,7 +73,7 @@ def with_poles_named(base: Model, found: ModelState) -> Model | None:
 
 
 def named_beside_them(
-    named: Named, start: ModelState, floor_rms: float, say: Say
+    named: Named, start: ModelState, floor: Floor, say: Say
 ) -> Named | None:
     """Give what was named, beside a base that has the poles of its linear effects.
 
@@ -81,7 +82,7 @@ def named_beside_them(
     named : Named
     start : ModelState
         The base of :func:`with_poles_named` on the same records.
-    floor_rms : float
+    floor : Floor
     say : callable
 
     Returns
@@ -101,12 +102,12 @@ def named_beside_them(
     state = rearranged(replace(state, added=others), tuple(chain), moved)
     free = (item._replace(block=own[item.block]) for item in start.free)
     state = replace(state, free=(*free, *state.free), correction=None).settled()
-    state = finished_to_the_end(state, score_of_numbers(state, floor_rms))
-    score = Score.plain(state.sample, floor_rms**2)
+    state = finished_to_the_end(state, score_of_numbers(state, floor))
+    score = Score.plain(state.sample, floor.square)
     if score_of(state, score) > score_of(named.state, score) + PAYS:
         return None
-    gap = start.power(floor_rms**2)
-    if without_what_goes(state, floor_rms, gap, say)[1]:
+    gap = start.power(floor.square)
+    if without_what_goes(state, floor, gap, say)[1]:
         return None
     first, *rest = named.rounds
     rounds = (replace(first, before=start), *rest)

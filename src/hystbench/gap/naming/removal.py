@@ -15,6 +15,7 @@ from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.uncertainty import on_more_samples, size_error
 from hystbench.gap.progress import Say
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import CERTAIN, FURTHER, LOOSE, PAYS, SHAPE, UNKNOWN
 
 
@@ -30,14 +31,14 @@ Without = tuple[TakenOut, ModelState]
 
 
 def without_what_goes(
-    state: ModelState, floor_rms: float, gap: float | None, say: Say
+    state: ModelState, floor: Floor, gap: float | None, say: Say
 ) -> tuple[ModelState, tuple[TakenOut, ...]]:
     """Take out what is needless, then what is not known, while two effects are there.
 
     Parameters
     ----------
     state : ModelState
-    floor_rms : float
+    floor : Floor
     gap : float or None
         Mean square of the base's gap above the floor; without it nothing is needless.
     say : callable
@@ -50,8 +51,8 @@ def without_what_goes(
     """
     rules: list[Callable[[ModelState], Without | None]] = []
     if gap is not None:
-        rules.append(partial(needless, floor_rms=floor_rms, gap=gap))
-    rules.append(partial(unknown, floor_rms=floor_rms))
+        rules.append(partial(needless, floor=floor, gap=gap))
+    rules.append(partial(unknown, floor=floor))
     gone: list[TakenOut] = []
     for rule in rules:
         while len(state.added) > 1 and (found := rule(state)) is not None:
@@ -61,7 +62,7 @@ def without_what_goes(
     return state, tuple(gone)
 
 
-def needless(state: ModelState, floor_rms: float, gap: float) -> Without | None:
+def needless(state: ModelState, floor: Floor, gap: float) -> Without | None:
     """Find an effect that gains too little beside those that were added later.
 
     The score ignores what other forms of the remaining effects could explain. It does
@@ -73,13 +74,13 @@ def needless(state: ModelState, floor_rms: float, gap: float) -> Without | None:
         if not removable(state, number):
             continue
         short = without_effect(state, number)
-        score = make_score(short, floor_rms)
+        score = make_score(short, floor)
         short, value = finished(short, score)
         if value - score_of(state, score) >= FURTHER:
             continue  # a refit could only add to it
         full, least = finished(state, score)
         gain = value - least
-        share = full.share(short, floor_rms**2, gap)
+        share = full.share(short, floor.square, gap)
         if gain < FURTHER and not is_shape_that_matters(item.effect, gain, share):
             reason = f"needless beside the others, its gain is {gain:.1f}"
             return TakenOut(item.effect, reason), short
@@ -91,7 +92,7 @@ def is_shape_that_matters(effect: str, gain: float, share: float) -> bool:
     return effect == SHAPE and gain >= PAYS and share > LOOSE
 
 
-def unknown(state: ModelState, floor_rms: float) -> Without | None:
+def unknown(state: ModelState, floor: Floor) -> Without | None:
     """Find a further effect whose size the records do not know.
 
     An effect whose size is uncertain by more than half of it is dropped, unless it
@@ -105,11 +106,11 @@ def unknown(state: ModelState, floor_rms: float) -> Without | None:
             continue
         if not removable(state, number):
             continue
-        error = size_error(finer, floor_rms**2, number)
+        error = size_error(finer, floor.square, number)
         if error <= UNKNOWN:
             continue
         short = without_effect(state, number)
-        score = make_score(short, floor_rms)
+        score = make_score(short, floor)
         short, _ = finished(short, score)
         if gain_held_back(short, finished(state, score)[0], score) > CERTAIN:
             continue

@@ -16,6 +16,7 @@ from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.naming.rank import does_without_itself, rank
 from hystbench.gap.naming.rounds import WIDER, Candidate, Round, SecondLook, in_order
 from hystbench.gap.progress import Say
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import PAYS, SCALE, SHAPE
 
 CLOSE = 0.6
@@ -26,7 +27,7 @@ than half, as what gains less takes another part of the gap. A convention."""
 def reconsidered(
     state: ModelState,
     rounds: Sequence[Round],
-    floor_rms: float,
+    floor: Floor,
     say: Say,
     rivals: Collection[str] = (),
 ) -> tuple[ModelState, tuple[SecondLook, ...]]:
@@ -43,7 +44,7 @@ def reconsidered(
     state : ModelState
     rounds : sequence of Round
         Tell which effects came near one.
-    floor_rms : float
+    floor : Floor
     say : callable
     rivals : collection of str
         Effects that are rivals of all; by default those that came near one.
@@ -61,11 +62,11 @@ def reconsidered(
             continue
         short = without_effect(state, number)
         # Other forms of the effect itself would do for a rival what the rival does not.
-        score = make_score(short, floor_rms)
+        score = make_score(short, floor)
         as_is, now = finished(state, score)
         have = tuple(other.effect for other in short.added)
         near = rivals or _near(item.effect, rounds)
-        is_itself = bool(rivals) or _is_itself(state, item, floor_rms)
+        is_itself = bool(rivals) or _is_itself(state, item, floor)
         if item.is_of_many_numbers or not is_itself:
             near = among(state.offered)
         known = list(among({item.effect, *near} - set(have)).values())
@@ -102,12 +103,12 @@ def reconsidered(
     return state, tuple(looks)
 
 
-def _is_itself(state: ModelState, item: Added, floor_rms: float) -> bool:
+def _is_itself(state: ModelState, item: Added, floor: Floor) -> bool:
     """Tell whether an effect has not lost what makes it that to a later one."""
     of_effect = effects()[item.effect]
     if of_effect.without_itself([state.chain[k] for k in item.blocks]) is None:
         return True  # most have nothing that they could lose, and need no score
-    score = make_score(state, floor_rms)
+    score = make_score(state, floor)
     return not does_without_itself(state, item, score_of(state, score), score)
 
 

@@ -21,12 +21,13 @@ from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.progress import Say
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.thresholds import ABOVE_NOISE, PARAMETER, PAYS
 
 
 def named_apart(
     start: ModelState,
-    floor_rms: float,
+    floor: Floor,
     named: Named,
     asked: Asked,
 ) -> tuple[ModelState, Named, OwnValues]:
@@ -50,7 +51,7 @@ def named_apart(
     ----------
     start : ModelState
         The base on the fit records.
-    floor_rms : float
+    floor : Floor
     named : Named
         What was named on the records as they are.
     asked : Asked
@@ -65,11 +66,11 @@ def named_apart(
     own : OwnValues
     """
     found = (start, named, NONE)
-    square, share, say = floor_rms**2, asked.unnamed_share, asked.say
+    square, share, say = floor.square, asked.unnamed_share, asked.say
     paths = bool(named.state.paths)
     if not paths and named.state.power(square) <= share * start.power(square):
         return found
-    score = make_score(start, floor_rms, forms=False)
+    score = make_score(start, floor, forms=False)
     least = score_of(named.state, score) - (0.0 if paths else PAYS)
     if least <= score.least(start.freedom + 1):
         return found  # noise alone, and what is their own charged, scores no less
@@ -89,7 +90,7 @@ def named_apart(
             break
         say(f"records have {own.words} of their own: naming beside that")
         apart = on_records(start, own.taken_off(start.records, start.hold))
-        again = add_effects(apart, floor_rms, asked)
+        again = add_effects(apart, floor, asked)
         value = score_of(again.state, score) + charge(own)
         if value >= least:
             likely = []
@@ -148,7 +149,7 @@ def beside_offsets(state: ModelState, start: ModelState, score: Score) -> ModelS
 
 
 def offsets_for_paths(
-    start: ModelState, named: Named, floor_rms: float, say: Say
+    start: ModelState, named: Named, floor: Floor, say: Say
 ) -> tuple[ModelState, Named, OwnValues]:
     """Give records offsets of their own in place of a path named beside forces.
 
@@ -161,7 +162,7 @@ def offsets_for_paths(
         The base on the fit records.
     named : Named
         Forces, and what the input does not explain.
-    floor_rms : float
+    floor : Floor
     say : callable
 
     Returns
@@ -172,8 +173,8 @@ def offsets_for_paths(
         Without the path.
     own : OwnValues
     """
-    state, square = named.state, floor_rms**2
-    score = make_score(state, floor_rms, forms=False)
+    state, square = named.state, floor.square
+    score = make_score(state, floor, forms=False)
     laws = beside_offsets(state, start, score)
     own = own_values(start.records, laws.exact, square, ("offset",))
     if not own.records:

@@ -45,6 +45,11 @@ class Floor:
     residual's spectrum, as far as no black box predicts it. The last is a bound: what
     a gap leaves up there, and no black box knows, is taken for noise."""
 
+    @property
+    def square(self) -> float:
+        """Mean square of the noise."""
+        return self.rms**2
+
 
 def noise_floor(compared: Sequence[Compared], declared: float | None = None) -> Floor:
     """Measure the white noise of the output.
