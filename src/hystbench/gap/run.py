@@ -143,9 +143,8 @@ def decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Dec
 def _decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, Decided]:
     """Find what is missing on records as they are."""
     vocabulary = asked.vocabulary
-    hold, takes = evidence.input_hold, evidence.quantities
     begun = begun_beside(base, evidence.fit)
-    fit = without_leads(begun, base, hold, takes, asked.say)
+    fit = without_leads(begun, base, evidence, asked.say)
     evidence = replace(evidence, fit=fit)
     first = base
     base, built_in = build_in(base, evidence, vocabulary.fixed, asked.say)
@@ -203,12 +202,9 @@ def hold_out_begun_like_fit(
     """
     if not is_identified_linear(base):
         return replace(evidence, hold_out=begun_beside(base, evidence.hold_out))
-    hold, takes = evidence.input_hold, evidence.quantities
     records = evidence.hold_out
     for model in (None, augmented(found.base, found.state)):
-        records = without_leads(
-            records, base, hold, takes, say, found=model, fit=evidence.fit
-        )
+        records = without_leads(records, base, evidence, say, found=model)
     return replace(evidence, hold_out=records)
 
 

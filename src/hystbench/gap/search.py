@@ -151,9 +151,8 @@ class GapSearch:
 
         The model was found beside the base. What was named goes with the leads.
         """
-        hold, takes = self.evidence.input_hold, self.evidence.quantities
-        records, say = found.start.records, self.asked.say
-        shorter = without_leads(records, found.base, hold, takes, say, found=model)
+        records, about = found.start.records, (self.evidence, self.asked.say)
+        shorter = without_leads(records, found.base, *about, found=model)
         return found if shorter is records else self.started(shorter, found.base)
 
     def identified_again(self, found: BesideBase, named: Named) -> BesideBase:

@@ -39,9 +39,13 @@ def linear(free=FREE):
     return IdentifiedModel("linear", *CHANNELS, (LAG,), free)
 
 
+def fitted_to(*records, hold="band-limited", quantities=NONE_KNOWN):
+    return Evidence("device", records, (), hold, quantities=quantities)
+
+
 def leads(base, *records, quantities=NONE_KNOWN):
-    found = without_leads(records, base, "band-limited", quantities)
-    return [item.lead for item in found]
+    about = fitted_to(*records, quantities=quantities)
+    return [item.lead for item in without_leads(records, base, about)]
 
 
 def test_of_a_record_that_was_cut_out_of_a_longer_one_the_first_tenth_is_left_out():
@@ -72,8 +76,9 @@ def test_beside_what_was_found_a_lead_is_as_long_as_a_state_lasts():
     """A hundredth is left of a lag after 4.6 of its time constants."""
 
     def lead(count):
-        given, about = (record(537, count=count),), ("band-limited", NONE_KNOWN)
-        return without_leads(given, linear(), *about, found=linear())[0].lead
+        given = (record(537, count=count),)
+        about = linear(), fitted_to(*given)
+        return without_leads(given, *about, found=linear())[0].lead
 
     assert lead(1000) * DT == pytest.approx(0.3 * np.log(100), abs=3 * DT)
     assert lead(260) == 0  # half of the record at most
@@ -95,10 +100,10 @@ def test_one_level_is_no_start_of_records_that_begin_at_several():
     assert leads(linear(), *several, quantities=STORE) == [200, 200]
     assert leads(linear(), record(537), record(537), quantities=STORE) == [0, 0]
     held_out = (record(537, "hold-out"),)
-    about = (linear(), "band-limited", STORE)
-    (found,) = without_leads(held_out, *about, fit=several)
+    both, one = (fitted_to(*x, quantities=STORE) for x in (several, several[:1]))
+    (found,) = without_leads(held_out, linear(), both)
     assert found.lead == 200
-    assert without_leads(held_out, *about, fit=several[:1]) is held_out
+    assert without_leads(held_out, linear(), one) is held_out
 
 
 def test_a_window_of_a_free_mass_knows_its_start_otherwise():
@@ -126,7 +131,7 @@ def middle_of_a_motion():
 def test_a_base_that_is_far_off_hides_a_start_which_forces_show():
     given = (middle_of_a_motion(),)
     base, right = sprung(0.0), sprung(70.0)
-    about = (base, "zero-order", NONE_KNOWN)
+    about = base, fitted_to(*given, hold="zero-order")
     assert without_leads(given, *about) is given
     (found,) = without_leads(given, *about, found=right)
     assert found.lead == 247
@@ -137,8 +142,8 @@ def test_the_speed_of_a_free_mass_is_forgotten_though_its_place_is_not():
     slow = TransferFunction(numerator=(1.0, 9.0), denominator=(1.0, 9.0, 0.01))
     base = IdentifiedModel("linear", *CHANNELS, (slow,), FREE)
     found = Model("found", *CHANNELS, (free,))
-    about = (base, "band-limited", NONE_KNOWN)
     given = (record(537),)  # whose lag the free mass has
+    about = base, fitted_to(*given)
     assert without_leads(given, *about) is given
     (shorter,) = without_leads(given, *about, found=found)
     assert shorter.lead == 200
@@ -147,7 +152,8 @@ def test_the_speed_of_a_free_mass_is_forgotten_though_its_place_is_not():
 def test_what_has_no_lead_already_is_looked_at_no_more():
     given = (replace(middle_of_a_motion(), lead=10),)
     base, right = sprung(0.0), sprung(70.0)
-    assert without_leads(given, base, "zero-order", NONE_KNOWN, found=right) is given
+    about = base, fitted_to(*given, hold="zero-order")
+    assert without_leads(given, *about, found=right) is given
 
 
 def test_what_is_not_scored_is_told():
@@ -160,7 +166,8 @@ def test_what_is_not_scored_is_told():
 
 
 def test_scores_leave_a_lead_out():
-    (found,) = without_leads((record(537),), linear(), "band-limited", NONE_KNOWN)
+    given = (record(537),)
+    (found,) = without_leads(given, linear(), fitted_to(*given))
     assert found.counted.sum() == pytest.approx(1800)
 
 
@@ -191,7 +198,7 @@ def test_the_weight_of_a_pendulum_is_part_of_what_a_state_does():
     y = found.simulate(u, DT)[537:]
     noise = 0.001 * np.random.default_rng(4).standard_normal(len(y))
     given = (Record("r", DT, u[537:], y + noise, *CHANNELS, "measured", "fit"),)
-    (shorter,) = without_leads(given, linear(), "band-limited", NONE_KNOWN, found=found)
+    (shorter,) = without_leads(given, linear(), fitted_to(*given), found=found)
     assert 300 < shorter.lead < 600
 
 
@@ -207,10 +214,13 @@ def test_a_store_that_is_found_forgets_the_level_it_begins_with():
     )
     slow = TransferFunction(numerator=(1.0,), denominator=(500.0, 1.0))
     base = IdentifiedModel("linear", *CHANNELS, (slow,), FREE)
-    about = base, "zero-order", STORE
-    assert [x.lead for x in without_leads(several, *about, found=found)] == [0, 207]
     alone = several[1:]
-    assert without_leads(alone, *about, found=found) is alone
+    both, one = (
+        fitted_to(*x, hold="zero-order", quantities=STORE) for x in (several, alone)
+    )
+    found_both = without_leads(several, base, both, found=found)
+    assert [x.lead for x in found_both] == [0, 207]
+    assert without_leads(alone, base, one, found=found) is alone
 
 
 def test_a_lone_hold_out_record_is_asked_by_how_the_fit_records_begin():

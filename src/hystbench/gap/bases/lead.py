@@ -12,7 +12,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.blocks.held import Hold
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.store import Store
 from hystbench.blocks.structure import Structure
@@ -20,10 +19,10 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.linear import IdentifiedModel, is_identified_linear
 from hystbench.gap.bases.orders import LEAD
 from hystbench.gap.progress import Say, silent
+from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.pasts import with_pasts
 from hystbench.gap.thresholds import MOST
 from hystbench.model import Model
-from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
 from hystbench.sentences import listed, percent
 from hystbench.units import sized
@@ -53,11 +52,9 @@ def begun_beside(base: Model, records: tuple[Record, ...]) -> tuple[Record, ...]
 def without_leads(
     records: tuple[Record, ...],
     base: Model,
-    hold: Hold,
-    quantities: Quantities,
+    evidence: Evidence,
     say: Say = silent,
     found: Model | None = None,
-    fit: Sequence[Record] | None = None,
 ) -> tuple[Record, ...]:
     """Leave out of the score the leads of records that begin in the middle of a motion.
 
@@ -75,27 +72,24 @@ def without_leads(
         looked at when the search is over.
     base : Model
         Where it was given and not identified, nothing is left out.
-    hold : {"zero-order", "linear", "band-limited"}
-    quantities : Quantities
-        What the device takes and gives. The level that a store begins with is a number
-        of the model, where all records to fit begin alike.
+    evidence : Evidence
+        The level that a store begins with is a number of the model, where all its fit
+        records begin alike.
     say : callable
         Told of how many records the lead is left out.
     found : Model, optional
         The base with what was found: it is asked in the place of the base, whose own
         error may hide a start.
-    fit : sequence of Record, optional
-        Records that the model is fitted to; by default those given.
     """
+    causality = evidence.quantities.causality
     stores = any(isinstance(block, Store) for block in (found or base).chain)
     if not is_identified_linear(base) or (
-        (stores or quantities.causality == "storage")
-        and begin_alike(records if fit is None else fit)
+        (stores or causality == "storage") and begin_alike(evidence.fit)
     ):
         return records
-    held = base.with_hold(hold)
-    asked = held if found is None else found.with_hold(hold)
-    moves = quantities.causality in ("force to motion", "motion to force")
+    held = base.with_hold(evidence.input_hold)
+    asked = held if found is None else found.with_hold(evidence.input_hold)
+    moves = causality in ("force to motion", "motion to force")
     most = HALF if moves or found is not None else LEAD
     shorter = tuple(x if x.lead else _without(x, held, asked, most) for x in records)
     cut = sum(item is not x for item, x in zip(shorter, records, strict=True))
