@@ -20,7 +20,6 @@ from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.judging.leftover import what_is_left
 from hystbench.gap.judging.unnamed import what_is_unnamed
-from hystbench.gap.judging.verdict import judge
 from hystbench.gap.locate import locate
 from hystbench.gap.naming import add_effects as naming
 from hystbench.gap.naming.rank import rank
@@ -29,6 +28,7 @@ from hystbench.gap.records.lone_samples import lone_share
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.thresholds import FOREIGN, PAYS, SCALE, SHAPE
 from tests.gap.halved import first_halves
+from tests.gap.judged import judge
 from tests.gap.searched import search
 
 SEED, GROUP = 1, 1

@@ -36,7 +36,8 @@ from hystbench.gap.judging.leftover import Leftover, size_follows, what_is_left
 from hystbench.gap.judging.unnamed import Unnamed, what_is_unnamed
 from hystbench.gap.judging.verdict import (
     Verdict,
-    judge,
+    judge_names,
+    judge_none,
     likelier_wrong,
     what_mends,
 )
@@ -169,18 +170,20 @@ def _judged(
     """Give the verdict on what was named, and say why."""
     state = named.state
     unnamed = what_is_unnamed(start, state, floor, share)
-    bound = floor.method == "upper-bound"
-    size_tells = bound or left.is_new or unnamed.follows_nothing
-    verdict, why = judge(
-        left,
-        named=bool(state.added),
-        explained_by_box=box.explained_on_folds,
-        retuned=bool(start.free),
-        floor_is_upper_bound=bound,
-        size_follows=not state.added and size_tells and size_follows(state),
-        unnamed=unnamed,
-        mends=what_mends(start.records),
-    )
+    if state.added:
+        verdict, why = judge_names(left, unnamed)
+    else:
+        bound = floor.method == "upper-bound"
+        size_tells = bound or left.is_new or unnamed.follows_nothing
+        verdict, why = judge_none(
+            left,
+            unnamed,
+            explained_by_box=box.explained_on_folds,
+            retuned=bool(start.free),
+            floor_is_upper_bound=bound,
+            size_follows=size_tells and size_follows(state),
+            mends=what_mends(start.records),
+        )
     beside = f"beside {own.words} of some records' own" if own.records else ""
     if verdict == "no-gap" and own.scales and own.share > share:
         verdict, why, beside = "unnamed", f"{own.reason}; beside that {why}", ""

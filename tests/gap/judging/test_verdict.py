@@ -13,7 +13,6 @@ from hystbench.gap.judging.verdict import (
     GIVE,
     confidence,
     error_of,
-    judge,
     likelier_wrong,
     what_mends,
 )
@@ -29,6 +28,7 @@ from hystbench.gap.thresholds import (
     WIDE,
 )
 from hystbench.record import Channel, Record
+from tests.gap.judged import judge
 from tests.gap.small import block, measured, state_of
 
 SIZES = st.floats(-1.0, 1e6)
@@ -97,8 +97,10 @@ def test_beside_an_upper_bound_of_the_noise_what_follows_signals_may_be_a_gap(
     """A floor that may hold the whole gap: all else is judged as with a known one."""
     found = Leftover(before, after, one, other, output)
     some = Unnamed(1.1 * UNNAMED_SHARE)
-    known = judge(found, False, 0.0, retuned, unnamed=some)
-    bound = judge(found, False, 0.0, retuned, unnamed=some, floor_is_upper_bound=True)
+    known = judge(found, False, 0.0, retuned=retuned, unnamed=some)
+    bound = judge(
+        found, False, 0.0, retuned=retuned, unnamed=some, floor_is_upper_bound=True
+    )
     if known[0] != "no-gap":
         assert bound == known
         return

@@ -32,8 +32,6 @@ SURE = 100.0
 """Odds beyond e to this are all the same."""
 
 
-OWNED = Unnamed(0.0)
-"""What stays where nothing is left that names cannot own."""
 GIVE = "give period_samples or noise_rms"
 """What to write in dataset.yaml where nothing tells the noise."""
 
@@ -51,26 +49,25 @@ def what_mends(records: Sequence[Record]) -> str:
     return f"the input repeats itself: write {', '.join(told)} in dataset.yaml"
 
 
-def judge(
+def judge_none(
     left: Leftover,
-    named: bool,
-    explained_by_box: float | None = None,
-    retuned: bool = False,
-    floor_is_upper_bound: bool = False,
-    size_follows: bool = False,
-    unnamed: Unnamed = OWNED,
-    mends: str = GIVE,
+    unnamed: Unnamed,
+    explained_by_box: float | None,
+    retuned: bool,
+    floor_is_upper_bound: bool,
+    size_follows: bool,
+    mends: str,
 ) -> tuple[Verdict, str]:
-    """Choose the word and say why.
+    """Choose the word where no effect was added, and say why.
 
     Parameters
     ----------
     left : Leftover
-    named : bool
-        Whether an effect was added.
+    unnamed : Unnamed
+        What stays, and what of it follows known signals.
     explained_by_box : float or None
         Share of what the base leaves, above the floor, that a black box takes away on
-        folds of the fit records; said where nothing is named.
+        folds of the fit records.
     retuned : bool
         Whether the base had numbers of its own to re-tune.
     floor_is_upper_bound : bool
@@ -78,58 +75,65 @@ def judge(
         is none then only if little is left with it, and that follows no known signal.
     size_follows : bool
         Whether what is left is larger where signals are: it is no noise then.
-    unnamed : Unnamed
-        What stays that the named effects cannot own.
     mends : str
         What to write so that the noise is measured.
     """
-    if not named:
-        seen = explained_by_box or 0.0
-        none = unnamed.follows_nothing and seen < AS_GOOD
-        new = _why_new(left, unnamed if none else None, explained_by_box)
-        if left.slight and left.foreign and not new:
-            return "unnamed", left.foreign
-        if retuned and left.all_before > ABOVE_NOISE and left.share < LOOSE:
-            return "parameters", (
-                "re-tuning the base within what is free is enough, and no effect pays "
-                f"beside it: {left.sentence}"
-            )
-        if new and size_follows:
-            return "unnamed", f"{new}, but its size follows signals, as no noise does"
-        if new:
-            # Only where the noise is not known may all of it be noise, and little.
-            noise = floor_is_upper_bound and left.may_be_noise
-            word: Verdict = "no-gap" if noise else "unnamed"
-            return word, (
-                f"{new}: it is noise of another colour, or has a cause that is in no "
-                "record"
-            )
-        if left.slight and floor_is_upper_bound:
-            follows = unnamed.too_much or size_follows
-            if left.may_be_noise and not follows:
-                rms = finely(float(np.sqrt((1.0 + left.all_after) / left.output)))
-                return "no-gap", (
-                    f"no effect pays, and what is left, {rms} of the output's rms, "
-                    "follows no known signal: it is noise, or a slightly wrong shape "
-                    "of the base"
-                )
-            return "unnamed", (
-                "no effect pays; the floor is only an upper bound, so that there is "
-                f"no gap cannot be claimed: {mends}"
-            )
-        if left.slight and left.all_after <= ABOVE_NOISE:
-            return "no-gap", "what is left is noise"
-        if left.slight:
-            share = float(np.sqrt(left.all_after / left.output))
+    seen = explained_by_box or 0.0
+    none = unnamed.follows_nothing and seen < AS_GOOD
+    new = _why_new(left, unnamed if none else None, explained_by_box)
+    if left.slight and left.foreign and not new:
+        return "unnamed", left.foreign
+    if retuned and left.all_before > ABOVE_NOISE and left.share < LOOSE:
+        return "parameters", (
+            "re-tuning the base within what is free is enough, and no effect pays "
+            f"beside it: {left.sentence}"
+        )
+    if new and size_follows:
+        return "unnamed", f"{new}, but its size follows signals, as no noise does"
+    if new:
+        # Only where the noise is not known may all of it be noise, and little.
+        noise = floor_is_upper_bound and left.may_be_noise
+        word: Verdict = "no-gap" if noise else "unnamed"
+        return word, (
+            f"{new}: it is noise of another colour, or has a cause that is in no record"
+        )
+    if left.slight and floor_is_upper_bound:
+        follows = unnamed.too_much or size_follows
+        if left.may_be_noise and not follows:
+            rms = finely(float(np.sqrt((1.0 + left.all_after) / left.output)))
             return "no-gap", (
-                f"what is left on the fit records, {100 * share:.2g} % of the output's "
-                "rms, is no more than a slightly wrong shape of the base could leave"
+                f"no effect pays, and what is left, {rms} of the output's rms, "
+                "follows no known signal: it is noise, or a slightly wrong shape "
+                "of the base"
             )
         return "unnamed", (
-            f"on the fit records a gap of {left.after:.2g} times the noise power is "
-            "there and no effect of the vocabulary pays; "
-            f"{_box_words(explained_by_box)}"
+            "no effect pays; the floor is only an upper bound, so that there is "
+            f"no gap cannot be claimed: {mends}"
         )
+    if left.slight and left.all_after <= ABOVE_NOISE:
+        return "no-gap", "what is left is noise"
+    if left.slight:
+        share = float(np.sqrt(left.all_after / left.output))
+        return "no-gap", (
+            f"what is left on the fit records, {100 * share:.2g} % of the output's "
+            "rms, is no more than a slightly wrong shape of the base could leave"
+        )
+    return "unnamed", (
+        f"on the fit records a gap of {left.after:.2g} times the noise power is "
+        "there and no effect of the vocabulary pays; "
+        f"{_box_words(explained_by_box)}"
+    )
+
+
+def judge_names(left: Leftover, unnamed: Unnamed) -> tuple[Verdict, str]:
+    """Choose the word where effects were added, and say why.
+
+    Parameters
+    ----------
+    left : Leftover
+    unnamed : Unnamed
+        What stays that the named effects cannot own.
+    """
     much = unnamed.too_much
     if much and not left.may_be_of_base:
         why = unnamed.reason
