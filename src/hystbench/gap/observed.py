@@ -81,6 +81,7 @@ def with_observer(
     decision = replace(decision, content=content, experiment=None)
     return decision, replace(
         decided,
+        fitted=decision,
         content=content,
         vocabulary=asked.vocabulary,
         damper=damper,

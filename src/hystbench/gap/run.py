@@ -157,6 +157,7 @@ def _decide(evidence: Evidence, base: Model, asked: Asked) -> tuple[Decision, De
     warnings = [*steps, *decision.content["warnings"]]
     content = {**decision.content, "warnings": warnings}
     content = with_device(content, evidence.device_kind, evidence.quantities)
+    decision = replace(decision, content=content)
     return decision, Decided(first, decision, content, vocabulary, built_in)
 
 
