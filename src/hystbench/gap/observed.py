@@ -97,8 +97,8 @@ def mass_on_a_spring(evidence: Evidence) -> Model | None:
     """
     floor = np.finfo(float).tiny
     score = Score.plain(ScoredSamples.of(evidence.fit), floor)
-    about = evidence.fit, evidence.quantities, evidence.input_hold
-    best = best_host(one_coordinate(*about), score)
+    begun = one_coordinate(evidence.fit, evidence.quantities, evidence.input_hold)
+    best = best_host(begun, score)
     if best is None:
         return None
     name, channels = "linear", (evidence.input, evidence.output)

@@ -151,9 +151,9 @@ class GapSearch:
 
         The model was found beside the base. What was named goes with the leads.
         """
-        records, about = found.start.records, (self.evidence, self.asked.say)
-        shorter = without_leads(records, found.base, *about, found=model)
-        return found if shorter is records else self.started(shorter, found.base)
+        records, base, say = found.start.records, found.base, self.asked.say
+        shorter = without_leads(records, base, self.evidence, say, found=model)
+        return found if shorter is records else self.started(shorter, base)
 
     def identified_again(self, found: BesideBase, named: Named) -> BesideBase:
         """Name beside a hysteresis that is identified again, where that is better."""

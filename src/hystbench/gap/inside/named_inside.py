@@ -296,8 +296,9 @@ def beats_chain(inside: Inside, named: Named, floor: Floor, say: Say = silent) -
         return False
     score = Score.plain(state.sample, floor.square)
     # What the chain changes elsewhere says nothing of where forces show.
-    about = score, shows_in_one_record(inside.start, state, score)
-    gain = gain_held_back(chain, state, *about) - gain_held_back(chain, chain, *about)
+    in_blocks = shows_in_one_record(inside.start, state, score)
+    gain = gain_held_back(chain, state, score, in_blocks)
+    gain -= gain_held_back(chain, chain, score, in_blocks)
     better = "better" if gain > 0 else "worse"
     say(f"inside: on folds {abs(gain):.1f} {better} than what a chain has found")
     more = len(chain.added) - len(state.added) - inside.counts

@@ -305,13 +305,12 @@ def same_as(
     shown = [float(np.sum(moves[part] ** 2)) for part in start.sample.slices]
     one = _ByContent((simulated[int(np.argmax(shown))],))
     every, count = _ByContent(simulated), len(ScoredSamples.of(simulated))
-    about = quantities, start.hold
     for with_zero, enough in ((False, unseen), (True, most)):
         # What the best model of one record misses there, one of all records does too.
-        alone = _coordinate_like(one, *about, with_zero)
+        alone = _coordinate_like(one, quantities, start.hold, with_zero)
         if len(simulated) > 1 and missed(alone) > enough * count:
             continue
-        best = _coordinate_like(every, *about, with_zero)
+        best = _coordinate_like(every, quantities, start.hold, with_zero)
         if best is not None and missed(best) <= enough * count:
             same = _without_offset(best, unseen * count)
             return replace(same, records=start.records, sample=start.sample).settled()

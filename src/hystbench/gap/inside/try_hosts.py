@@ -108,8 +108,8 @@ class HostTrial:
 
     def cost(self, tried: Tried) -> float:
         """Give the score of the best, with what effects and the host have to pay."""
-        about = tried.found, self.score.floor, self.share
-        return tried.host.charge + charged(tried.best, *about)
+        own = charged(tried.best, tried.found, self.score.floor, self.share)
+        return tried.host.charge + own
 
 
 def in_each_host(
