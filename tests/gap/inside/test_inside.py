@@ -28,7 +28,6 @@ from hystbench.gap.inside.average_force import evened
 from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.choose import chosen
 from hystbench.gap.inside.combine_forces import (
-    _laws,
     starts,
     with_one_fewer,
 )
@@ -657,7 +656,7 @@ def test_an_effect_that_stood_for_another_goes_when_that_comes():
     dry = Fitted(with_law(host.state, "friction", other), 0.0)
     tried = [host, dry, delay, pair]
     assert with_one_fewer(pair, tried, score) == []
-    (again,) = with_one_fewer(pair, tried, score, _laws)
+    (again,) = with_one_fewer(pair, tried, score, by_laws=True)
     assert (again.effects, again.forms) == (("friction",), known[0].forms)
 
 

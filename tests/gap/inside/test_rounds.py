@@ -142,7 +142,7 @@ def test_threes_are_tried_where_a_pair_pays_or_no_single_does(
         return Fitted(state, score)
 
     monkeypatch.setattr(ForceSearch, "one_more", one_more)
-    monkeypatch.setattr(combine_forces, "with_one_fewer", lambda *_: [])
+    monkeypatch.setattr(combine_forces, "with_one_fewer", lambda *_, **__: [])
     monkeypatch.setattr(ForceSearch, "with_another", lambda *_: [])
     monkeypatch.setattr(combine_forces, "by_other_laws", lambda *_: [])
     score = SimpleNamespace(least=lambda freedom: -5000.0)

@@ -56,6 +56,11 @@ class Fitted:
         """Law of each."""
         return tuple(item.form for item in self.state.added)
 
+    @property
+    def laws(self) -> frozenset[tuple[str, str]]:
+        """Its effects with their laws, in whatever order they were put in."""
+        return frozenset(zip(self.effects, self.forms, strict=True))
+
 
 def fitted(
     state: ModelState,

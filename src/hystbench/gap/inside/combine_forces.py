@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -114,7 +114,7 @@ class ForceSearch:
         if not of_stores(best):
             every += with_one_fewer(best, every, score)
             paying = best_that_pays(every)
-            every += with_one_fewer(paying, every, score, _laws)
+            every += with_one_fewer(paying, every, score, by_laws=True)
             every += self.with_another(paying, went_on, alone)
             last = best_that_pays(every)
             if not any(last is item for item in asked):
@@ -135,10 +135,10 @@ class ForceSearch:
             Fitted(without_effect(best.state, k), np.inf)
             for k in range(len(best.effects))
         ]
-        known = {_laws(item) for item in went_on}
+        known = {item.laws for item in went_on}
         carried = fit_each(
             lambda item: fitted(item.state, self.score),
-            [x for x in fewer if _laws(x) not in known],
+            [x for x in fewer if x.laws not in known],
             EVALUATIONS,
         )
         return self.one_more(carried, PAIRS, alone)
@@ -209,7 +209,7 @@ def with_one_fewer(
     best: Fitted,
     found: Sequence[Fitted],
     score: Score,
-    told_by: Callable[[Fitted], Collection[object]] = lambda item: {*item.effects},
+    by_laws: bool = False,
 ) -> list[Fitted]:
     """Take each effect of a hypothesis out, where the others together were not tried.
 
@@ -221,18 +221,15 @@ def with_one_fewer(
     if len(best.effects) < 2:
         return []
     effects = [{*item.effects} for item in found]
-    tried = [told_by(item) for item in found]
+    laws = [item.laws for item in found]
     left = []
     for number in range(len(best.effects)):
         others = Fitted(without_effect(best.state, number), np.inf)
         ways = ({*others.effects} - {one} for one in others.effects)
-        if told_by(others) not in tried and any(way in effects for way in ways):
+        tried = others.laws in laws if by_laws else {*others.effects} in effects
+        if not tried and any(way in effects for way in ways):
             left.append(others)
     return to_the_end(left, score)
-
-
-def _laws(item: Fitted) -> frozenset[tuple[str, str]]:
-    return frozenset(zip(item.effects, item.forms, strict=True))
 
 
 def _each_begun(

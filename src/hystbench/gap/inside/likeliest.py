@@ -128,10 +128,9 @@ def fitted_each(
     begun: Iterable[Fitted], score: Score, gentle: Sequence[int] = ()
 ) -> list[Fitted]:
     """Fit all laws of all effects to the end, each from its likeliest start."""
-    likely: dict[tuple[str, ...], Fitted] = {}
+    likely: dict[frozenset[tuple[str, str]], Fitted] = {}
     for item in sorted(begun, key=lambda item: item.score):
-        law = tuple(sorted(map(" ".join, zip(item.effects, item.forms, strict=True))))
-        likely.setdefault(law, item)
+        likely.setdefault(item.laws, item)
     return to_the_end(likely.values(), score, gentle)
 
 
