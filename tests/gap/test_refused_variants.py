@@ -7,7 +7,7 @@ import pytest
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Declined, Effect
-from hystbench.gap.fitting.tried import tried
+from hystbench.gap.fitting.tried import trials_of
 from hystbench.gap.fitting.variant_search import Attempt
 from hystbench.gap.naming.rank import rank
 from tests.gap.small import block, coarse, measured, plain_score, state_of
@@ -51,7 +51,7 @@ def test_a_variant_that_refuses_every_point_declines_with_the_last_message(besid
 
 def test_an_effect_declines_if_all_of_its_variants_do(beside):
     state, score = beside
-    trials, why = tried(Lags(True, True), state, score)
+    trials, why = trials_of(Lags(True, True), state, score)
     assert not trials
     assert why.startswith("time_constant_s: ")
     lag, gain = rank(state, score, [Lags(True), effects()["calibration-error"]])[::-1]
@@ -62,8 +62,8 @@ def test_an_effect_declines_if_all_of_its_variants_do(beside):
 
 def test_one_variant_that_refuses_leaves_the_others(beside):
     state, score = beside
-    trials, why = tried(Lags(True, False), state, score)
+    trials, why = trials_of(Lags(True, False), state, score)
     assert not why
     (trial,) = trials
-    (alone,), _ = tried(Lags(False), state, score)
+    (alone,), _ = trials_of(Lags(False), state, score)
     assert trial.values == alone.values

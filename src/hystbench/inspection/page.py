@@ -18,7 +18,7 @@ from hystbench.figures.style import (
     axis_label,
     unit_text,
 )
-from hystbench.gap.fitting.parameter_units import written
+from hystbench.gap.fitting.parameter_units import unit_written
 from hystbench.gap.report.pictures import EmbeddedPicture, draw
 from hystbench.inspection.check import Check
 from hystbench.inspection.facts import Facts
@@ -238,7 +238,7 @@ def _strength(found: Check, item: SmallestSeen) -> str:
     record = found.records[0]
     if math.isnan(item.value):
         return ""
-    unit = written(item.unit, record.input.unit, record.output.unit)
+    unit = unit_written(item.unit, record.input.unit, record.output.unit)
     name = item.number.replace("_", " ").removesuffix(" s").removesuffix(" hz")
     return f"{name} {quantity(item.value, unit)}"
 

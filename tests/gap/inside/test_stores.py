@@ -19,19 +19,19 @@ from hystbench.gap.fitting.least_squares import Fitted, judged
 from hystbench.gap.fitting.parameters import parameters_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.inside import stores as of_stores
+from hystbench.gap.inside import linear_stores as of_stores
 from hystbench.gap.inside.choose import chosen
 from hystbench.gap.inside.combine_forces import ForceSearch
 from hystbench.gap.inside.insert_law import how_it_fills
 from hystbench.gap.inside.known_host import with_best_beside_free
-from hystbench.gap.inside.one_coordinate import best_host
-from hystbench.gap.inside.possible_hosts import hosts
-from hystbench.gap.inside.stores import (
+from hystbench.gap.inside.linear_stores import (
     all_are_seen_filling,
     may_be_stores,
     store_hosts,
     stores,
 )
+from hystbench.gap.inside.one_coordinate import best_host
+from hystbench.gap.inside.possible_hosts import hosts
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.quantities import Quantities

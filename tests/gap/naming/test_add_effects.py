@@ -9,7 +9,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.refit import added
-from hystbench.gap.fitting.tried import tried
+from hystbench.gap.fitting.tried import trials_of
 from hystbench.gap.naming import add_effects
 from hystbench.gap.naming.add_effects import SoFar, advance
 from hystbench.gap.naming.rounds import Candidate, Round
@@ -149,7 +149,7 @@ def test_another_shape_is_fitted_to_what_it_is_to_take():
     start = state_of(one, measured(five, 0.006, given=given), count=1000)
     floor = Floor(0.006, "declared")
     score = make_score(start, floor)
-    (trial,), _ = tried(effects()["hysteresis-shape"], start, score)
+    (trial,), _ = trials_of(effects()["hysteresis-shape"], start, score)
     state, value = added(start, trial, score)
     first = Candidate(trial.variant.effect, "material", score=value, state=state)
     rounds = (Round(start, value + 50.0, (first,), True),)

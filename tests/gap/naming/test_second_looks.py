@@ -9,7 +9,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect, without_effect
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.refit import added, finished
-from hystbench.gap.fitting.tried import tried
+from hystbench.gap.fitting.tried import trials_of
 from hystbench.gap.judging.effect_rows import ranking_rows
 from hystbench.gap.naming import second_looks as reconsider
 from hystbench.gap.naming.add_effects import Named
@@ -266,7 +266,7 @@ def test_a_hysteresis_without_a_loop_gives_way_to_a_curve(loop):
     )
     before = state_of((gain,), measured((device, gain), NOISE), count=600)
     score = make_score(before, FLOOR)
-    every, _ = tried(effects()["hysteresis"], before, score)
+    every, _ = trials_of(effects()["hysteresis"], before, score)
     plays = next(trial for trial in every if trial.variant.form == FORMS[loop])
     state, _ = added(before, plays, score)
     kept, _ = reconsidered(state, (), FLOOR, silent)

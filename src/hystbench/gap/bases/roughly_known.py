@@ -45,7 +45,7 @@ def roughly_known(base: Model, records: Sequence[Record]) -> Model | None:
     dear = any(isinstance(x, Simulator) or not x.reruns for x in base.chain)
     if base.free or base.exact or dear or isinstance(base, IdentifiedModel):
         return None
-    chain = in_time(base.chain, LATE * min(record.dt for record in records))
+    chain = behind_a_delay(base.chain, LATE * min(record.dt for record in records))
     model = replace(base, chain=chain, provenance={})
     first, *labels = (label for label, _ in model.labelled())
     shares = {
@@ -60,7 +60,7 @@ def roughly_known(base: Model, records: Sequence[Record]) -> Model | None:
     )
 
 
-def in_time(chain: tuple[Block, ...], most: float) -> tuple[Block, ...]:
+def behind_a_delay(chain: tuple[Block, ...], most: float) -> tuple[Block, ...]:
     """Put a delay of nothing before a chain, which may grow, or become a lead."""
     return (InputDelay(delay_s=most, lead_s=most), *chain)
 

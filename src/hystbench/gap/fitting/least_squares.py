@@ -88,7 +88,7 @@ def fitted(
     values = np.array([state.value(free) for free in state.free])
     steps = np.where(values == 0.0, NOTHING, STEP * np.abs(values))
     tangents = _tangents(state, steps)
-    sizes = np.where(logs, values, _sizes(state, values, tangents))
+    sizes = np.where(logs, values, _large_changes(state, values, tangents))
     weights = record_weights(state)
     most = OUT * weights * float(np.max(np.abs(state.measured)))
     known = np.flatnonzero(state.held.stiffness)
@@ -200,7 +200,9 @@ def record_weights(state: ModelState) -> FloatArray:
     return weights
 
 
-def _sizes(state: ModelState, values: FloatArray, tangents: FloatArray) -> FloatArray:
+def _large_changes(
+    state: ModelState, values: FloatArray, tangents: FloatArray
+) -> FloatArray:
     """What is a large change of each number that may have either sign.
 
     Its own value, or what moves the output by a tenth of its own rms.

@@ -18,7 +18,7 @@ ORDERS = {"position": 0, "velocity": 1, "acceleration": 2}
 """Derivatives of the coordinate."""
 
 
-def written(unit: str, of_input: str, of_output: str) -> str:
+def unit_written(unit: str, of_input: str, of_output: str) -> str:
     """Write the units of a model's input and of a block's output for U and Y."""
     return _put(unit, {"U": of_input, "Y": of_output})
 

@@ -12,7 +12,7 @@ from hystbench.blocks.parameter import HUGE, SETTINGS, TINY
 from hystbench.gap.bases.roughly_known import defaults
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import beside_blocks, places_of_base
-from hystbench.gap.fitting.parameter_units import unit_at, unit_behind, written
+from hystbench.gap.fitting.parameter_units import unit_at, unit_behind, unit_written
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.fitting.uncertainty import Errors
 from hystbench.model import Model
@@ -70,7 +70,7 @@ def parameters_of(
         for key, about in block.parameters().items():
             value = about.plain(getattr(block, key))
             if value is not None and value != ():
-                unit = written(about.unit, record.input.unit, record.output.unit)
+                unit = unit_written(about.unit, record.input.unit, record.output.unit)
                 found[key] = _number(value, known.get(key), unit)
         return found
     offsets = effects()[item.effect].offsets.get(item.form, ())

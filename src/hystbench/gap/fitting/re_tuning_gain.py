@@ -13,7 +13,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.relaxation_force import RelaxationForce
 from hystbench.blocks.resonance import Resonance
 from hystbench.blocks.structure import Structure
-from hystbench.gap.bases.roughly_known import LATE, in_time, stated
+from hystbench.gap.bases.roughly_known import LATE, behind_a_delay, stated
 from hystbench.gap.fitting.edit_chain import rearranged
 from hystbench.gap.fitting.model_score import beside_of
 from hystbench.gap.fitting.on_records import free_within
@@ -85,7 +85,7 @@ def _loosened(state: ModelState) -> ModelState:
                 numbers += free_within(place, name, getattr(block, name), ABOUT)
     state = replace(state, free=(*state.free, *numbers))
     most = LATE * min(record.dt for record in state.records)
-    chain = in_time(state.chain, most)
+    chain = behind_a_delay(state.chain, most)
     state = rearranged(state, chain, {k: k + 1 for k in range(len(state.chain))})
     timing = Free(0, "delay_s", None, most, 0.0, 2 * most, given=most)
     state = replace(state, free=(*state.free, timing))

@@ -213,7 +213,7 @@ class Score:
         k = own + (0 if beside is None else len(beside.charge) - 1)
         if k == 0:
             return Amplitudes(np.zeros(0), self.of(residual, freedom))
-        scale = _sizes(columns)
+        scale = _column_rms(columns)
         whole[:, 1:] /= scale
         charge = np.zeros((k + 1, k + 1))
         if held is not None:
@@ -265,7 +265,7 @@ class Score:
         held : Held, optional
             What holds the amplitudes of the columns; by default nothing.
         """
-        scale = _sizes(columns)
+        scale = _column_rms(columns)
         held = Held.here(np.zeros(len(scale))) if held is None else held
         columns, charge = columns / scale, np.diag(held.stiffness / scale**2)
         power = columns.T @ columns / len(columns)
@@ -380,7 +380,7 @@ class Score:
         return d * float(np.log(max(power / d, self.floor))) if d else 0.0
 
 
-def _sizes(columns: FloatArray) -> FloatArray:
+def _column_rms(columns: FloatArray) -> FloatArray:
     """Give the root mean square of columns; one for those that are zero."""
     sizes = np.sqrt(np.einsum("ij,ij->j", columns, columns) / len(columns))
     return np.where(sizes > 0, sizes, 1.0)

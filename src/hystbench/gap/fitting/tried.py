@@ -81,7 +81,9 @@ class Seen(NamedTuple):
         return Trial(self.attempt, values, now - self.gain)
 
 
-def tried(effect: Effect, state: ModelState, score: Score) -> tuple[list[Trial], str]:
+def trials_of(
+    effect: Effect, state: ModelState, score: Score
+) -> tuple[list[Trial], str]:
     """Score every variant of an effect over its grid; or say why it declines."""
     looks, why_not = seen([effect], state, score)
     found, refused = on_all_records(looks, 0.0, lambda most: -np.inf)

@@ -22,12 +22,12 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.host_places import MODES
-from hystbench.gap.inside.modes import (
+from hystbench.gap.inside.modes_of_base import (
     APART,
+    coefficients_of,
     coincide,
     direct_of,
     mode_of,
-    numbers_of,
     one_by_one,
     poles_of,
     sum_of,
@@ -97,7 +97,7 @@ def structure(
     free += [Free(0, "direct")] if direct else []
     chain = (own, *rest, *behind)
     if others_too:
-        free += [x for k, item in enumerate(rest, 1) for x in numbers_of(item, k)]
+        free += [x for k, item in enumerate(rest, 1) for x in coefficients_of(item, k)]
         # A curve or a weight has a mean, which the offset of the base took.
         free += [Free(k, "offset") for k, x in enumerate(chain) if isinstance(x, Gain)]
     return replace(start, chain=chain, free=tuple(free)).settled()

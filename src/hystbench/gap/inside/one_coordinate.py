@@ -110,7 +110,7 @@ def one_coordinate(
     """
     if quantities.causality == "motion to force":
         if quantities.input in ("position", "velocity"):
-            yield impedance(records, quantities.input, hold)
+            yield best_impedance(records, quantities.input, hold)
         return
     if quantities.causality == "storage":
         return
@@ -122,7 +122,7 @@ def one_coordinate(
             yield from free_masses(records, output, hold)
 
 
-def impedance(records: tuple[Record, ...], moved: str, hold: Hold) -> ModelState:
+def best_impedance(records: tuple[Record, ...], moved: str, hold: Hold) -> ModelState:
     """Give the impedance that fits best: its force is linear in its numbers."""
     sample = ScoredSamples.of(records)
     columns = sample.take([Impedance.columns(moved, hold, r.u, r.dt) for r in records])

@@ -37,6 +37,7 @@ from hystbench.gap.inside.given_hosts import as_given, held_about, is_seen_movin
 from hystbench.gap.inside.host import Host, Kind
 from hystbench.gap.inside.host_places import host_of, host_places, own_numbers
 from hystbench.gap.inside.joint import structure
+from hystbench.gap.inside.linear_stores import store_hosts
 from hystbench.gap.inside.one_coordinate import (
     BEGUN,
     MOTIONS,
@@ -46,7 +47,6 @@ from hystbench.gap.inside.one_coordinate import (
     one_coordinate,
     same_as,
 )
-from hystbench.gap.inside.stores import store_hosts
 from hystbench.gap.inside.timing import in_front, with_free_timing
 from hystbench.gap.thresholds import PARAMETER, PAYS
 from hystbench.quantities import Quantities

@@ -21,7 +21,7 @@ from hystbench.gap.fitting.parameters import parameters_of
 from hystbench.gap.fitting.refit import added, finished
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.fitting.tried import tried
+from hystbench.gap.fitting.tried import trials_of
 from hystbench.gap.fitting.uncertainty import on_more_samples, standard_errors
 from hystbench.gap.fitting.variant_search import Trial, fine
 from hystbench.gap.progress import Say, silent
@@ -121,7 +121,7 @@ def build_in(
 
 def _with(state: ModelState, score: Score, name: str) -> ModelState:
     """Add an effect where and as it scores best, whether it pays or not."""
-    found, declined = tried(effects()[name], state, score)
+    found, declined = trials_of(effects()[name], state, score)
     blocks = [trial for trial in found if not trial.variant.beside]
     if not blocks:
         why = declined or (

@@ -5,7 +5,7 @@ import pytest
 
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.inside.modes import mode_of, one_by_one, poles_of
+from hystbench.gap.inside.modes_of_base import mode_of, one_by_one, poles_of
 from hystbench.record import Channel
 
 DT = 0.005

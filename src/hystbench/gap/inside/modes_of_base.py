@@ -22,7 +22,7 @@ def coincide(poles: ComplexArray) -> bool:
     return bool(np.any(away < APART * np.abs(poles)))
 
 
-def numbers_of(block: OtherModes, place: int) -> list[Free]:
+def coefficients_of(block: OtherModes, place: int) -> list[Free]:
     """Give the coefficients of a ratio as free numbers; the leading one is fixed."""
     return [
         *(Free(place, "numerator", k) for k in range(len(block.numerator))),
