@@ -31,7 +31,7 @@ class BesideBase:
     """The same on the fit records."""
     floor: Floor
     chain: Named | None = None
-    """Effects in a chain; none where forces were enough."""
+    """Effects in a chain; none where forces were enough, or before it is tried."""
     inside: Inside | None = None
     """Forces inside the dynamics, where they do better than a chain."""
     own: OwnValues = NONE

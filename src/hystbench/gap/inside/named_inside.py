@@ -139,7 +139,7 @@ def named_inside(
         return None
     if fewer is not start:
         tried = on_all_samples(tried, start, score_of_all, identified)
-    return with_forces(base, start, tried, score_of_all)
+    return with_effects_inside(base, start, tried, score_of_all)
 
 
 def with_likenesses(trial: HostTrial, tried: Tried) -> Tried:
@@ -157,7 +157,9 @@ def with_likenesses(trial: HostTrial, tried: Tried) -> Tried:
     return tried
 
 
-def with_forces(base: Model, start: ModelState, tried: Tried, score: Score) -> Inside:
+def with_effects_inside(
+    base: Model, start: ModelState, tried: Tried, score: Score
+) -> Inside:
     """Give a host with effects inside in place of a base, and tell what it does."""
     host, found, floor = tried.host, tried.found, score.floor
     state, alone, re_tuned = (
