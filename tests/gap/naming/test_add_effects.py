@@ -88,7 +88,7 @@ def test_what_would_still_pay_is_tried_in_the_place_of_what_was_added(
     rounds.append(Round(state, 0.0, (more, small), False))
     asked = []
 
-    def looked(state, rounds, floor_rms, say, rivals=()):
+    def looked(state, rounds, floor, say, rivals=()):
         asked.append(set(rivals))
         return state, ()
 
@@ -104,7 +104,7 @@ def test_where_an_effect_gives_way_all_are_tried_once_more(monkeypatch):
     rounds.append(Round(state, 0.0, (more,), False))
     asked = []
 
-    def looked(state, rounds, floor_rms, say, rivals=()):
+    def looked(state, rounds, floor, say, rivals=()):
         asked.append(set(rivals))
         lag, mode = state.added
         other = lag._replace(effect="eddy-diffusion")
