@@ -197,8 +197,8 @@ class OutputError:
             part[:, : self.held] = 0.0
             if own.shape[1]:  # the ratio's constant is one of the record's own
                 part[:, -2] = 0.0
-        own = [triangle_of(part) for part in self._masked(columns, masks)]
-        return triangle_of(np.vstack(own))
+        of_each = [triangle_of(part) for part in self._masked(columns, masks)]
+        return triangle_of(np.vstack(of_each))
 
     def _derivatives(self, ratio: Ratio, record: Record) -> FloatArray:
         """Change of the output with each a, each b and the constant, column by column.
