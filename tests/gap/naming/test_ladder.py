@@ -7,7 +7,7 @@ import pytest
 from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.holdout.scored import score_hold_out
 from hystbench.gap.naming.add_effects import Named
-from hystbench.gap.naming.ladder import BASE, RETUNED, rungs
+from hystbench.gap.naming.ladder import BASE, RETUNED, contributions, rungs
 from hystbench.gap.naming.rounds import Round
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
@@ -40,6 +40,21 @@ def test_a_base_that_is_free_has_a_rung_of_its_own():
     assert [item.name for item in found] == [BASE, RETUNED]
     assert found[0].state is start
     assert found[1].state is final
+
+
+@pytest.mark.parametrize(
+    ("free", "told"),
+    [
+        ((), "what drive-lag adds"),
+        ((Free(0, "value"),), "what drive-lag adds to the re-tuned base"),
+    ],
+)
+def test_what_an_effect_adds_is_told_with_the_base_that_it_is_added_to(free, told):
+    """A base whose numbers were fitted without it may have taken its part."""
+    start, again = (with_names(free=free) for _ in range(2))
+    final = with_names("drive-lag", free=free)
+    (found,) = contributions(rungs(start, named(final, again)))
+    assert found.words == told
 
 
 def test_a_last_round_that_adds_nothing_is_no_rung():

@@ -215,7 +215,7 @@ def named_or(
     """
     named = [
         replace(
-            fit_form(samples, f"what {item.effect} adds", [column], item.freedom - 1),
+            fit_form(samples, item.words, [column], item.freedom - 1),
             added=item.added,
         )
         for item in samples.contributions

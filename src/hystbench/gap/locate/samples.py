@@ -34,6 +34,14 @@ class Contribution:
     """Shape (n,). In the unit of the output, a record each."""
     freedom: float = 1.0
     """Numbers that were fitted for it."""
+    to_a_retuned_base: bool = False
+    """Whether numbers of the base were fitted first: they may have taken its part."""
+
+    @property
+    def words(self) -> str:
+        """What it is called in a sentence."""
+        base = " to the re-tuned base" if self.to_a_retuned_base else ""
+        return f"what {self.effect} adds{base}"
 
 
 @dataclass(frozen=True)

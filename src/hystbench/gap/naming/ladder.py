@@ -77,6 +77,7 @@ def rungs(start: ModelState, named: Named) -> tuple[Rung, ...]:
 def contributions(ladder: Sequence[Rung]) -> list[Contribution]:
     """Give what each named effect adds to the output of the rung before it."""
     outputs = [compared_records(rung.state) for rung in ladder]
+    retuned = any(rung.name == RETUNED for rung in ladder)
     found = []
     for (old, new), (before, after) in zip(
         pairwise(ladder), pairwise(outputs), strict=True
@@ -86,7 +87,13 @@ def contributions(ladder: Sequence[Rung]) -> list[Contribution]:
         )
         known = {item.effect for item in old.state.added}
         found += [
-            Contribution(item.effect, effects()[item.effect].shows, added, item.charge)
+            Contribution(
+                item.effect,
+                effects()[item.effect].shows,
+                added,
+                item.charge,
+                to_a_retuned_base=retuned,
+            )
             for item in new.state.added
             if item.effect not in known
         ]
