@@ -10,7 +10,7 @@ from tests.gap.made import evidence_of
 from tests.gap.searched import among
 from tests.gap.solved import motion
 
-DT, COUNT, NOISE = 0.02, 1500, 5e-3
+DT, COUNT, NOISE = 0.02, 750, 5e-3
 MASS, DAMPING, SPRING = 0.09, 0.08, 1.5  # kg m^2, Nm s, Nm: .65 Hz, damped by .11
 WEIGHT, DRAG = 0.5, 0.05  # Nm, Nm s^2
 PADDLE = f"""
@@ -20,7 +20,7 @@ output: {{name: angle, unit: rad}}
 chain:
 - mechanism: {{mass: {MASS}, damping: {DAMPING}, stiffness: {1.01 * SPRING}}}
 """
-FORCES = "gravity", "drag", "hysteretic-force", "slider-with-gap"
+FORCES = "gravity", "drag", "slider-with-gap"
 CURVES = "dead-zone", "saturation", "stiffness-hardening"
 """With them, what is put in and what took its place in a search of singles alone."""
 
