@@ -1,6 +1,7 @@
 """A loop identified from a record in which an effect shows as well."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -66,6 +67,13 @@ def stack(ends=LONG):
     return Evidence("stack", tuple(records), (), "linear", NOISE, "slow"), loop
 
 
+@cache
+def crept_loop(ends=LONG):
+    """The records of a stack, its loop, and the one that is identified from them."""
+    evidence, loop = stack(ends)
+    return evidence, loop, load_base("gpi", evidence)[0]
+
+
 def rod(heats):
     """A slow loop of falling size, and bursts with rest between them."""
     random, t = np.random.default_rng(5), DT * np.arange(2000)
@@ -83,20 +91,57 @@ def rod(heats):
     return Evidence("rod", tuple(records), (), "linear", NOISE, "slow")
 
 
+def beside(evidence, base):
+    return module.GapSearch(evidence, Asked(vocabulary=LAWS), None).beside(base)
+
+
 @pytest.fixture(scope="module")
 def heated():
     evidence = rod(1.0)
     return evidence, load_base("gpi", evidence)[0]
 
 
-def named(evidence, base):
-    found = module.search(evidence, base, Asked(vocabulary=LAWS)).content
-    return [item["name"] for item in found["effects"]], found["reason"]
+@pytest.fixture(scope="module")
+def cold():
+    evidence = rod(0.0)
+    return evidence, load_base("gpi", evidence)[0]
 
 
-def test_heat_that_the_loop_had_taken_for_its_own_is_named(heated, monkeypatch):
+@pytest.fixture(scope="module")
+def beside_the_loop(heated):
+    """What is named before the loop is identified again."""
+    return beside(*heated)
+
+
+@pytest.fixture(scope="module")
+def searched(heated):
+    """What a search decides, and the bases that it asks about for their numbers."""
     evidence, base = heated
-    effects, reason = named(evidence, base)
+    re_tuned, asked = module.roughly_known, []
+
+    def spied(base, records):
+        asked.append(base)
+        return re_tuned(base, records)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "roughly_known", spied)
+        return module.search(evidence, base, Asked(vocabulary=LAWS)), asked
+
+
+def told(found):
+    content = found.content
+    return [item["name"] for item in content["effects"]], content["reason"]
+
+
+def named(evidence, base):
+    return told(module.search(evidence, base, Asked(vocabulary=LAWS)))
+
+
+def test_heat_that_the_loop_had_taken_for_its_own_is_named(
+    heated, searched, monkeypatch
+):
+    evidence, base = heated
+    effects, reason = told(searched[0])
     assert effects == ["thermal-drift"]
     assert "identified again, from record slow without what the effects do" in reason
     monkeypatch.setattr(identify_again, "freed_of_laws", lambda *_: None)
@@ -107,34 +152,29 @@ def test_heat_that_the_loop_had_taken_for_its_own_is_named(heated, monkeypatch):
 
 
 def test_the_base_that_is_re_tuned_is_the_one_that_was_identified_again(
-    heated, monkeypatch
+    heated, searched
 ):
-    evidence, base = heated
-    asked = []
-
-    def spied(base, records):
-        asked.append(base)
-
-    monkeypatch.setattr(module, "roughly_known", spied)
-    found = module.search(evidence, base, Asked(vocabulary=LAWS))
+    _, base = heated
+    found, asked = searched
     assert asked == [found.base]
     assert is_another(base, found.base)
     assert not is_another(base, base)
     assert not is_another(Model("given", CURRENT, DISPLACEMENT, base.chain), found.base)
 
 
-def test_a_law_that_does_less_than_noise_to_the_record_leaves_it(heated):
+def test_a_law_that_does_less_than_noise_to_the_record_leaves_it(
+    heated, beside_the_loop
+):
     evidence, base = heated
-    found = module.GapSearch(evidence, Asked(vocabulary=LAWS), None).beside(base)
+    found = beside_the_loop
     about = base, found.named, evidence
     assert freed_of_laws(*about, found.floor) is not None
     assert freed_of_laws(*about, Floor(100.0 * found.floor.rms, "declared")) is None
 
 
-def test_a_record_of_the_loop_alone_is_left_as_it_is():
-    evidence = rod(0.0)
-    base, _ = load_base("gpi", evidence)
-    found = module.GapSearch(evidence, Asked(vocabulary=LAWS), None).beside(base)
+def test_a_record_of_the_loop_alone_is_left_as_it_is(cold):
+    evidence, base = cold
+    found = beside(evidence, base)
     about = found.named, evidence, found.floor
     assert freed_of_laws(base, *about) is None
 
@@ -142,21 +182,21 @@ def test_a_record_of_the_loop_alone_is_left_as_it_is():
 def test_a_base_that_was_given_is_not_identified(heated):
     evidence, base = heated
     given = Model(base.name, base.input, base.output, base.chain)
-    found = module.GapSearch(evidence, Asked(vocabulary=LAWS), None).beside(given)
+    found = beside(evidence, given)
     assert freed_of_laws(base, found.named, evidence, found.floor) is not None
     assert freed_of_laws(given, found.named, evidence, found.floor) is None
 
 
 @pytest.fixture
 def one_range(monkeypatch):
-    """Try creep in one range of time constants, as each is tried alike."""
+    """Try creep and heat in one range of time constants, as each is tried alike."""
     monkeypatch.setattr(freed_record, "CREEPS", freed_record.CREEPS[:1])
+    monkeypatch.setattr(freed_record, "HEATS", freed_record.HEATS[-1:])
 
 
 @pytest.mark.usefixtures("one_range")
 def test_creep_that_hides_all_laws_is_named(monkeypatch):
-    evidence, _ = stack()
-    base, _ = load_base("gpi", evidence)
+    evidence, _, base = crept_loop()
     monkeypatch.setattr(identify_again, "freed_of_laws", lambda *_: None)
     effects, reason = named(evidence, base)
     assert effects == ["creep"]
@@ -167,9 +207,8 @@ def test_creep_that_hides_all_laws_is_named(monkeypatch):
 
 @pytest.mark.parametrize("ends", [LONG, SHORT])
 def test_a_record_is_freed_of_its_creep(ends):
-    evidence, loop = stack(ends)
-    base, _ = load_base("gpi", evidence)
-    freed = freed_of_slow_law(base, evidence, FLOOR, LAWS.offered)
+    evidence, loop, base = crept_loop(ends)
+    freed = freed_of_slow_law(base, evidence, FLOOR, ("creep",))
     slow = evidence.slowest
     without = loop.simulate(slow.u, DT)
     left = np.std(freed.slowest.y - without)
@@ -178,10 +217,10 @@ def test_a_record_is_freed_of_its_creep(ends):
     assert freed.fit[1:] == evidence.fit[1:]
 
 
+@pytest.mark.usefixtures("one_range")
 def test_samples_that_were_not_measured_hide_no_creep():
     """Straight lines in their place are far from what any loop does."""
-    evidence, loop = stack()
-    base, _ = load_base("gpi", evidence)
+    evidence, loop, base = crept_loop()
     *others, quick = evidence.fit
     lost = (np.arange(len(quick)) // 100) % 3 == 1
     y = np.where(lost, quick.y[0], quick.y)
@@ -196,9 +235,11 @@ def test_samples_that_were_not_measured_hide_no_creep():
     assert left < 0.4 * np.std(slow.y - without)
 
 
-def test_a_law_that_acts_where_nothing_was_measured_leaves_the_record(heated):
+def test_a_law_that_acts_where_nothing_was_measured_leaves_the_record(
+    heated, beside_the_loop
+):
     evidence, base = heated
-    found = module.GapSearch(evidence, Asked(vocabulary=LAWS), None).beside(base)
+    found = beside_the_loop
     slow, *others = evidence.fit
     lost = np.ones(len(slow), dtype=bool)
     lost[:2] = False  # a body takes seconds to get warm
@@ -209,12 +250,10 @@ def test_a_law_that_acts_where_nothing_was_measured_leaves_the_record(heated):
 
 
 @pytest.mark.usefixtures("one_range")
-def test_a_loop_that_fits_its_record_is_freed_of_nothing():
-    evidence = rod(0.0)
-    base, _ = load_base("gpi", evidence)
+def test_a_loop_that_fits_its_record_is_freed_of_nothing(cold):
+    evidence, base = cold
     assert freed_of_slow_law(base, evidence, FLOOR, LAWS.offered) is None
-    creeping, _ = stack()
-    base, _ = load_base("gpi", creeping)
+    creeping, _, base = crept_loop()
     given = Model(base.name, base.input, base.output, base.chain)
     assert freed_of_slow_law(given, creeping, FLOOR, LAWS.offered) is None
     assert (
