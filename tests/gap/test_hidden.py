@@ -1,9 +1,10 @@
 """Effects hidden by the challenge's plant, which shares no code with the blocks.
 
 Every effect of the vocabulary once, at 20 dB of gap to noise. To save time only the
-first half of each record is used. Seeds were not chosen: all cases are of seed 1, and
-of the forms that the development set holds while the first group is left out. How often
-names are right is counted by the contest; here one search of each outcome runs.
+first half of every other record is searched. Seeds were not chosen: all cases are of
+seed 1, and of the forms that the development set holds while the first group is left
+out. How often names are right is counted by the contest; here one search of each
+outcome runs.
 """
 
 from dataclasses import replace
@@ -35,11 +36,17 @@ SEED, GROUP = 1, 1
 
 
 @cache
-def hidden(names, family):
+def every_hidden(names, family):
     """Fit records, cut in half, and the base model of a case."""
     spec = CaseSpec(SEED, kind_of(names), names, family, 20.0, group=GROUP)
     case = make_case(spec)
     return first_halves(case), case.model
+
+
+def hidden(names, family):
+    """Every other of them, and the base model."""
+    records, base = every_hidden(names, family)
+    return records[::2], base
 
 
 def first_round(name, family, offered):
@@ -144,7 +151,7 @@ def test_an_effect_outside_the_vocabulary_has_no_name(decided):
 
 def gap(name):
     """Records of a hidden effect beside what the base says of them."""
-    records, base = hidden((name,), "gpi")
+    records, base = every_hidden((name,), "gpi")
     return [Compared(item, base.simulate(item.u, item.dt)) for item in records]
 
 
