@@ -23,7 +23,7 @@ def duct(samples, noise=NOISE, rates=(DT, DT)):
     """Two modes behind a dead time; the input is a smoothed noise."""
     rng, found = np.random.default_rng(6), []
     for k, dt in enumerate(rates):
-        u = np.convolve(rng.standard_normal(2500), np.ones(3) / 3, "same")
+        u = np.convolve(rng.standard_normal(1200), np.ones(3) / 3, "same")
         u[:60] = 0.0
         late = np.concatenate([np.zeros(samples), u])[: len(u)]
         modes = (mode(40, 0.03), mode(95, 0.02))

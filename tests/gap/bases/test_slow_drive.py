@@ -1,5 +1,7 @@
 """A linear base behind a drive that goes no faster than a rate."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -13,8 +15,9 @@ from hystbench.quantities import Quantities
 from tests.gap.made import record, sine
 from tests.gap.searched import among, search
 
-DT, RATE, LAG_S, NOISE = 1e-3, 20.0, 0.03, 0.002
+DT, COUNT, RATE, LAG_S, NOISE = 1e-3, 1000, 20.0, 0.03, 0.002
 FINE = 20
+wave = partial(sine, count=COUNT, dt=DT)
 
 
 def through(u, rate):
@@ -32,8 +35,8 @@ def through(u, rate):
 
 def device(rate):
     random = np.random.default_rng(2)
-    tones = sine(2.0) + 0.7 * sine(5.1) + 0.4 * sine(11.3)
-    inputs = {"slow": sine(0.5), "fast": sine(8.0), "tones": 0.6 * tones}
+    tones = wave(2.0) + 0.7 * wave(5.1) + 0.4 * wave(11.3)
+    inputs = {"slow": wave(0.5), "fast": wave(8.0), "tones": 0.6 * tones}
     records = []
     for name, u in inputs.items():
         y = through(u, rate) + NOISE * random.standard_normal(len(u))

@@ -13,7 +13,7 @@ from hystbench.gap.records.evidence import Evidence
 from hystbench.record import Channel, Record
 from tests.gap.searched import among, search
 
-DT, COUNT, NOISE = 0.02, 500, 0.02
+DT, COUNT, NOISE = 0.02, 300, 0.02
 VOLTAGE, SPEED = Channel("voltage", "V"), Channel("speed", "rad/s")
 
 #: A motor behind a lag of half a second, and a pulley on a spring.

@@ -62,7 +62,7 @@ def test_a_spring_so_soft_that_the_way_is_lost_in_rounding_is_none():
 @pytest.mark.parametrize("law", ["friction", "stiffness-hardening"])
 def test_a_motion_of_first_order_is_of_a_mass_or_of_a_spring(law):
     """A current in a coil behind diodes, and a damper that a spring pulls."""
-    rng, dt, count, fine = np.random.default_rng(4), 1e-3, 1100, 40
+    rng, dt, count, fine = np.random.default_rng(4), 1e-3, 600, 40
     records = []
     for name, use in (("one", "fit"), ("other", "fit"), ("held", "hold-out")):
         u = np.repeat(rng.normal(0, 1.5, count // 10), 10)

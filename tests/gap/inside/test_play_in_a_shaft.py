@@ -20,7 +20,7 @@ DT, NOISE = 0.002, 0.05
 def turned(level, seed):
     """Motor speed under a staircase of torque, by small steps."""
     random = np.random.default_rng(seed)
-    u = level * np.repeat(random.uniform(-1, 1, 150), 8)
+    u = level * np.repeat(random.uniform(-1, 1, 90), 8)
     twist = motor = load = 0.0
     fine, out = 20, []
     for push in np.repeat(u, fine).tolist():
