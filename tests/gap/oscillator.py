@@ -36,7 +36,7 @@ def moved(u, held, spring, fine=40):
 def records_of(held, spring, noise):
     random = np.random.default_rng(8)
     for size in (10.0, 20.0):
-        u = size * np.repeat(random.uniform(-1, 1, 50), 20)
+        u = size * np.repeat(random.uniform(-1, 1, 30), 20)
         y = moved(u, held, spring) + noise * random.standard_normal(len(u))
         channels = Channel("in", "N"), Channel("out", "m")
         yield Record(f"{size:g}", DT, u, y, *channels, "measured", "fit")
