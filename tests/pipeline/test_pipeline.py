@@ -201,11 +201,12 @@ def test_an_edited_module_reruns_what_imports_it(workflow):
     source = workflow.folder / "src"
     shutil.copytree(ROOT / "src", source, ignore=shutil.ignore_patterns("__pycache__"))
     copied = Workflow(workflow.folder, source)
-    # The first run sees other paths of the same files; touch makes it up to date.
-    assert copied.snakemake("--touch").returncode == 0
+    # The same files have other paths here, and are as old as they were.
+    by_time = ("--rerun-triggers", "mtime")
+    assert copied.would_run(*by_time) == {}
     with (source / "hystbench" / "filters" / "volterra.py").open("a") as stream:
         stream.write("\n# edited\n")
-    assert_one_filter_runs_again(copied.would_run("--rerun-triggers", "mtime"))
+    assert_one_filter_runs_again(copied.would_run(*by_time))
 
 
 def test_compare_prints_the_tables_though_nothing_is_to_do(finished):
