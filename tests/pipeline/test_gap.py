@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from tests.conftest import run_hystbench, table
-from tests.gap.tiny import LAG_S, write_tiny
+from tests.gap.tiny import LAG_S, LATE, write_tiny
 
 from .conftest import Workflow, small_config
 
@@ -45,7 +45,8 @@ def configured(folder, config, **rig) -> Workflow:
 def whole(tmp_path_factory):
     config = small_config()
     config["gap"] |= {"write_experiment": True}
-    workflow = configured(tmp_path_factory.mktemp("whole"), config, limits=LIMITS)
+    asked = {"limits": LIMITS, "without": [*LATE.without]}
+    workflow = configured(tmp_path_factory.mktemp("whole"), config, **asked)
     return Finished(workflow.folder, done=workflow.run(PAGE))
 
 
