@@ -22,7 +22,7 @@ from tests.gap.closing import closed_beside
 from tests.gap.searched import among
 from tests.gap.solved import motion
 
-DT, COUNT = 5e-4, 1500
+DT, COUNT = 5e-4, 1000
 MASS, DAMPING, SPRING = 0.4, 8.8, 19344.0  # kg, N s/m, N/m: 35 Hz, damped by .05
 CUBIC = 0.08 * SPRING  # N/m/mm^2: at two millimetres the spring is a third stiffer
 MAINS = ((50.0, 0.05), (150.0, 0.025))  # Hz, mm

@@ -17,7 +17,7 @@ from tests.gap.made import evidence_of
 from tests.gap.searched import among
 from tests.gap.small import block
 
-DT, COUNT = 0.004, 1200
+DT, COUNT = 0.004, 700
 MASS, DAMPING, SPRING = 1.0, 2.5, 900.0
 FADES, TIME = 220.0, 0.05
 FORCE, PLACE = Channel("force", "N"), Channel("place", "mm")
