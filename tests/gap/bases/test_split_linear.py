@@ -152,37 +152,44 @@ def test_a_gain_that_falls_with_the_level_is_the_curve():
     assert (first["name"], first["place"]) == ("saturation", INSIDE)
 
 
-def test_the_curve_is_named_in_its_place(split, clipped_records):
-    model = split[0].with_hold("band-limited")
-    found = search("made", clipped_records.fit, model, vocabulary=CURVES)
-    assert found.content["verdict"] == "named"
-    first = found.content["effects"][0]
+@pytest.fixture(scope="module")
+def found(split, clipped_records):
+    """What is named, and in how many bases forces were looked for."""
+    looked, look = [], search_module.named_inside
+
+    def spied(*given, **more):
+        looked.append(given)
+        return look(*given, **more)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(search_module, "named_inside", spied)
+        answer = search(
+            *("made", clipped_records.fit, split[0].with_hold("band-limited")),
+            quantities=Quantities("force", "position"),
+            vocabulary=CURVES,
+        )
+    return answer, len(looked)
+
+
+def test_the_curve_is_named_in_its_place(found, split, clipped_records):
+    answer, _ = found
+    assert answer.content["verdict"] == "named"
+    first = answer.content["effects"][0]
     assert (first["name"], first["place"]) == ("saturation", INSIDE)
-    names = [block.name for block in found.model.chain]
+    names = [block.name for block in answer.model.chain]
     assert names[:4] == ["transfer-function", "gain", "saturation", "transfer-function"]
     (held,) = clipped_records.hold_out
     before, after = (
         np.std(held.y - each.with_hold("band-limited").simulate(held.u, DT))
-        for each in (model, found.model)
+        for each in (split[0], answer.model)
     )
     assert after < 0.3 * before
 
 
-def test_no_force_is_looked_for_where_the_curve_leaves_nothing(
-    split, clipped_records, monkeypatch
-):
-    def look(*_):
-        raise AssertionError("forces were looked for")
-
-    monkeypatch.setattr(search_module, "named_inside", look)
-    model = split[0].with_hold("band-limited")
-    kinds = Quantities("force", "position")
-    found = search(
-        *("made", clipped_records.fit, model),
-        quantities=kinds,
-        vocabulary=among("saturation"),
-    )
-    assert found.content["effects"][0]["name"] == "saturation"
+def test_no_force_is_looked_for_where_the_curve_leaves_nothing(found):
+    answer, looked = found
+    assert answer.content["effects"][0]["name"] == "saturation"
+    assert looked == 0
 
 
 @pytest.mark.parametrize("name", ["saturation", "asymmetry", "dead-zone"])
