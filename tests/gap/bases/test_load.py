@@ -589,18 +589,19 @@ def test_of_many_poles_the_denominator_is_not_free(monkeypatch):
     assert "transfer-function.denominator" not in model.free
 
 
-def impedance_records(noise=0.0):
+def impedance_records(noise=0.0, fastest_hz=40.0, law=None):
     """The force of a mass on a spring along two motions, from its formula."""
     random = np.random.default_rng(4)
     made = []
     for place in range(2):
         t = np.arange(1500) * 1e-3
-        w = 2 * np.pi * random.uniform(5, 40, 6)
+        w = 2 * np.pi * random.uniform(5, fastest_hz, 6)
         size, phase = random.uniform(0.2, 1.0, 6), random.uniform(0, 6, 6)
         q = size @ np.sin(np.outer(w, t) + phase[:, None])
         v = (size * w) @ np.cos(np.outer(w, t) + phase[:, None])
         a = -(size * w**2) @ np.sin(np.outer(w, t) + phase[:, None])
         force = 2e-4 * a + 0.05 * v + 30.0 * q + 4.0
+        force += 0.0 if law is None else law(q)
         force += noise * random.standard_normal(len(t))
         made.append(record(q, force, name=f"motion {place}", dt=1e-3))
     return made
@@ -618,3 +619,19 @@ def test_where_a_motion_makes_a_force_the_base_is_an_impedance():
     unknown = identified_linear(evidence(*impedance_records(0.01)))
     assert {item.name for item in unknown.model.chain} <= {"transfer-function", "gain"}
     assert unknown.fit_rms > found.fit_rms
+
+
+def test_an_impedance_behind_a_static_curve_has_the_mean_force_of_the_records():
+    def stop(q):
+        return 300.0 * np.sign(q) * np.maximum(np.abs(q) - 1.0, 0.0)
+
+    given = evidence(
+        *impedance_records(0.01, fastest_hz=12.0, law=stop),
+        quantities=Quantities("position", "force"),
+    )
+    found = identified_linear(given)
+    assert found.model.found_with == "static curve"
+    (block,) = found.model.chain
+    assert block.name == "impedance"
+    left = [x.y - block.simulate(x.u, x.u, x.dt) for x in given.fit]
+    assert np.mean(np.concatenate(left)) == pytest.approx(0.0, abs=1e-6)

@@ -155,8 +155,12 @@ def _of_mean_output(model: IdentifiedModel, evidence: Evidence) -> IdentifiedMod
         [(x.y - held.begun_on(x).simulate(x.u, x.dt))[x.counted] for x in evidence.fit]
     )
     *others, last = model.chain
-    assert isinstance(last, Gain)  # noqa: S101  (for the type checker)
-    last = replace(last, offset=last.offset + float(np.mean(rest)))
+    mean = float(np.mean(rest))
+    if isinstance(last, Impedance):
+        last = replace(last, bias=last.bias + mean)
+    else:
+        assert isinstance(last, Gain)  # noqa: S101  (for the type checker)
+        last = replace(last, offset=last.offset + mean)
     return replace(model, chain=(*others, last))
 
 
