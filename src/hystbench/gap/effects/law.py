@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 from hystbench.blocks.base import Block
@@ -85,3 +86,5 @@ class Changed(NamedTuple):
     """The numbers, by place and parameter."""
     free: tuple[tuple[int, str], ...]
     """Place and parameter of each number that is fitted."""
+    least: Mapping[tuple[int, str], float] = MappingProxyType({})
+    """Lower ends of the ranges of those, where they are not the block's own."""

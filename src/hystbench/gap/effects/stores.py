@@ -51,6 +51,9 @@ SHARES = (0.95, 0.75)
 """Shares of the highest level without it: where overflow begins."""
 CAUGHT = 0.3
 """Share of what is spilt that the next store catches, where a fit begins."""
+EDGE = 0.5
+"""Share of the highest level, at least, where a weir's edge lies: one below the levels
+that a store has for most of the time is the law of its outlet."""
 ABOVE = 0.1
 """Share of the highest level by which a level above a weir is, as a fit begins, where
 as much runs over it as leaves below."""
@@ -95,6 +98,7 @@ def _spilling(
     last, *_ = filled.tops[-1]
     values: dict[int, dict[str, float]] = {}
     free: list[tuple[int, str]] = []
+    least: dict[tuple[int, str], float] = {}
     for place, store, top in filled.tops:
         if place not in places:
             continue
@@ -104,5 +108,7 @@ def _spilling(
         if over_weirs:
             leaves = store.rate * top**store.exponent
             own["weir"] = leaves / (ABOVE * top) ** 1.5
+            least[place, "height"] = EDGE * (own["height"] / share)
         free += [(place, name) for name in own]
-    return Changed(f"{form}, over a weir" if over_weirs else form, values, tuple(free))
+    form += ", over a weir" * over_weirs
+    return Changed(form, values, tuple(free), least)
