@@ -411,7 +411,7 @@ def test_water_over_a_straight_edge_flows_by_the_level_to_the_power_of_a_half_mo
 
 
 def test_a_weir_below_the_middle_of_the_levels_is_an_outlet_and_no_overflow():
-    """By eye it is one: nearly all levels lie above its edge. The law is an outlet's."""
+    """Nearly all levels lie above the edge of one: that is the law of an outlet."""
     upper = Store(gain=1.0, rate=0.9, exponent=1.0, start_level=20.0)
     stores_ = ((0, upper, 30.0), (1, upper, 40.0))
     weirs = [
@@ -424,7 +424,7 @@ def test_a_weir_below_the_middle_of_the_levels_is_an_outlet_and_no_overflow():
         for place in law.values:
             assert law.least[place, "height"] == pytest.approx(stores_[place][2] / 2)
             assert law.values[place]["height"] > law.least[place, "height"]
-    best, score = found(tanks(root=None, height=np.inf, powers=(1.5, 1.5)))
+    best, _ = found(tanks(root=None, height=np.inf, powers=(1.5, 1.5)))
     assert best.effects == ("outflow",)
 
 

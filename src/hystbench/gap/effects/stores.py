@@ -60,7 +60,7 @@ as much runs over it as leaves below."""
 
 
 class Overflow(StoreEffect):
-    """What stores spill above a level, at once or over a weir: one, the others, or all."""
+    """What stores spill above a level, at once or over a weir: one, others, or all."""
 
     name = "overflow"
     shows = "amplitude"
