@@ -62,6 +62,7 @@ from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 from tests.gap.inside_host import each_alone, search
+from tests.gap.small import block, state_of
 from tests.gap.solved import motion
 
 DT = 0.005
@@ -497,6 +498,18 @@ def test_the_weight_of_a_link_on_a_free_rotor_is_found():
     assert best.effects == ("gravity",)
     assert best.state.chain[1].amplitude == pytest.approx(9.0, rel=0.02)
     assert np.sqrt(np.mean(best.state.residual**2)) < 1.1e-3
+
+
+@pytest.mark.parametrize("decay_s", [None, 5.0])
+def test_the_place_of_a_free_mass_is_not_seen_in_a_window(decay_s):
+    """It begins at zero, wherever the mass is: no place can be told there."""
+    u = np.sin(2 * np.pi * TIME)
+    whole = record("motion", u, 0.1 * u, ("N", "m"))
+    state = state_of(
+        (block("mechanism", output="position", mass=1.0, damping=0.2, stiffness=0.0),),
+        (replace(whole, decay_s=decay_s),),
+    )
+    assert how_it_moves(state, "").anywhere == (decay_s is not None)
 
 
 def pushed(forces, q=0.0):

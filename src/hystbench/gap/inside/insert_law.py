@@ -119,7 +119,9 @@ def how_it_moves(state: ModelState, turns: str) -> Moved:
     tiny = 1.0 / HUGE
     known = not any_is_free(state, place, "stiffness")
     free = isinstance(host, Mechanism) and spring == 0.0
-    seen = free and known and host.output == "position"
+    # A window of a record begins at zero: where that lies is not told.
+    whole = all(record.decay_s is None for record in state.records)
+    seen = free and known and whole and host.output == "position"
     if seen:  # without what holds it, it would have gone far beyond
         shown = max(float(np.ptp(record.y)) / 2 for record in state.records)
         reach = min(reach, shown)
