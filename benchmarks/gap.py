@@ -113,7 +113,7 @@ def one_round(evidence: Evidence, model: str, candidates: int, share: float) -> 
     fit = tuple(cut(record, share) for record in evidence.fit)
     state, floor = start_state(fit, base, evidence.input_hold, evidence.noise_rms)
     known = list(effects().values())[:candidates]
-    score = make_score(state, floor.rms)
+    score = make_score(state, floor)
     return rank(state, score, known)[0].effect
 
 
