@@ -1,9 +1,11 @@
 """The benchmark of the gap workflow: fewer samples are the first part of a record."""
 
 import numpy as np
-from benchmarks.gap import cut
+from benchmarks.gap import cut, one_round
 
+from hystbench.gap.records.evidence import load_evidence
 from hystbench.record import Channel, Record
+from tests.gap.tiny import write_tiny
 
 
 def test_the_first_part_of_a_record():
@@ -14,3 +16,10 @@ def test_the_first_part_of_a_record():
     np.testing.assert_array_equal(half.u, [0, 1, 2, 3])
     np.testing.assert_array_equal(half.y, [0, 2, 4, 6])
     assert (half.name, half.dt, half.period_samples) == ("a", 0.5, None)
+
+
+def test_a_round_names_the_lag_from_half_of_each_record(tmp_path):
+    """Of the first nine effects by name, the lag among them."""
+    data, base = write_tiny(tmp_path)
+    found = one_round(load_evidence(data), str(base), 9, 0.5)
+    assert found == "drive-lag"
