@@ -304,9 +304,10 @@ static double hb_outflow(double rate, double exponent, double h)
     return h > 0 ? rate * pow(h, exponent) : 0;
 }
 
-/* A level above a rim after a time in which it runs over a weir. */
+/* A level above a rim after a time in which it runs over a weir; one of 1e30 is sharp. */
 static double hb_over_rim(double h, double height, double weir, double t)
 {
+    if (weir >= 1e30) return height;
     const double by = 1 + 0.5 * weir * t * sqrt(h - height);
     return height + (h - height) / (by * by);
 }
@@ -352,7 +353,7 @@ static double hb_store(double gain, double bias, int segments, int points,
         const double slope = ramp * (then - now) / parts;
         for (int s = 0; s < parts; s++) {
             const double from = now + s * slope;
-            if (h > height && !sharp) {
+            if (h > height) {
                 const double left = hb_over_rim(h, height, weir, t / 2);
                 over += h - left;
                 h = left;
@@ -367,7 +368,7 @@ static double hb_store(double gain, double bias, int segments, int points,
                 h = hb_most(0, h + t * (from + slope / 2 - left));
             }
             if (h > height) {
-                const double left = sharp ? height : hb_over_rim(h, height, weir, t / 2);
+                const double left = hb_over_rim(h, height, weir, t / 2);
                 over += h - left;
                 h = left;
             }

@@ -14,11 +14,12 @@ static inline double hb_above_zero(double h) { return h > 0 ? h : 0; }
 
 /* A level above a rim after a time t in which nothing else moves it, and what it changes
  * by for each unit of the level before, and of the weir's.  x = h - height falls by
- * x' = -weir x^1.5, to x / (1 + weir t sqrt(x) / 2)^2. */
+ * x' = -weir x^1.5, to x / (1 + weir t sqrt(x) / 2)^2, and at once for a weir of 1e30. */
 typedef struct { double level, kept, weir; } hb_rim_t;
 
 static inline hb_rim_t hb_over_rim(double h, double height, double weir, double t)
 {
+    if (weir >= 1e30) return (hb_rim_t){height, 0, 0};
     const double x = h - height, root = sqrt(x), by = 1 / (1 + 0.5 * weir * t * root);
     return (hb_rim_t){height + x * by * by, by * by * by, -t * x * root * by * by * by};
 }
@@ -46,7 +47,7 @@ EXPORT void hb_store(index_t n, index_t parts, double dt, double ramp, double ra
         double h = level[k], over = 0;
         for (index_t s = 0; s < parts; s++) {
             const double from = z[k] + s * slope;
-            if (h > height && !sharp) {
+            if (h > height) {
                 const double left = hb_over_rim(h, height, weir, t / 2).level;
                 over += h - left, h = left;
             }
@@ -60,7 +61,7 @@ EXPORT void hb_store(index_t n, index_t parts, double dt, double ramp, double ra
                 h = hb_above_zero(h + t * (from + slope / 2 - left));
             }
             if (h > height) {
-                const double left = sharp ? height : hb_over_rim(h, height, weir, t / 2).level;
+                const double left = hb_over_rim(h, height, weir, t / 2).level;
                 over += h - left, h = left;
             }
         }
@@ -122,7 +123,7 @@ EXPORT void hb_store_near(index_t n, index_t parts, double dt, double ramp, doub
         for (index_t i = 0; i < count; i++) next[i] = d[i], over[i] = 0;
         for (index_t s = 0; s < parts; s++) {
             const double from = z[k] + s * slope;
-            if (h > height && !sharp) {
+            if (h > height) {
                 const hb_rim_t rim = hb_over_rim(h, height, weir, t / 2);
                 for (index_t i = 0; i < count; i++)
                     hb_spill_near(rim, heights[i], weirs[i], next + i, over + i);
@@ -148,8 +149,7 @@ EXPORT void hb_store_near(index_t n, index_t parts, double dt, double ramp, doub
             }
             h = hb_above_zero(reached);
             if (h > height) {
-                const hb_rim_t rim = sharp ? (hb_rim_t){height, 0, 0}
-                                           : hb_over_rim(h, height, weir, t / 2);
+                const hb_rim_t rim = hb_over_rim(h, height, weir, t / 2);
                 for (index_t i = 0; i < count; i++)
                     hb_spill_near(rim, heights[i], weirs[i], next + i, over + i);
                 lost += h - rim.level, h = rim.level;

@@ -86,5 +86,5 @@ class Changed(NamedTuple):
     """The numbers, by place and parameter."""
     free: tuple[tuple[int, str], ...]
     """Place and parameter of each number that is fitted."""
-    least: Mapping[tuple[int, str], float] = MappingProxyType({})
-    """Lower ends of the ranges of those, where they are not the block's own."""
+    ranges: Mapping[tuple[int, str], tuple[float, float]] = MappingProxyType({})
+    """Of those whose range is not the block's own."""

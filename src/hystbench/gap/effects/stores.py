@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
 from hystbench.gap.effects.effect import StoreEffect
 from hystbench.gap.effects.law import Changed, Filled
 
@@ -98,7 +100,7 @@ def _spilling(
     last, *_ = filled.tops[-1]
     values: dict[int, dict[str, float]] = {}
     free: list[tuple[int, str]] = []
-    least: dict[tuple[int, str], float] = {}
+    ranges: dict[tuple[int, str], tuple[float, float]] = {}
     for place, store, top in filled.tops:
         if place not in places:
             continue
@@ -108,7 +110,7 @@ def _spilling(
         if over_weirs:
             leaves = store.rate * top**store.exponent
             own["weir"] = leaves / (ABOVE * top) ** 1.5
-            least[place, "height"] = EDGE * (own["height"] / share)
+            ranges[place, "height"] = (EDGE * (own["height"] / share), np.inf)
         free += [(place, name) for name in own]
     form += ", over a weir" * over_weirs
-    return Changed(form, values, tuple(free), least)
+    return Changed(form, values, tuple(free), ranges)

@@ -203,8 +203,11 @@ def with_changed(state: ModelState, effect: str, changed: Changed) -> ModelState
         Free(x.block, x.parameter) if x in was_free and x.given is not None else x
         for x in state.free
     )
-    named = (Free(*x, low=changed.least.get(x, -np.inf)) for x in changed.free)
-    more = tuple(x for x in named if x not in free)
+    more = []
+    for own in changed.free:
+        low, high = changed.ranges.get(own, (-np.inf, np.inf))
+        more.append(Free(*own, low=low, high=high))
+    more = [x for x in more if x not in free]
     charge = max(float(len(more)), 1.0)
     item = Added(effect, "inside", changed.form, places, old, charge, was_free=was_free)
     state = replace(state, free=(*free, *more), added=(*state.added, item))
