@@ -8,6 +8,7 @@ from functools import cache, partial
 
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.gpi import again_words, is_another
+from hystbench.gap.bases.integrator import integrates
 from hystbench.gap.bases.lead import without_leads
 from hystbench.gap.bases.linear import found_with, is_identified_linear
 from hystbench.gap.bases.roughly_known import roughly_known
@@ -47,6 +48,8 @@ from hystbench.record import Record
 NOT_IN_WINDOWS = ("drift", "sensor-nonlinearity", "saturation")
 """Effects that windows of a free mass cannot tell. A window begins at zero wherever the
 mass is, so a curve of the place means nothing; and any small error becomes a path."""
+WANDERS = "drift"
+"""Not offered either beside a base that integrates: its own errors become paths."""
 OF_THE_PLACE = "asymmetry"
 """Closed as well where the base may hold a hysteresis: it then stands behind it. Before
 a linear base it bends what drives the mass, as a valve does that opens more one way."""
@@ -130,12 +133,13 @@ class GapSearch:
     quantities: Quantities | None
     """None where no forces are to be tried inside the dynamics."""
 
-    @property
-    def offered(self) -> tuple[str, ...]:
-        """Effects that these records may show, of those that may be named."""
+    def offered(self, base: Model) -> tuple[str, ...]:
+        """Effects that these records may show beside a base, of those to be named."""
         offered = self.asked.vocabulary.offered
         if not self.evidence.in_windows:
-            return offered
+            span = max(len(record) * record.dt for record in self.evidence.fit)
+            wanders = integrates(base, span)
+            return tuple(x for x in offered if not (wanders and x == WANDERS))
         beside = () if self.quantities is not None else (OF_THE_PLACE,)
         closed = (*NOT_IN_WINDOWS, *beside)
         return tuple(name for name in offered if name not in closed)
@@ -143,7 +147,8 @@ class GapSearch:
     def started(self, records: tuple[Record, ...], base: Model) -> BesideBase:
         """Give a base on records, with nothing named beside it yet."""
         hold, noise = self.evidence.input_hold, self.evidence.noise_rms
-        begun = start_state(records, base, hold, declared=noise, offered=self.offered)
+        offered = self.offered(base)
+        begun = start_state(records, base, hold, declared=noise, offered=offered)
         return BesideBase(base, *begun)
 
     def without_leads(self, found: BesideBase, model: Model) -> BesideBase:
@@ -158,8 +163,9 @@ class GapSearch:
     def identified_again(self, found: BesideBase, named: Named) -> BesideBase:
         """Name beside a hysteresis that is identified again, where that is better."""
         named_beside = partial(self.beside, kinds=found.hosts)
+        offered = self.offered(found.base)
         return identified_again(
-            found, named, self.evidence, named_beside, self.asked.say, self.offered
+            found, named, self.evidence, named_beside, self.asked.say, offered
         )
 
     def begun_otherwise(self, found: BesideBase) -> BesideBase:

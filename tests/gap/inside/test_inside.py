@@ -21,6 +21,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.linear import IdentifiedModel, with_its_numbers_free
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.effects.sensor import Drift
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
@@ -785,14 +786,27 @@ def test_an_effect_that_makes_up_for_what_its_host_lacks_is_not_missing(after, p
 
 
 @pytest.mark.parametrize(
-    ("chain", "gain", "better"),
-    [(1, 41.0, True), (1, 39.0, False), (2, -59.0, True), (2, -61.0, False)],
+    ("forces", "chain", "gain", "better"),
+    [
+        (1, 1, 41.0, True),
+        (1, 1, 39.0, False),
+        (1, 2, -59.0, True),
+        (1, 2, -61.0, False),
+        (1, 0, 41.0, True),
+        (2, 0, 141.0, True),
+        (2, 0, 139.0, False),
+    ],
 )
-def test_what_a_chain_needs_more_counts_against_it(monkeypatch, chain, gain, better):
-    """On folds forces have to gain 40, or 100 less for each further effect there."""
+def test_what_a_chain_needs_more_counts_against_it(
+    monkeypatch, forces, chain, gain, better
+):
+    """On folds forces have to gain 40, or 100 less for each further effect there.
+
+    Where a chain has none they pay as effects in it do: the first 40, a further 100.
+    """
     state = transfer((mass(30.0),))
     one = Added("friction", "inside", "", (), {}, 1.0)
-    inside = Inside(None, state, Named(replace(state, added=(one,)), ()), "")
+    inside = Inside(None, state, Named(replace(state, added=(one,) * forces), ()), "")
     named = Named(replace(state, added=(one,) * chain), ())
     monkeypatch.setattr(
         "hystbench.gap.inside.named_inside.gain_held_back",
@@ -827,6 +841,27 @@ def test_fewer_effects_of_a_chain_stand_where_they_leave_as_little(
         lambda _, found, *__: 1000.0 if found is inside.named.state else 0.0,
     )
     assert beats_chain(inside, given, FLOOR) == stands
+
+
+def test_forces_and_a_chain_are_compared_without_paths(monkeypatch):
+    """A path foretells no other record, so it is no rival of a friction."""
+    state = transfer((mass(30.0),))
+    friction = Added("friction", "inside", "", (), {}, 1.0)
+    path = Added("drift", "sensor", "path", (), {}, 1.0)
+    beside = ((Drift.levels(), {}),)
+    with_path = replace(state, added=(friction, path), beside=beside)
+    inside = Inside(None, state, Named(with_path, ()), "")
+    given = Named(replace(state, added=(path,), beside=beside), ())
+    monkeypatch.setattr(
+        "hystbench.gap.inside.named_inside.gain_held_back",
+        lambda _, found, *__: 60.0 * any(x.effect == "friction" for x in found.added),
+    )
+    asked = {"_in_fewer_numbers": False, "_in_fewer_effects": False}
+    for name, answer in asked.items():
+        monkeypatch.setattr(
+            f"hystbench.gap.inside.named_inside.{name}", lambda *_, x=answer: x
+        )
+    assert beats_chain(inside, given, FLOOR)
 
 
 def test_a_stop_on_both_sides_without_a_clearance_is_a_spring_and_no_stop():

@@ -35,7 +35,7 @@ from hystbench.gap.records.lone_samples import (
 )
 from hystbench.gap.records.nuisance import left_rms
 from hystbench.gap.records.scored_samples import Compared
-from hystbench.gap.thresholds import ABOVE_NOISE, AS_GOOD
+from hystbench.gap.thresholds import ABOVE_NOISE, AS_GOOD, LOOSE
 from hystbench.gap.vocabulary import Vocabulary, with_device
 from hystbench.metrics import rms
 from hystbench.model import Model
@@ -137,16 +137,40 @@ def _lone_samples(shown: Outcome, evidence: Evidence, floor: float) -> list[str]
 
 
 def more_than_on_fit_records(content: Mapping[str, Any]) -> list[str]:
-    """Say that hold-out records show a gap where the fit records show none, if so."""
-    before, floor = content["gap"]["before"], content["gap"]["noise_floor"]
-    if content["verdict"] != "no-gap" or before is None:
+    """Say that much more is left of hold-out records than of fit records, if so.
+
+    Where the fit records show no gap, that is what is more than noise; else twice the
+    rms that the model leaves of them.
+    """
+    gap, unit = content["gap"], content["unit"]
+    before, floor = gap["before"], gap["noise_floor"]
+    if content["verdict"] != "no-gap":
+        return _twice_as_much(content)
+    if before is None:
         return []
     if before**2 <= (1 + ABOVE_NOISE) * max(floor, content["fit"]["after"] or 0.0) ** 2:
         return []
     return [
-        f"on the hold-out records the base leaves {sized(before, content['unit'])} "
-        f"rms, and the noise floor is {sized(floor, content['unit'])}: no fit record "
+        f"on the hold-out records the base leaves {sized(before, unit)} "
+        f"rms, and the noise floor is {sized(floor, unit)}: no fit record "
         "shows that. The zero of a hold-out record may have moved"
+    ]
+
+
+def _twice_as_much(content: Mapping[str, Any]) -> list[str]:
+    """Say that hold-out records leave twice the rms of fit records, or more."""
+    gap, unit = content["gap"], content["unit"]
+    of_fit = content["fit"]["before" if content.get("withdrawn") else "after"]
+    left = gap["before"] if gap["after"] is None else gap["after"]
+    if left is None or of_fit is None:
+        return []
+    if LOOSE * left**2 <= max(gap["noise_floor"], of_fit) ** 2:
+        return []
+    return [
+        f"of the hold-out records the model leaves {sized(left, unit)} rms, of the fit "
+        f"records {sized(of_fit, unit)}. What fits these does not hold there: another "
+        "range or another state of the device, a second cause that the input does not "
+        "tell, or too few fit records for what was fitted"
     ]
 
 
