@@ -80,3 +80,13 @@ def test_a_ratio_that_runs_away_costs_without_bound(monkeypatch):
     masks = [np.ones(300, dtype=bool)]
     assert task.squares(SLOW, masks) == np.inf
     with_plainest_start(task, SLOW)
+
+
+@pytest.mark.parametrize(("swing", "seen"), [(31.0, True), (32.0, False)])
+def test_poles_that_swing_faster_than_samples_show_cost_without_bound(swing, seen):
+    """Half of the sampling frequency is 31.4 rad/s."""
+    t = 0.1 * np.arange(300)
+    task = OutputError((record(np.sin(0.7 * t), dt=0.1),), "linear", 1.0, "rest")
+    poles = [-1.0 + 1j * swing, -1.0 - 1j * swing, -5.0]
+    ratio = Ratio(np.poly(poles).real[:0:-1], np.array([1.0]), 0.0, 0.0)
+    assert np.isfinite(task.squares(ratio, [np.ones(300, dtype=bool)])) == seen

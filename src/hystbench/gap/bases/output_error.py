@@ -128,9 +128,12 @@ class OutputError:
         """Sum of squares of the error over the masked samples.
 
         What each record has of its own is what fits its masked samples best. Infinite
-        for a ratio that runs away, and for one that no block takes, as where rounding
-        makes slow poles unstable.
+        for a ratio that runs away, for one that swings faster than its samples can
+        show, and for one that no block takes, as where rounding makes slow poles
+        unstable.
         """
+        if self._swings_unseen(ratio):
+            return np.inf
         with np.errstate(over="ignore", invalid="ignore"):  # of one that runs away
             try:
                 left = self.left(ratio)
@@ -138,6 +141,12 @@ class OutputError:
                 return np.inf
             squares = float(sum(np.sum(part**2) for part in self._masked(left, masks)))
             return squares if np.isfinite(squares) else np.inf
+
+    def _swings_unseen(self, ratio: Ratio) -> bool:
+        """Tell whether poles swing above half of the sampling frequency."""
+        poles = self.scale * np.roots(np.append(ratio.a, 1.0)[::-1])
+        fastest = np.pi / min(record.dt for record in self.records)
+        return bool(np.any(np.abs(poles.imag) > fastest))
 
     def _masked(
         self, columns: Sequence[FloatArray], masks: Sequence[Mask]
