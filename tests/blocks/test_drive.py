@@ -43,13 +43,13 @@ def test_a_dead_zone_is_rounded_and_never_falls():
         DeadZone(half_width=0.5, rounding=0.4)
 
 
-def follow(z, step, parts=500):
+def follow(z, step, parts=500, falling=1.0):
     """Follow straight lines in many small steps, each of them limited."""
     now, out = z[0], [z[0]]
     for before, after in itertools.pairwise(z):
         for part in range(1, parts + 1):
             wanted = before + (after - before) * part / parts
-            now += np.clip(wanted - now, -step / parts, step / parts)
+            now += np.clip(wanted - now, -falling * step / parts, step / parts)
         out.append(now)
     return np.array(out)
 
@@ -59,6 +59,14 @@ def test_slew_limit_is_the_limit_of_small_steps(z, step):
     v = SlewLimit(rate=step / DT).simulate(z, z, DT)
     # A small step looks at its end alone: an error of its size, 2 / 500.
     np.testing.assert_allclose(v, follow(z, step), rtol=0, atol=5e-3)
+
+
+@given(inputs.map(lambda z: z[:12]), st.floats(0.01, 1.0), st.floats(0.2, 3.0))
+def test_slew_limit_may_fall_at_another_rate_than_it_rises(z, step, falling):
+    v = SlewLimit(rate=step / DT, falling=falling * step / DT).simulate(z, z, DT)
+    error = 2 * max(falling, 1.0) / 500
+    expected = follow(z, step, falling=falling)
+    np.testing.assert_allclose(v, expected, rtol=0, atol=1.3 * error)
 
 
 @given(inputs, st.floats(0.01, 3.0))
@@ -87,11 +95,13 @@ def test_slew_limit_catches_up_within_an_interval_and_turns():
 CURVES = {"rounded": np.tanh, "sharp": lambda x: np.clip(x, -1.0, 1.0)}
 
 
-def lagging(z, rate, lag, curve):
+def lagging(z, rate, lag, curve, falling=1.0):
     """Solve the law of a lag of limited rate for straight lines, finely."""
 
     def law(t, v):
-        return rate * curve((np.interp(t, times, z) - v) / (rate * lag))
+        ahead = np.interp(t, times, z) - v
+        own = rate * np.where(ahead < 0, falling, 1.0)
+        return own * curve(ahead / (own * lag))
 
     times = DT * np.arange(len(z))
     fine = {"t_eval": times, "rtol": 1e-10, "atol": 1e-12, "max_step": DT / 4}
@@ -99,15 +109,19 @@ def lagging(z, rate, lag, curve):
 
 
 @pytest.mark.parametrize("form", CURVES)
-@pytest.mark.parametrize("rate", [20.0, 200.0, 2000.0])
-def test_a_lag_with_a_limit_of_its_rate_is_of_second_order(rate, form):
+@pytest.mark.parametrize(
+    ("rate", "falling"), [(20.0, 1.0), (200.0, 1.0), (2000.0, 1.0), (20.0, 1.7)]
+)
+def test_a_lag_with_a_limit_of_its_rate_is_of_second_order(rate, falling, form):
     z = np.sin(2 * np.pi * 10 * DT * np.arange(200))  # 63 a second at most
     errors = []
     for parts in (1, 4):  # both steps are shorter than an eighth of the lag
         fine = np.interp(np.arange(0, 199, 1 / parts), np.arange(200), z)
-        block = SlewLimit(rate=rate, time_constant_s=9 * DT, form=form)
+        block = SlewLimit(
+            rate=rate, time_constant_s=9 * DT, form=form, falling=falling * rate
+        )
         v = block.simulate(fine, fine, DT / parts)[::parts]
-        true = lagging(z, rate, 9 * DT, CURVES[form])[:199]
+        true = lagging(z, rate, 9 * DT, CURVES[form], falling)[:199]
         errors.append(np.abs(v - true).max())
     assert errors[0] < 1e-3
     assert errors[1] < errors[0] / 12

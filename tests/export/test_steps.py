@@ -144,6 +144,13 @@ def mixed():
                 {"rate": 100.0, "time_constant_s": 2.5 * DT, "form": "sharp"},
             ),
         ),
+        "limits of the rate up and down": chain_of(
+            ("slew-limit", {"rate": 100.0, "falling": 60.0}),
+            (
+                "slew-limit",
+                {"rate": 90.0, "time_constant_s": 2.5 * DT, "falling": 140.0},
+            ),
+        ),
         "two low-passes of heat": chain_of(
             ("thermal-drift",
              {**EXAMPLES["thermal-drift"], "second_time_constant_s": 0.01}),

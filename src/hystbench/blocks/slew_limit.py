@@ -17,16 +17,17 @@ than records show."""
 class SlewLimit(Block, name="slew-limit", place="drive"):
     """Output that follows its input with ``|dv/dt| <= rate``.
 
-    It starts at the input's first sample. Exact for an input that moves straight
-    between samples: where the output catches up within an interval, it follows from
-    there on.
+    With ``falling`` it goes down at another rate than up, ``dv/dt >= -falling``, as a
+    cylinder does whose rod takes a part of one side, or an arm that has weight. It
+    starts at the input's first sample. Exact for an input that moves straight between
+    samples: where the output catches up within an interval, it follows from there on.
 
     With a time constant small signals lag by ``tau``, and large ones are limited:
     ``dv/dt = rate f((z - v) / (rate tau))``. The form ``rounded`` is an amplifier whose
     first stage gives no more than a current, by the law of a pair of transistors [2]_:
     ``f = tanh``. The form ``sharp`` is a servo whose valve or motor goes no faster:
-    ``f(x) = max(-1, min(1, x))``. Of second order in the smaller of a sampling interval
-    and an eighth of ``tau``.
+    ``f(x) = max(-1, min(1, x))``. Where it falls, ``rate`` is the other one. Of second
+    order in the smaller of a sampling interval and an eighth of ``tau``.
 
     References
     ----------
@@ -41,27 +42,35 @@ class SlewLimit(Block, name="slew-limit", place="drive"):
         "s", "lag tau of small signals; 0 for none", 0.0, 1e3, default=0.0
     )
     form: str = choice("how one with a lag nears its rate", FORMS, FORMS[0])
+    falling: float = number(
+        "U/s", "largest rate downwards; 0 where it is the same", 0.0, default=0.0
+    )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Follow the input at a limited rate."""
         v = np.empty(len(z))
-        rate = self.rate * dt
+        rate, falling = self.rate * dt, self._falling * dt
         z = np.ascontiguousarray(z, np.float64)
         if self._lags(dt):
-            lag = rate, dt / self.time_constant_s
+            lag = rate, falling / rate, dt / self.time_constant_s
             kernels.call("hb_slew_with_lag", len(z), self._sharp, *lag, z, v)
         else:
-            kernels.call("hb_slew_limit", len(z), rate, z, v)
+            kernels.call("hb_slew_limit", len(z), rate, falling, z, v)
         return v
 
     def step(self, sampling: Sampling) -> Step:
         """Follow the input, which goes straight from its last sample."""
-        rate = {"rate": self.rate * sampling.dt}
+        rate, down = self.rate * sampling.dt, self._falling / self.rate
         if self._lags(sampling.dt):
             share = sampling.dt / self.time_constant_s
-            numbers = {"sharp": self._sharp, **rate, "share": share}
-            return Step("slew_with_lag", numbers, {"started": 1, "before": 1, "x": 1})
-        return Step("slew_limit", rate, {"started": 1, "before": 1, "now": 1})
+            about = {"sharp": self._sharp, "rate": rate, "down": down, "share": share}
+            return Step("slew_with_lag", about, {"started": 1, "before": 1, "x": 1})
+        rates = {"rising": rate, "falling": down * rate}
+        return Step("slew_limit", rates, {"started": 1, "before": 1, "now": 1})
+
+    @property
+    def _falling(self) -> float:
+        return self.falling or self.rate
 
     @property
     def _sharp(self) -> int:

@@ -143,43 +143,44 @@ static double hb_mains_pickup(double cycles, int harmonics, const double *amplit
 
 /* Exact for an input that goes straight: where the output catches up within an
  * interval it follows from there, or goes on at the limit. */
-static double hb_slew_limit(double rate, double *started, double *before, double *now,
-                            double z)
+static double hb_slew_limit(double rising, double falling, double *started,
+                            double *before, double *now, double z)
 {
     if (*started == 0) *before = *now = z;
     *started = 1;
     const double slope = z - *before, lag = *before - *now;
-    const double way = copysign(rate, lag != 0 ? lag : slope);
+    const double way = (lag != 0 ? lag : slope) > 0 ? rising : -falling;
     const double at = lag != 0 ? lag / (way - slope) : 0;
     if (!(at >= 0 && at < 1))
         *now += way;
-    else if (fabs(slope) <= rate)
+    else if (-falling <= slope && slope <= rising)
         *now = z;
     else
-        *now = z - (1 - at) * (slope - copysign(rate, slope));
+        *now = z - (1 - at) * (slope - (slope > 0 ? rising : -falling));
     *before = z;
     return *now;
 }
 
 /* x is (z - v) / (R tau): the input moves by half of its way, x relaxes, the input moves
- * on. */
-static double hb_slew_with_lag(int sharp, double rate, double share, double *started,
-                               double *before, double *x, double z)
+ * on.  Where it is below zero, R is down times that. */
+static double hb_slew_with_lag(int sharp, double rate, double down, double share,
+                               double *started, double *before, double *x, double z)
 {
     const int parts = (int)ceil(8 * share);
     const double h = share / parts, fade = exp(-h);
     if (*started == 0) *before = z;
     const double half = 0.5 * (z - *before) / rate * h;
     for (int part = 0; *started != 0 && part < parts; part++) {
-        *x += half;
-        const double size = fabs(*x);
+        const double unit = *x + half < 0 ? down : 1, at = (*x + half) / unit;
+        const double size = fabs(at);
+        double then;
         if (size > (sharp ? 1 : 20) + h)
-            *x -= copysign(h, *x);
+            then = at - copysign(h, at);
         else if (sharp)
-            *x = size > 1 ? copysign(exp(size - 1 - h), *x) : *x * fade;
+            then = size > 1 ? copysign(exp(size - 1 - h), at) : at * fade;
         else
-            *x = asinh(sinh(*x) * fade);
-        *x += half;
+            then = asinh(sinh(at) * fade);
+        *x = unit * then + half;
     }
     *started = 1;
     *before = z;

@@ -2,26 +2,27 @@
 #include "lanes.h"
 
 /* The output moves towards the input, which is straight between samples, by no more
- * than rate in one interval.  It starts at the input.  Exact: where the output catches
- * up within an interval it follows from there, or goes on at the limit. */
-EXPORT void hb_slew_limit(index_t n, double rate, const double *z, double *out)
+ * than rising or falling in one interval.  It starts at the input.  Exact: where the
+ * output catches up within an interval it follows from there, or goes on at the limit. */
+EXPORT void hb_slew_limit(index_t n, double rising, double falling, const double *z,
+                          double *out)
 {
     double now = n > 0 ? z[0] : 0;
     for (index_t k = 0; k < n; k++) {
         if (k > 0) {
             const double slope = z[k] - z[k - 1], lag = z[k - 1] - now;
             /* towards the input; where both are level, the way it goes */
-            const double way = copysign(rate, lag != 0 ? lag : slope);
+            const double way = (lag != 0 ? lag : slope) > 0 ? rising : -falling;
             const double reach = now + way;
             /* share of the interval that is left after catching up: the distance
              * lag + (slope - way) t vanishes at t = lag / (way - slope) */
             const double at = lag != 0 ? lag / (way - slope) : 0;
             if (!(at >= 0 && at < 1))
                 now = reach;
-            else if (fabs(slope) <= rate)
+            else if (-falling <= slope && slope <= rising)
                 now = z[k];
             else
-                now = z[k] - (1 - at) * (slope - copysign(rate, slope));
+                now = z[k] - (1 - at) * (slope - (slope > 0 ? rising : -falling));
         }
         out[k] = now;
     }
@@ -41,19 +42,21 @@ static double relaxed(double x, double h, double fade, int sharp)
 }
 
 /* dv/dt = R tanh((z - v) / (R tau)), or sharp R max(-1, min(1, (z - v) / (R tau))), with
- * rate = R dt and share = dt / tau.  Strang's splitting: the input moves by half of its
- * way, x relaxes, and the input moves on.  Of second order in the part of an interval
- * that a step is, at most an eighth of tau. */
-EXPORT void hb_slew_with_lag(index_t n, index_t sharp, double rate, double share,
-                             const double *z, double *out)
+ * rate = R dt and share = dt / tau; where v falls, R is down times that.  Strang's
+ * splitting: the input moves by half of its way, x relaxes, and the input moves on.  Of
+ * second order in the part of an interval that a step is, at most an eighth of tau. */
+EXPORT void hb_slew_with_lag(index_t n, index_t sharp, double rate, double down,
+                             double share, const double *z, double *out)
 {
     const int parts = (int)ceil(8 * share);
     const double h = share / parts, fade = exp(-h);
     double x = 0;
     for (index_t k = 0; k < n; k++) {
         const double move = k > 0 ? (z[k] - z[k - 1]) / rate * h : 0;
-        for (int part = 0; k > 0 && part < parts; part++)
-            x = relaxed(x + 0.5 * move, h, fade, (int)sharp) + 0.5 * move;
+        for (int part = 0; k > 0 && part < parts; part++) {
+            const double at = x + 0.5 * move, unit = at < 0 ? down : 1;
+            x = unit * relaxed(at / unit, h, fade, (int)sharp) + 0.5 * move;
+        }
         out[k] = z[k] - x * rate / share;
     }
 }

@@ -20,7 +20,7 @@ FINE = 20
 wave = partial(sine, count=COUNT, dt=DT)
 
 
-def through(u, rate):
+def through(u, rate, falling=1.0):
     """What the drive and a lag make of an input, in twenty steps a sample."""
     now = out = 0.0
     found = []
@@ -28,18 +28,18 @@ def through(u, rate):
     for k, value in enumerate(steps.tolist()):
         if k % FINE == 0:
             found.append(out)
-        now += max(min(value - now, rate * DT / FINE), -rate * DT / FINE)
+        now += max(min(value - now, rate * DT / FINE), -falling * rate * DT / FINE)
         out += (now - out) * -np.expm1(-DT / FINE / LAG_S)
     return 3.0 * np.array(found)
 
 
-def device(rate):
+def device(rate, falling=1.0):
     random = np.random.default_rng(2)
     tones = wave(2.0) + 0.7 * wave(5.1) + 0.4 * wave(11.3)
     inputs = {"slow": wave(0.5), "fast": wave(8.0), "tones": 0.6 * tones}
     records = []
     for name, u in inputs.items():
-        y = through(u, rate) + NOISE * random.standard_normal(len(u))
+        y = through(u, rate, falling) + NOISE * random.standard_normal(len(u))
         records.append(record(u, y, name=name, dt=DT))
     return Evidence("made", tuple(records), (), "linear")
 
@@ -64,10 +64,16 @@ def loaded(limited, kept):
 def test_the_rate_is_that_of_the_drive(limited):
     found = behind_a_slow_drive(limited)
     assert found is not None
-    slowed, rate = found
-    assert rate == pytest.approx(RATE, rel=0.02)
+    slowed, drive = found
+    assert (drive.rate, drive.falling) == (pytest.approx(RATE, rel=0.02), 0.0)
     steepest = max(np.abs(np.diff(x.u)).max() for x in slowed.fit)
-    assert steepest <= rate * DT * (1 + 1e-9)
+    assert steepest <= drive.rate * DT * (1 + 1e-9)
+
+
+def test_a_drive_may_fall_at_another_rate_than_it_rises():
+    _, drive = behind_a_slow_drive(device(RATE, 1.6))
+    assert drive.rate == pytest.approx(RATE, rel=0.02)
+    assert drive.falling == pytest.approx(1.6 * RATE, rel=0.02)
 
 
 def test_without_a_limit_there_is_none():

@@ -210,7 +210,7 @@ NOTHING = {
     "drive-lag": {"time_constant_s": 1e-7, "damping_ratio": 0.7},
     "eddy-diffusion": {"time_constant_s": 1e-12},
     "drive-saturation": {"limit": 1e6, "level": 1e6, "sharpness": 4.0},
-    "slew-limit": {"rate": 1e8, "time_constant_s": 0.0},
+    "slew-limit": {"rate": 1e8, "falling": 1e8, "time_constant_s": 0.0},
     "dead-zone": {"half_width": 0.0, "rounding": 1.0},
     "saturation": {"level": 1e8, "sharpness": 2.0},
     "backlash": {"half_width": 0.0},
@@ -432,6 +432,7 @@ SCALES = {
     "level": LARGER,
     "sharpness": 1.0,
     "rate": LARGER / SLOWER,
+    "falling": LARGER / SLOWER,
     "velocity_scale": LARGER / SLOWER,
 }
 UNITS = {"-": 1.0, "s": SLOWER, "Hz": 1 / SLOWER, "U": LARGER, "Y": LARGER}

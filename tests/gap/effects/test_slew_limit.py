@@ -39,10 +39,10 @@ def finely(u):
     return np.interp(np.arange((len(u) - 1) * FINE + 1) / FINE, np.arange(len(u)), u)
 
 
-def hard(u):
+def hard(u, falling=1.0):
     now, out = u[0], []
     for wanted in finely(u).tolist():
-        now += min(max(wanted - now, -RATE * DT / FINE), RATE * DT / FINE)
+        now += min(max(wanted - now, -falling * RATE * DT / FINE), RATE * DT / FINE)
         out.append(now)
     return np.array(out)[::FINE]
 
@@ -84,3 +84,11 @@ def test_a_hard_limit_has_no_lag():
 def test_a_lag_is_no_limit_of_the_rate():
     name, _ = found(lagged)
     assert name in ("drive-lag", "sensor-lag")
+
+
+def test_a_hard_limit_may_fall_at_another_rate():
+    """As a cylinder of two areas does, or an arm that has weight."""
+    name, told = found(lambda u: hard(u, 0.6))
+    assert name == "slew-limit"
+    assert told["rate"] == pytest.approx(RATE, rel=0.02)
+    assert told["falling"] == pytest.approx(0.6 * RATE, rel=0.02)

@@ -21,7 +21,6 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.linear import IdentifiedModel, with_its_numbers_free
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Law, Moved
-from hystbench.gap.effects.sensor import Drift
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
@@ -841,27 +840,6 @@ def test_fewer_effects_of_a_chain_stand_where_they_leave_as_little(
         lambda _, found, *__: 1000.0 if found is inside.named.state else 0.0,
     )
     assert beats_chain(inside, given, FLOOR) == stands
-
-
-def test_forces_and_a_chain_are_compared_without_paths(monkeypatch):
-    """A path foretells no other record, so it is no rival of a friction."""
-    state = transfer((mass(30.0),))
-    friction = Added("friction", "inside", "", (), {}, 1.0)
-    path = Added("drift", "sensor", "path", (), {}, 1.0)
-    beside = ((Drift.levels(), {}),)
-    with_path = replace(state, added=(friction, path), beside=beside)
-    inside = Inside(None, state, Named(with_path, ()), "")
-    given = Named(replace(state, added=(path,), beside=beside), ())
-    monkeypatch.setattr(
-        "hystbench.gap.inside.named_inside.gain_held_back",
-        lambda _, found, *__: 60.0 * any(x.effect == "friction" for x in found.added),
-    )
-    asked = {"_in_fewer_numbers": False, "_in_fewer_effects": False}
-    for name, answer in asked.items():
-        monkeypatch.setattr(
-            f"hystbench.gap.inside.named_inside.{name}", lambda *_, x=answer: x
-        )
-    assert beats_chain(inside, given, FLOOR)
 
 
 def test_a_stop_on_both_sides_without_a_clearance_is_a_spring_and_no_stop():

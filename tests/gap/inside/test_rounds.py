@@ -365,9 +365,7 @@ def test_of_two_names_for_a_curve_behind_a_mass_the_sensor_is_tried():
 def test_where_one_record_shows_a_force_both_answers_are_judged_on_blocks(monkeypatch):
     """A path changes all records, and says nothing of where the force shows."""
     chain, state, start = (
-        SimpleNamespace(
-            sample=None, added=(), moved_charge=0.0, paths=frozenset(), name=name
-        )
+        SimpleNamespace(sample=None, added=(), moved_charge=0.0, name=name)
         for name in ("chain", "state", "start")
     )
     asked = []

@@ -178,8 +178,10 @@ def _found_beside(
         yield NO_SIGN, words, "without a sign", signed
     slowed = behind_a_slow_drive(evidence)
     if slowed is not None:
-        slow, rate = slowed
-        words = f"behind a drive of {rate:.4g} {evidence.input.unit}/s at most"
+        slow, drive = slowed
+        down = f" up and {drive.falling:.4g} down" if drive.falling else ""
+        rates = f"{drive.rate:.4g}{down} {evidence.input.unit}/s"
+        words = f"behind a drive of {rates} at most"
         yield SLOW, words, "without that limit", slow
     if _poles(plain.model) >= MANY and (dead := behind_a_dead_time(evidence)):
         late, seconds = dead

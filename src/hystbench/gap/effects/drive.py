@@ -95,6 +95,8 @@ HARD = 100.0
 class SlewLimit(Effect):
     """A rate below the fastest of the records' inputs, hard or soft, or of a servo.
 
+    A hard one and a servo's may go down at another rate than up.
+
     Where the input steps within a sample interval and rests on both sides, the fastest
     is a third of that: a limit that makes three intervals of the step moves its middle
     by one, and the moment of a step is known to a sample.
@@ -125,6 +127,14 @@ class SlewLimit(Effect):
                 grids={"rate": rates},
                 limits={"rate": (slowest, float(rates[-1]))},
             )
+            two = rates[-1] * TWO_RATES
+            yield self.inserted(
+                simulation,
+                place,
+                form="of two rates",
+                grids={"rate": two, "falling": two},
+                limits=dict.fromkeys(("rate", "falling"), (slowest, float(rates[-1]))),
+            )
             # An amplifier or a servo lags below its limit as well.
             # Of a lag of less than a sample, or as long as a record, nothing is seen.
             longest = simulation.span / 20
@@ -150,6 +160,8 @@ class SlewLimit(Effect):
             yield Law("of a servo", block, ("rate",))
 
 
+TWO_RATES = np.array([0.03, 0.06, 0.12, 0.25, 0.5, 0.9])
+"""Rates up and down of a drive for which they differ, over the fastest of its input."""
 LAGGING_SHARES = np.array([0.1, 0.3, 0.6, 0.95])
 """Rates of an amplifier or a servo that also lags, over the fastest of its input."""
 STEP = 0.25

@@ -20,11 +20,9 @@ from hystbench.gap.fitting.cross_validation import (
     gain_held_back,
     shows_in_one_record,
 )
-from hystbench.gap.fitting.edit_chain import without
 from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.on_records import on_records
 from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
-from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.as_late import with_others_as_late
@@ -291,9 +289,6 @@ def beats_chain(inside: Inside, named: Named, floor: Floor, say: Say = silent) -
     counts. Both models are refitted without
     those records. Of two that leave as little no folds are asked: fewer effects of few
     numbers stand, and beside a law of many numbers as many.
-
-    On folds laws are compared without the paths of single records: these foretell no
-    other record, and take as much of a force that is missing as of a drift.
     """
     state, chain = inside.named.state, named.state
     if _in_fewer_numbers(inside, named, floor.square):
@@ -303,7 +298,6 @@ def beats_chain(inside: Inside, named: Named, floor: Floor, say: Say = silent) -
         say("inside: a chain of fewer effects leaves as little")
         return False
     score = Score.plain(state.sample, floor.square)
-    state, chain = (_without_paths(each, score) for each in (state, chain))
     # What the chain changes elsewhere says nothing of where forces show.
     in_blocks = shows_in_one_record(inside.start, state, score)
     gain = gain_held_back(chain, state, score, in_blocks)
@@ -315,13 +309,6 @@ def beats_chain(inside: Inside, named: Named, floor: Floor, say: Say = silent) -
     # The first effect pays by the gain itself, as it does in a chain.
     further = ours - theirs if theirs else max(ours - 1, 0)
     return gain - FURTHER * further >= PAYS
-
-
-def _without_paths(state: ModelState, score: Score) -> ModelState:
-    """Leave out the paths of single records, and fit the laws again without them."""
-    if not state.paths:
-        return state
-    return finished(without(state, state.paths), score)[0]
 
 
 def _in_fewer_numbers(inside: Inside, named: Named, floor: float) -> bool:
