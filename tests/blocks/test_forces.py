@@ -1,12 +1,16 @@
 """Forces inside a mechanism: their laws, their memory, and that they only dissipate."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from hystbench import kernels
 from hystbench.blocks import registry
+from hystbench.blocks.force import LAWS as LAW_NAMES
 from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.errors import InputError
@@ -382,3 +386,10 @@ def test_the_friction_of_a_band_limited_motion_is_sampled_without_aliasing():
     assert np.std((jumps[::fine] - wanted)[part]) > 0.15
     assert aliased > 0.15
     assert right < 0.05
+
+
+def test_the_kernel_has_the_same_numbers_of_laws():
+    source = Path(kernels.__file__).with_name("forces.c").read_text(encoding="utf-8")
+    listed = re.search(r"^enum \{ /\*[^*]*\*/([^}]*)\};", source, re.M)[1]
+    names = [name.strip() for name in listed.split(",")]
+    assert names == [f"HB_{law.upper()}" for law in LAW_NAMES]

@@ -21,7 +21,7 @@ LAWS = (
     *("drag", "hysteretic", "gravity", "slider", "smooth", "relaxation"),
     *("attached", "lugre", "faster", "saturating"),
 )
-"""Laws of the kernel, by the number that they have in kernels/forces.c."""
+"""Laws of the kernel, by the number that they have in the enum of kernels/forces.c."""
 ROW = 7
 """Numbers of a row of the kernel."""
 

@@ -8,6 +8,10 @@
 #include <math.h>
 
 #define HB_ROW 7 /* numbers of a row: ROW of blocks/force.py */
+enum { /* laws by their number: LAWS of blocks/force.py, which a test compares */
+    HB_STIFFNESS, HB_SINH, HB_STOP, HB_FRICTION, HB_DRAG, HB_HYSTERETIC, HB_GRAVITY,
+    HB_SLIDER, HB_SMOOTH, HB_RELAXATION, HB_ATTACHED, HB_LUGRE, HB_FASTER, HB_SATURATING
+};
 
 static double hb_least(double a, double b) { return a < b ? a : b; }
 
@@ -216,15 +220,15 @@ static double hb_remembered(const double *f, double way, double v, double h,
 {
     double integral;
     switch ((int)f[0]) {
-    case 3: /* friction */
+    case HB_FRICTION:
         return hb_clip(hb_friction_reach(f, v), memory + way);
-    case 11: /* lugre */
+    case HB_LUGRE:
         return hb_bend(memory, way, hb_friction_reach(f, h > 0 ? way / h : v), &integral);
-    case 5: /* hysteretic */
+    case HB_HYSTERETIC:
         return hb_hysteretic(f, memory, way, &integral);
-    case 7: /* slider */
+    case HB_SLIDER:
         return hb_clip(f[2], memory + way);
-    case 9: /* relaxation */
+    case HB_RELAXATION:
         return memory * exp(-h / f[2]) + way * hb_phi(-h / f[2], &integral);
     }
     return memory;
@@ -235,35 +239,35 @@ static double hb_force(const double *f, double q, double v, const double *memori
 {
     const double memory = memories[0];
     switch ((int)f[0]) {
-    case 0: /* stiffness */
+    case HB_STIFFNESS:
         return q * (f[3] + q * (f[1] + f[2] * q));
-    case 1: /* sinh */
+    case HB_SINH:
         return f[1] * (f[2] * sinh(q / f[2]) - q);
-    case 2: /* stop */ {
+    case HB_STOP: {
         const double way = q - f[3];
         if (f[4] * way < 0) return 0;
         return f[1] * hb_lossy(f[5], hb_pressed(f[6], hb_dead_zone(f[2], way)), v);
     }
-    case 3: /* friction */
-    case 11: /* lugre */
+    case HB_FRICTION:
+    case HB_LUGRE:
         return hb_sliding(f, 0) * memory / f[4];
-    case 8: /* smooth */
+    case HB_SMOOTH:
         return hb_level(f[1], f[3], f[4], v) * tanh(v / f[2]);
-    case 4: /* drag */
+    case HB_DRAG:
         return f[1] * v * fabs(v);
-    case 12: /* faster */
+    case HB_FASTER:
         return f[2] * hb_dead_zone(f[1], v);
-    case 5: /* hysteretic */
+    case HB_HYSTERETIC:
         return f[1] * memory;
-    case 6: /* gravity */
+    case HB_GRAVITY:
         return f[1] * (sin(f[4] * q + f[2]) - f[3] * sin(f[2]) - f[5] * f[4] * q);
-    case 13: /* saturating */
+    case HB_SATURATING:
         return f[1] * q / hb_longer(q / f[2]);
-    case 7: /* slider */
+    case HB_SLIDER:
         return f[1] * hb_dead_zone(f[3], memory);
-    case 9: /* relaxation */
+    case HB_RELAXATION:
         return f[1] * memory;
-    case 10: /* attached */
+    case HB_ATTACHED:
         return f[3] * memory + f[2] * (v - memories[1]);
     }
     return NAN;
@@ -276,15 +280,15 @@ static double hb_mean_force(const double *f, double q, double way, double h,
     const double v = way / h, memory = memories[0];
     const double to = q + way, middle = q + way / 2, half = way / 2;
     switch ((int)f[0]) {
-    case 0: /* stiffness */
+    case HB_STIFFNESS:
         return f[1] * (q * q + q * to + to * to) / 3 +
                middle * (f[3] + f[2] * (q * q + to * to) / 2);
-    case 1: /* sinh */ {
+    case HB_SINH: {
         const double y = half / f[2];
         const double spread = y == 0 ? 1 : sinh(y) / y;
         return f[1] * (f[2] * sinh(middle / f[2]) * spread - middle);
     }
-    case 2: /* stop */ {
+    case HB_STOP: {
         double from = q - f[3], end = to - f[3];
         if (f[4] != 0) { /* a side without contact counts as the middle */
             from = f[4] * fmax(0, f[4] * from);
@@ -293,43 +297,43 @@ static double hb_mean_force(const double *f, double q, double way, double h,
         const double mean = hb_mean_pressed(from, end, f[2], f[6]);
         return f[1] * hb_lossy(f[5], way == 0 ? mean : mean * ((end - from) / way), v);
     }
-    case 3: /* friction */
+    case HB_FRICTION:
         return hb_sliding(f, 0) / f[4] *
                hb_mean_held(memory, way, hb_friction_reach(f, v), 0);
-    case 11: /* lugre */ {
+    case HB_LUGRE: {
         double integral;
         const double stiffness = hb_sliding(f, 0) / f[4];
         if (way == 0) return stiffness * memory;
         hb_bend(memory, way, hb_friction_reach(f, v), &integral);
         return stiffness * integral / way;
     }
-    case 8: /* smooth */
+    case HB_SMOOTH:
         return hb_level(f[1], f[3], f[4], v) * tanh(v / f[2]);
-    case 4: /* drag */
+    case HB_DRAG:
         return f[1] * v * fabs(v);
-    case 12: /* faster */
+    case HB_FASTER:
         return f[2] * hb_dead_zone(f[1], v);
-    case 5: /* hysteretic */ {
+    case HB_HYSTERETIC: {
         double integral;
         if (way == 0) return f[1] * memory;
         hb_hysteretic(f, memory, way, &integral);
         return f[1] * integral / way;
     }
-    case 6: { /* gravity */
+    case HB_GRAVITY: {
         const double by = f[4] * half;
         return f[1] * (sin(f[4] * middle + f[2]) * (by == 0 ? 1 : sin(by) / by) -
                        f[3] * sin(f[2]) - f[5] * f[4] * middle);
     }
-    case 13: /* saturating */
+    case HB_SATURATING:
         return f[1] * 2 * middle / (hb_longer(q / f[2]) + hb_longer(to / f[2]));
-    case 7: /* slider */
+    case HB_SLIDER:
         return f[1] * hb_mean_held(memory, way, f[2], f[3]);
-    case 9: /* relaxation */ {
+    case HB_RELAXATION: {
         double twice;
         const double once = hb_phi(-h / f[2], &twice);
         return f[1] * (memory * once + way * twice);
     }
-    case 10: /* attached */
+    case HB_ATTACHED:
         return hb_attached(f, way, h, memories);
     }
     return NAN;
@@ -341,7 +345,7 @@ static void hb_move_memories(int count, const double *forces, double v, double w
 {
     for (int i = 0; i < count; i++) {
         const double *f = forces + HB_ROW * i;
-        if ((int)f[0] == 10 && h > 0) {
+        if ((int)f[0] == HB_ATTACHED && h > 0) {
             const double gained = h / f[1] * hb_attached(f, way, h, memory + i);
             memory[i] += way - h * (memory[i + 1] + gained / 2);
             memory[i + 1] += gained;
@@ -362,7 +366,7 @@ static double hb_sum_of_forces(int count, const double *forces, double q, double
  * all along, -1, or neither, 0. Most go so at most times, and their law is then short. */
 static inline int hb_goes(const double *f, double memory, double way)
 {
-    if ((int)f[0] != 7 || f[3] != 0) return 0;
+    if ((int)f[0] != HB_SLIDER || f[3] != 0) return 0;
     if (fabs(memory) <= f[2] && fabs(memory + way) <= f[2]) return 1;
     return fabs(memory) == f[2] && memory * way > 0 ? -1 : 0;
 }
@@ -426,8 +430,9 @@ static int hb_falls(int count, const double *forces, double gives, double h)
     double falls = 0;
     for (int i = 0; i < count; i++) {
         const double *f = forces + HB_ROW * i;
-        if (((int)f[0] == 3 || (int)f[0] == 11) && f[3] > 0) falls += f[2] / f[3];
-        if ((int)f[0] == 8 && f[4] > 0) falls += f[3] / f[4];
+        const int law = (int)f[0];
+        if ((law == HB_FRICTION || law == HB_LUGRE) && f[3] > 0) falls += f[2] / f[3];
+        if (law == HB_SMOOTH && f[4] > 0) falls += f[3] / f[4];
     }
     return 0.86 * falls * gives > 0.5 * h;
 }
@@ -435,14 +440,16 @@ static int hb_falls(int count, const double *forces, double gives, double h)
 /* Whether a force alone slides at one force, without a gap: then its way is known. */
 static int hb_rubs(const double *f)
 {
-    return ((int)f[0] == 3 && (f[2] == 0 || !(f[3] > 0))) || ((int)f[0] == 7 && f[3] == 0);
+    const int law = (int)f[0];
+    return (law == HB_FRICTION && (f[2] == 0 || !(f[3] > 0))) ||
+           (law == HB_SLIDER && f[3] == 0);
 }
 
 /* The way of a part against such a force: it is held by a spring, and slides where that
  * would be bent beyond the reach, which is where a square is solved. */
 static double hb_way_rubbed(const double *f, double memory, double alone, double gives)
 {
-    const int slider = (int)f[0] == 7;
+    const int slider = (int)f[0] == HB_SLIDER;
     const double reach = slider ? f[2] : hb_friction_reach(f, 0);
     const double stiffness = gives * (slider ? f[1] : hb_sliding(f, 0) / f[4]);
     const double from = hb_clip(reach, memory), pulls = alone - stiffness * from;
@@ -510,8 +517,10 @@ static double hb_way_of(int count, const double *forces, const double *memory, d
 static int hb_turns(int count, const double *forces)
 {
     for (int i = 0; i < count; i++) {
-        const int kind = (int)forces[HB_ROW * i];
-        if (kind == 3 || kind == 5 || kind == 7 || kind == 11) return 1;
+        const int law = (int)forces[HB_ROW * i];
+        if (law == HB_FRICTION || law == HB_HYSTERETIC || law == HB_SLIDER ||
+            law == HB_LUGRE)
+            return 1;
     }
     return 0;
 }

@@ -21,10 +21,15 @@ struct nearby {
 static inline int hb_shown(int modes) { return modes + 2 * (3 + 12 * modes); }
 
 /* What a law depends on, beside the way or the velocity: the place, and its memory. */
-static int minds_place(int law) { return law <= 2 || law == 6 || law == 13; }
+static int minds_place(int law)
+{
+    return law == HB_STIFFNESS || law == HB_SINH || law == HB_STOP || law == HB_GRAVITY ||
+           law == HB_SATURATING;
+}
 static int minds_memory(int law)
 {
-    return law == 3 || law == 5 || law == 7 || law == 9 || law == 11;
+    return law == HB_FRICTION || law == HB_HYSTERETIC || law == HB_SLIDER ||
+           law == HB_RELAXATION || law == HB_LUGRE;
 }
 
 /* A force: its mean over a way in a time h; without a time itself, at a velocity. */
@@ -37,12 +42,12 @@ static double force_at(const double *f, double x, double way, double h, const do
 static double place_of(const double *f)
 {
     switch ((int)f[0]) {
-    case 1: /* sinh */
-    case 13: /* saturating */
+    case HB_SINH:
+    case HB_SATURATING:
         return fabs(f[2]);
-    case 2: /* stop */
+    case HB_STOP:
         return fabs(f[2]) + fabs(f[3]);
-    case 6: /* gravity: a radian */
+    case HB_GRAVITY: /* a radian */
         return f[4] != 0 ? 1 / fabs(f[4]) : 0;
     }
     return 0;
@@ -123,7 +128,8 @@ static void near_memories(int count, const double *forces, double *memory, doubl
     for (const int *own = all->own_row; *own >= 0; own++, each += 2) {
         const int i = *own / count, r = *own % count;
         const double *f = all->forces + HB_ROW * *own;
-        const int numbers = (int)f[0] == 10 ? 2 : 1; /* an attached mass has a speed too */
+        /* An attached mass has a speed too. */
+        const int numbers = (int)f[0] == HB_ATTACHED ? 2 : 1;
         for (int j = 0; j < numbers; j++) each[j] = all->memory[(r + j) * wide + i];
         hb_move_memories(numbers, f, all->v[i], all->way[i], h, each);
     }
@@ -144,7 +150,9 @@ static void near_memories(int count, const double *forces, double *memory, doubl
         const double by_memory = (hb_remembered(f, way, v, h, was + step) - is) / step;
         const double by_way = (hb_remembered(f, way + bit, v, h, was) - is) / bit;
         const double by_v =
-            (int)f[0] == 3 ? (hb_remembered(f, way, v + faster, h, was) - is) / faster : 0;
+            (int)f[0] == HB_FRICTION
+                ? (hb_remembered(f, way, v + faster, h, was) - is) / faster
+                : 0;
         EACH(k, all)
             store(its + k, is + by_memory * (load(its + k) - was) +
                                by_way * (load(all->way + k) - way) +
@@ -424,7 +432,7 @@ EXPORT void hb_structure(index_t n, index_t records, const index_t *ends, index_
     for (index_t i = 0; i < near; i++)
         for (index_t r = 0; r < count; r++) {
             const double *f = forces + HB_ROW * r, *its = f + HB_ROW * count * (i + 1);
-            int differs = (int)f[0] == 10;
+            int differs = (int)f[0] == HB_ATTACHED;
             for (int j = 0; j < HB_ROW; j++) differs |= f[j] != its[j];
             if (differs) *last++ = (int)(count * i + r);
         }
