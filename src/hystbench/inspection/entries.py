@@ -33,6 +33,7 @@ KEY_ORDER = (
     *("file", "group", "rows", "name", "use", "period_samples", "missing"),
     *("sampling_frequency_hz", "stands_still", "meant", "sha256"),
 )
+"""Order in which a record's line has its keys."""
 
 Entry = dict[str, Any]
 
@@ -275,9 +276,9 @@ def dataset_text(about: Mapping[str, Any]) -> str:
 
 
 def entry_text(entry: Mapping[str, Any]) -> str:
-    """Write a record's entry in one line."""
+    """Write a record's entry in one line: known keys first, none is left out."""
     ordered = {key: entry[key] for key in KEY_ORDER if key in entry}
-    return flow(ordered)
+    return flow({**ordered, **entry})
 
 
 def flow(value: Any) -> str:
