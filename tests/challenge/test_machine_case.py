@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.challenge import machine
-from hystbench.challenge.machine import draw_machine
+from hystbench.challenge import drawn_machine
+from hystbench.challenge.drawn_machine import draw_machine
 from hystbench.challenge.make import make, write_folder
 from hystbench.challenge.plant.effects import IN_MACHINE, MACHINES
 from hystbench.challenge.spec import GROUPS, CaseSpec, draw_spec, effects_of, kind_of
@@ -174,7 +174,10 @@ def test_effects_of_actuators_are_refused_in_machines():
 
 def test_a_step_at_which_the_fit_of_a_base_runs_away_explains_nothing(monkeypatch):
     drawn = draw_machine("mass-spring", np.random.default_rng(3), closed=False)
-    own, simulated = np.array(machine._own_numbers(drawn)), machine._simulated
+    own, simulated = (
+        np.array(drawn_machine._own_numbers(drawn)),
+        drawn_machine._simulated,
+    )
 
     def left(self, numbers, u):
         y = simulated(self, numbers, u)
@@ -182,9 +185,11 @@ def test_a_step_at_which_the_fit_of_a_base_runs_away_explains_nothing(monkeypatc
 
     rng = np.random.default_rng(4)
     inputs = [np.cumsum(rng.standard_normal(400)) for _ in range(2)]
-    truth = [simulated(drawn, 1.1 * own, machine._between(u))[:400] for u in inputs]
-    monkeypatch.setattr(machine, "_simulated", left)
-    found = machine.linear_parts(drawn, list(zip(inputs, truth, strict=True)))
+    truth = [
+        simulated(drawn, 1.1 * own, drawn_machine._between(u))[:400] for u in inputs
+    ]
+    monkeypatch.setattr(drawn_machine, "_simulated", left)
+    found = drawn_machine.linear_parts(drawn, list(zip(inputs, truth, strict=True)))
     assert all(np.isfinite(model).all() for _, model in found)
 
 

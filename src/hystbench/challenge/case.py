@@ -340,7 +340,7 @@ def told_of(
 
 def effect_told(effect: HiddenEffect, **own: Any) -> dict[str, Any]:
     """Give what the truth says of any effect; ``own`` is what it says of this sort."""
-    form = effect.law
+    form = effect.of_form
     return {
         "name": effect.kind.name,
         "form": effect.form,

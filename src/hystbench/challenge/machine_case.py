@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.challenge.case import Case, effect_told, told_of
-from hystbench.challenge.machine import (
+from hystbench.challenge.drawn_machine import (
     InputsAndOutputs,
     Machine,
     draw_machine,
@@ -164,9 +164,9 @@ def _linear(machine: Machine) -> dict[str, Any]:
 def _told(
     effect: HiddenEffect, size: float, noise: float, reach: Reach
 ) -> dict[str, Any]:
-    law = effect.law
+    form = effect.of_form
     ratio = float(20.0 * np.log10(max(size, 1e-12 * noise) / noise))
-    physical = law.numbers(effect.parameters, reach) if law.numbers else {}
+    physical = form.numbers(effect.parameters, reach) if form.numbers else {}
     return effect_told(effect, physical=physical) | {
         "rms": size,
         "ratio_db": ratio,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hystbench.challenge.plant import inside
+from hystbench.challenge.plant import around_machine
 from hystbench.challenge.plant.kind import Reach
 from hystbench.challenge.plant.machine import (
     FINE,
@@ -300,10 +300,10 @@ def test_a_flood_wave_runs_ahead_of_the_water_that_is_left():
     n, late = 100 * FINE, math.ceil(20.0 * (0.5**-0.4 - 1.0) * FINE)
     risen = np.where(np.arange(2 * n) < n, 1.0, 2.0)
     # the largest flow comes at once, and overtakes
-    rise = inside.flood_wave(risen, {"delay": 20.0}, REACH)
+    rise = around_machine.flood_wave(risen, {"delay": 20.0}, REACH)
     assert (rise[late : n - 1] == 1.0).all()
     assert (rise[n + late :] == 2.0).all()
-    fall = inside.flood_wave(3.0 - risen, {"delay": 20.0}, REACH)
+    fall = around_machine.flood_wave(3.0 - risen, {"delay": 20.0}, REACH)
     # half of the flow follows by its own delay, and what lies between comes between
     assert fall[n - 1] == 2.0
     assert fall[round(n + late / 2)] == pytest.approx(1.5, abs=0.01)
@@ -312,7 +312,7 @@ def test_a_flood_wave_runs_ahead_of_the_water_that_is_left():
 
 def test_a_strained_sensor_reads_another_value_on_the_way_back():
     y = 2.0 * np.sin(2 * np.pi * np.arange(0, 3, DT))
-    told = inside.strained(y, {"weight": 0.3, "half_width": 0.2}, REACH)
+    told = around_machine.strained(y, {"weight": 0.3, "half_width": 0.2}, REACH)
     beside = (told - y)[-10000:]
     # the square over the largest output runs ahead of its play by the half width
     assert np.max(beside) == pytest.approx(0.3 * 2.0 * 0.2)

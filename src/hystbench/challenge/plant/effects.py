@@ -1,8 +1,8 @@
 """What actuators and machines can hide, by name: in the vocabulary and outside it."""
 
 from hystbench.challenge.plant import (
+    around_machine,
     drive,
-    inside,
     material,
     mechanics,
     sensor,
@@ -14,7 +14,7 @@ IN_ACTUATOR, APART = read_kinds(
     "effects.yaml", drive, material, mechanics, sensor, unlisted
 )
 IN_MACHINE, APART_IN_MACHINE = read_kinds(
-    "inside.yaml", inside, drive, material, sensor
+    "in_machine.yaml", around_machine, drive, material, sensor
 )
 MACHINES = (
     *("mass-spring", "free-mass", "pendulum", "impedance"),

@@ -164,28 +164,28 @@ class HiddenEffect:
     parameters: Parameters
 
     @property
-    def law(self) -> Form:
+    def of_form(self) -> Form:
         """Its form, which tells what it does."""
         return self.kind.forms[self.form]
 
     @property
     def stage(self) -> Stage:
         """Where in the chain of an actuator it acts."""
-        return self.law.stage or self.kind.stage
+        return self.of_form.stage or self.kind.stage
 
     def act(self, signal: FloatArray, run: PlantRun) -> FloatArray:
         """Compute what the effect makes of a signal."""
-        act = self.law.act
+        act = self.of_form.act
         return act(signal, run, self.parameters) if act else signal
 
     def scaled(self, factor: float) -> HiddenEffect:
         """Make its difference about so many times as large, as far as it may be."""
-        law = self.law
-        if not law.size:
+        form = self.of_form
+        if not form.size:
             return self
-        wanted = self.parameters[law.size] * factor ** (1.0 / law.power)
-        value = law.ranges[law.size].clip(wanted)
-        return replace(self, parameters={**self.parameters, law.size: value})
+        wanted = self.parameters[form.size] * factor ** (1.0 / form.power)
+        value = form.ranges[form.size].clip(wanted)
+        return replace(self, parameters={**self.parameters, form.size: value})
 
     def resized(
         self,

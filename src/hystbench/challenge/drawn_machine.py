@@ -103,8 +103,8 @@ class Machine:
         """Compute what a record's command becomes before it drives the machine."""
         command = self.command(item)
         for effect in hidden:
-            if effect.kind.place == "before" and effect.law.curve:
-                command = effect.law.curve(command, effect.parameters, reach)
+            if effect.kind.place == "before" and effect.of_form.curve:
+                command = effect.of_form.curve(command, effect.parameters, reach)
         return command
 
     def with_forces(self, hidden: Sequence[HiddenEffect], reach: Reach) -> MovingPart:
@@ -112,8 +112,8 @@ class Machine:
         assert self.part is not None  # noqa: S101  (for the type checker)
         part = self.part
         for effect in hidden:
-            if effect.law.numbers:
-                part = replace(part, **effect.law.numbers(effect.parameters, reach))
+            if effect.of_form.numbers:
+                part = replace(part, **effect.of_form.numbers(effect.parameters, reach))
         return part
 
     def read(
@@ -137,8 +137,8 @@ class Machine:
             # an effect before the machine is not seen in the recorded command
             u = motion.force if self.gains[0] else u
         for effect in hidden:
-            if effect.kind.place == "behind" and effect.law.curve:
-                y = effect.law.curve(y, effect.parameters, reach)
+            if effect.kind.place == "behind" and effect.of_form.curve:
+                y = effect.of_form.curve(y, effect.parameters, reach)
         return decimated(u)[: item.samples], decimated(y)[: item.samples]
 
 
@@ -158,9 +158,9 @@ def with_holes(
     """
     out = list(tanks)
     for effect in hidden:
-        if effect.law.numbers is None:  # a curve before or behind them
+        if effect.of_form.numbers is None:  # a curve before or behind them
             continue
-        numbers = effect.law.numbers(effect.parameters, reach)
+        numbers = effect.of_form.numbers(effect.parameters, reach)
         if "exponent" not in numbers:
             if "rim" in numbers and out[0].back:
                 # behind an outlet against its level the last stands half as high
