@@ -28,7 +28,7 @@ class BesideBase:
 
     base: Model
     start: ModelState
-    """The same on the fit records."""
+    """The base on the fit records, before anything is named."""
     floor: Floor
     chain: Named | None = None
     """Effects in a chain; none where forces were enough, or before it is tried."""
@@ -40,7 +40,7 @@ class BesideBase:
 
     @property
     def named(self) -> Named:
-        """What does better."""
+        """The forces inside where they stand, else the chain."""
         found = self.chain if self.inside is None else self.inside.named
         assert found is not None  # noqa: S101  (one of them was looked for)
         return found

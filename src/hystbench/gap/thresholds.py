@@ -177,7 +177,7 @@ ANOTHER_MODE = NUMBER_PAYS / 4
 """The same of a further one of many modes: it may take all of its own band while it
 takes little of the whole.
 
-Of the power a hundredth, as `AS_GOOD`.
+Of the power as much as the default of `UNNAMED_SHARE`.
 """
 
 # The vocabulary.

@@ -20,7 +20,7 @@ QUICKEST = 200
 
 
 class Creep(Effect):
-    """One slow element, three a decade and a half apart, or all over some decades.
+    """One slow element, three over a decade and a half, or all over some decades.
 
     Inside a mechanism whose spring is known, a force beside it that fades.
     """

@@ -215,8 +215,7 @@ def with_one_fewer(
 
     An early effect may only have imitated a later one. The others are fitted only if a
     set with one effect fewer still was tried, so that a way leads to them
-    (:func:`with_a_way`). ``told_by`` tells what counts as tried: by default a set of
-    effects; with :func:`_laws` a set of effects with their laws.
+    (:func:`with_a_way`). With `by_laws` a set counts as tried only with the same laws.
     """
     if len(best.effects) < 2:
         return []
