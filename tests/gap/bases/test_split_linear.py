@@ -12,7 +12,7 @@ from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Rational, Spectra, fit_ratio
 from hystbench.gap.bases.wiener_hammerstein import Halves, HalvesError
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.places import INSIDE
+from hystbench.gap.effects.places import BETWEEN_HALVES
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model, load_model
@@ -149,7 +149,7 @@ def test_a_gain_that_falls_with_the_level_is_the_curve():
     model = model.with_hold("band-limited")
     found = search("made", records.fit[:2], model, vocabulary=CURVES)
     first = found.content["effects"][0]
-    assert (first["name"], first["place"]) == ("saturation", INSIDE)
+    assert (first["name"], first["place"]) == ("saturation", BETWEEN_HALVES)
 
 
 @pytest.fixture(scope="module")
@@ -175,7 +175,7 @@ def test_the_curve_is_named_in_its_place(found, split, clipped_records):
     answer, _ = found
     assert answer.content["verdict"] == "named"
     first = answer.content["effects"][0]
-    assert (first["name"], first["place"]) == ("saturation", INSIDE)
+    assert (first["name"], first["place"]) == ("saturation", BETWEEN_HALVES)
     names = [block.name for block in answer.model.chain]
     assert names[:4] == ["transfer-function", "gain", "saturation", "transfer-function"]
     (held,) = clipped_records.hold_out
@@ -196,9 +196,11 @@ def test_no_force_is_looked_for_where_the_curve_leaves_nothing(found):
 def test_static_effects_are_offered_between_the_halves(name, split, clipped_records):
     simulation = Simulation(split[0].chain, clipped_records.fit)
     places = {item.place: item.start for item in effects()[name].variants(simulation)}
-    assert places[INSIDE] == 2
+    assert places[BETWEEN_HALVES] == 2
     alone = Simulation(split[0].chain[:1], clipped_records.fit)
-    assert INSIDE not in {item.place for item in effects()[name].variants(alone)}
+    assert BETWEEN_HALVES not in {
+        item.place for item in effects()[name].variants(alone)
+    }
 
 
 def halves():

@@ -18,7 +18,7 @@ from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.device_kinds import DEVICE_KINDS, DeviceKind, causes
 from hystbench.errors import refuse_unknown
 from hystbench.gap.effects.law import Changed, Filled, Law, Moved, Passed
-from hystbench.gap.effects.places import INSIDE, places_between_halves
+from hystbench.gap.effects.places import BETWEEN_HALVES, places_between_halves
 from hystbench.gap.effects.variant import Beside, Values, Variant, begun_from
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import UNNAMED_SHARE
@@ -173,7 +173,9 @@ class Effect(ABC):
         about.setdefault("free", (*about.get("grids", ()), *about.get("unit", ())))
         return Variant(
             self.name,
-            INSIDE if place in places_between_halves(simulation) else self.place,
+            BETWEEN_HALVES
+            if place in places_between_halves(simulation)
+            else self.place,
             form,
             start,
             build,

@@ -16,7 +16,7 @@ from hystbench.gap.simulation.simulation import Simulation
 from hystbench.quantities import Quantities, quantity_of
 
 TRANSFER_FUNCTION = "transfer-function"
-INSIDE = "inside the base"
+BETWEEN_HALVES = "inside the base"
 """Place of an effect between two transfer functions."""
 ROUNDED, TIMES = 1e-6, 40
 """Share of an impulse response that is rounded off; times at which it is looked at."""
