@@ -80,7 +80,7 @@ def rig(right, tmp_path, monkeypatch):
     def never(*_, **__):
         raise AssertionError(LIE)
 
-    monkeypatch.setattr(gap_run, "search", never)
+    monkeypatch.setattr(gap_run, "search_and_judge", never)
     return tmp_path / "rig"
 
 

@@ -217,7 +217,7 @@ def searched():
         return run_module.Outcome(decided.fitted.base, decided.content, outputs)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(run_module, "search", find)
+        patch.setattr(run_module, "search_and_judge", find)
         patch.setattr(run_module, "show_on_hold_out", show_on_hold_out)
         yield calls
 

@@ -159,7 +159,7 @@ def test_where_nothing_can_be_written_no_search_is_paid(
     def find(*given):
         raise AssertionError
 
-    monkeypatch.setattr(run_module, "search", find)
+    monkeypatch.setattr(run_module, "search_and_judge", find)
     (tmp_path / "taken").write_text("mine")
     words = [str(lagging / "rig"), "--model", str(lagging / "base.yaml")]
     places = {"--out": "out", "--write-experiment": "next.csv"} | {option: "taken/x/y"}

@@ -1,6 +1,6 @@
 """The word of the verdict on findings of which only some matter."""
 
-from hystbench.gap.judging.unnamed import Unnamed
+from hystbench.gap.judging.unowned import Unowned
 from hystbench.gap.judging.verdict import GIVE, judge_names, judge_none
 
 PLAIN = {
@@ -10,7 +10,7 @@ PLAIN = {
     "size_follows": False,
     "mends": GIVE,
 }
-ALL_OWNED = Unnamed(0.0)
+ALL_OWNED = Unowned(0.0)
 
 
 def judge(found, named, box=None, unnamed=ALL_OWNED, **more):

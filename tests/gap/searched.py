@@ -17,4 +17,4 @@ def search(
 ):
     """Decide on the records as those to fit; none is held out."""
     evidence = Evidence(name, tuple(records), (), hold, declared)
-    return module.search(evidence, base, Asked(**asked), quantities)
+    return module.search_and_judge(evidence, base, Asked(**asked), quantities)

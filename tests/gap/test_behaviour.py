@@ -12,8 +12,8 @@ from hystbench.device_kinds import DEVICE_KINDS
 from hystbench.gap.asked import Asked
 from hystbench.gap.effects import effects
 from hystbench.gap.records.evidence import load_evidence
-from hystbench.gap.run import decide_in, show_in
 from hystbench.gap.schema import SCHEMA
+from hystbench.gap.stages import decide_in, show_in
 from hystbench.gap.vocabulary import Vocabulary, in_words
 from hystbench.interface.gap import find_gap
 from hystbench.model import Model, load_model
@@ -153,7 +153,7 @@ def test_as_two_jobs_it_is_the_same(circuit, tmp_path):
 
 def test_what_a_user_puts_in_stays_whatever_the_device():
     chosen = Vocabulary.of(["backlash"], ["friction"]).in_device("electronic")
-    assert chosen.fixed == ("friction",)
+    assert chosen.put_in == ("friction",)
     assert set(chosen.impossible) == FORCES
     assert "friction" not in chosen.offered
 

@@ -40,7 +40,7 @@ def searched(given, store, offered=FEW):
         )
         ranking = rank(state, make_score(state, floor))
     return [
-        (x.effect, x.form, x.score, x.gain, x.held_back, x.state and x.state.chain)
+        (x.effect, x.form, x.score, x.gain, x.gain_on_folds, x.state and x.state.chain)
         for x in ranking
     ]
 

@@ -18,8 +18,7 @@ from hystbench.gap.report.tables import (
     write_adds,
     write_table,
 )
-from hystbench.gap.run import BASE as BASE_FILE
-from hystbench.gap.run import DECISION, decide_in, show_in
+from hystbench.gap.stages import BASE_FILE, DECISION_FILE, decide_in, show_in
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model, load_model
 from hystbench.record import Channel
@@ -65,7 +64,7 @@ def test_the_search_is_given_no_record_that_is_held_out(decided, monkeypatch):
         assert evidence.hold_out == ()
         raise SearchedError
 
-    monkeypatch.setattr(run, "search", search)
+    monkeypatch.setattr(run, "search_and_judge", search)
     _, data, base, out = decided
     with pytest.raises(SearchedError):
         close_gap(load_evidence(data), load_model(base), out)
@@ -94,7 +93,7 @@ def test_effects_left_out_and_put_in_are_those_of_one_run(decided, tmp_path):
 
 def test_showing_changes_nothing_that_was_decided(decided, tmp_path):
     _, data, base, out = decided
-    content = json.loads((out / DECISION).read_text())
+    content = json.loads((out / DECISION_FILE).read_text())
     noise = shutil.copytree(data, tmp_path / "noise")
     lines = (noise / "unseen.csv").read_text().splitlines()
     cells = [line.split(",") for line in lines[1:]]

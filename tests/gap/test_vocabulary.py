@@ -9,7 +9,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.holdout.withdraw import with_what_was_asked
-from hystbench.gap.naming.built_in import build_in
+from hystbench.gap.naming.put_in import with_put_in
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.report.words import rerun_commands, verdict_sentence, verdict_text
@@ -31,7 +31,7 @@ def test_what_is_closed_is_not_offered():
 
 
 @pytest.mark.parametrize(
-    ("without", "fixed", "said"),
+    ("without", "put_in", "said"),
     [
         (["frction"], [], "--without: no effect 'frction'.*'friction'"),
         ([], ["creeep"], "--with: no effect 'creeep'.*'creep'"),
@@ -39,9 +39,9 @@ def test_what_is_closed_is_not_offered():
         (["creep"], ["creep"], "'creep' in both"),
     ],
 )
-def test_names_that_mean_nothing_are_refused(without, fixed, said):
+def test_names_that_mean_nothing_are_refused(without, put_in, said):
     with pytest.raises(InputError, match=said):
-        Vocabulary.of(without, fixed)
+        Vocabulary.of(without, put_in)
 
 
 def test_an_effect_that_is_not_offered_is_not_tried(tiny):
@@ -89,9 +89,9 @@ def test_what_is_put_in_is_fitted_and_is_no_finding(tiny):
 def test_of_what_is_put_in_the_effects_own_numbers_stay_free(tiny, name, free):
     """A field bias is two plain gains, whose value is one and stays so."""
     data, base = tiny
-    model, built_in = build_in(load_model(base), load_evidence(data), [name])
+    model, put_in = with_put_in(load_model(base), load_evidence(data), [name])
     assert {*model.free} == free
-    assert built_in.names == (name,)
+    assert put_in.names == (name,)
 
 
 def test_what_is_new_in_every_record_cannot_be_put_in(tiny):

@@ -33,7 +33,8 @@ from hystbench.gap.judging.effect_rows import (
     simulator_mapping,
 )
 from hystbench.gap.judging.leftover import Leftover, size_follows, what_is_left
-from hystbench.gap.judging.unnamed import Unnamed, what_is_unnamed
+from hystbench.gap.judging.unnamed import what_is_unnamed
+from hystbench.gap.judging.unowned import Unowned
 from hystbench.gap.judging.verdict import (
     Verdict,
     judge_names,
@@ -54,7 +55,7 @@ from hystbench.model import Model
 
 @dataclass(frozen=True, kw_only=True)
 class Decision(FitResult):
-    """What the fit records decide; hold-out records have not been read."""
+    """What the fit records decide; nothing was compared with hold-out records yet."""
 
     model: Model
     """The base with the effects that were added."""
@@ -86,7 +87,7 @@ def judge_and_tell(
     left = what_is_left(start, named.state, floor)
     if named.state.added and left.little_named:
         say(f"{LITTLE}: none named")
-        named = named.taken_back()
+        named = named.with_none_named()
         left = what_is_left(start, named.state, floor)
     state, model = named.state, augmented(base, named.state)
     before, after = compared_records(start), compared_records(state)
@@ -106,7 +107,7 @@ def judge_and_tell(
     if where[0].share_of_gap_power >= LEAST_SHARE:
         say(where[0].sentence)
     places = [(item.effect, item.place) for item in state.added]
-    moved = beside_level(where, places, closed=left.share <= share)
+    moved = beside_level(where, places, little_left=left.share <= share)
     moved = "" if judged.verdict == "no-gap" else moved
     reason = "; ".join(part for part in (judged.reason, moved) if part)
     experiment, why_none = tell_apart(base, named, start.records, floor, limits)
@@ -124,7 +125,7 @@ def judge_and_tell(
         "ranking": ranking_rows(named),
         "record_values": found.own.mapping(unit),
         "not_tried": not_tried(named),
-        "taken_out": [item._asdict() for item in named.gone],
+        "taken_out": [item._asdict() for item in named.taken_out],
         "next_experiment": None if experiment is None else experiment.mapping(),
         "base_parameters": base_parameters(base, state),
         "simulator": simulator_mapping(model, start.records),
@@ -155,7 +156,7 @@ class _Judged(NamedTuple):
     verdict: Verdict
     reason: str
     trust: float
-    unnamed: Unnamed
+    unnamed: Unowned
 
 
 def _judged(

@@ -154,7 +154,10 @@ UNNAMED = _object(
         "by_chance": NUMBER,
         "changing": OPTIONAL,
         "unrelated": NUMBER,
-        "sort": _one_of("strength", "history", "memory", "curve", "unrelated", None),
+        "sort": _one_of(
+            *("strength", "gain", "path", "history", "memory", "curve", "unrelated"),
+            None,
+        ),
         "sentence": WORDS_OR_NULL,
         "factors": _list(NUMBER),
     }

@@ -51,14 +51,15 @@ mass is, so a curve of the place means nothing; and any small error becomes a pa
 WANDERS = "drift"
 """Not offered either beside a base that integrates: its own errors become paths."""
 OF_THE_PLACE = "asymmetry"
-"""Closed as well where the base may hold a hysteresis: it then stands behind it. Before
-a linear base it bends what drives the mass, as a valve does that opens more one way."""
+"""It is not offered in windows where the base may hold a hysteresis, as it would then
+be a curve of the place. Before a linear base it bends the input, as a valve does that
+opens more one way, and is offered."""
 
 NOT_EXACT = "the base does not call its numbers exact, and was re-tuned"
 EXACT = "write 'free: []' in a model file that is exact"
 
 
-def search(
+def search_and_judge(
     evidence: Evidence,
     base: Model,
     asked: Asked,
@@ -141,8 +142,8 @@ class GapSearch:
             wanders = integrates(base, span)
             return tuple(x for x in offered if not (wanders and x == WANDERS))
         beside = () if self.quantities is not None else (OF_THE_PLACE,)
-        closed = (*NOT_IN_WINDOWS, *beside)
-        return tuple(name for name in offered if name not in closed)
+        barred = (*NOT_IN_WINDOWS, *beside)
+        return tuple(name for name in offered if name not in barred)
 
     def started(self, records: tuple[Record, ...], base: Model) -> BesideBase:
         """Give a base on records, with nothing named beside it yet."""

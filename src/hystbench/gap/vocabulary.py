@@ -33,7 +33,7 @@ class Vocabulary:
 
     without: tuple[str, ...] = ()
     """Effects that the search must not name."""
-    fixed: tuple[str, ...] = ()
+    put_in: tuple[str, ...] = ()
     """Effects that are in the model from the start. They are fitted, and found by
     nobody: what they close of the gap is told apart from what is found."""
     kind: DeviceKind | None = None
@@ -41,7 +41,7 @@ class Vocabulary:
 
     def __post_init__(self) -> None:
         """Refuse names that mean nothing."""
-        for option, names in (("--without", self.without), ("--with", self.fixed)):
+        for option, names in (("--without", self.without), ("--with", self.put_in)):
             for name in names:
                 if name not in _effects():
                     raise InputError(
@@ -50,15 +50,15 @@ class Vocabulary:
                 if names.count(name) > 1:
                     raise InputError(f"{option}: {name!r} twice; expected it once")
         for name in self.without:
-            if name in self.fixed:
+            if name in self.put_in:
                 raise InputError(
                     f"--with and --without: {name!r} in both; expected it in one"
                 )
 
     @classmethod
-    def of(cls, without: Iterable[str] = (), fixed: Iterable[str] = ()) -> Vocabulary:
+    def of(cls, without: Iterable[str] = (), put_in: Iterable[str] = ()) -> Vocabulary:
         """Take names in any sequence."""
-        return cls(tuple(without), tuple(fixed))
+        return cls(tuple(without), tuple(put_in))
 
     def in_device(self, kind: DeviceKind | None) -> Vocabulary:
         """Leave out what a kind of device cannot have."""
@@ -72,15 +72,15 @@ class Vocabulary:
         return tuple(
             name
             for name, effect in _effects().items()
-            if name not in {*self.without, *self.fixed}
+            if name not in {*self.without, *self.put_in}
             and not effect.possible_in(self.kind)
         )
 
     @property
     def offered(self) -> tuple[str, ...]:
         """Effects that the search may name, in their order."""
-        closed = {*self.without, *self.fixed, *self.impossible}
-        return tuple(name for name in _effects() if name not in closed)
+        barred = {*self.without, *self.put_in, *self.impossible}
+        return tuple(name for name in _effects() if name not in barred)
 
     def words(self) -> list[str]:
         """Say what the user asked for and the device leaves out, a sentence each."""
@@ -90,8 +90,8 @@ class Vocabulary:
             return f"{listed(names)}: {one if len(names) == 1 else many}"
 
         untried = "it was not tried", "they were not tried"
-        if self.fixed:
-            named = all_of(self.fixed, "it is not a finding", "they are not findings")
+        if self.put_in:
+            named = all_of(self.put_in, "it is not a finding", "they are not findings")
             said.append(f"you put in {named}")
         if self.without:
             said.append(f"you left out {all_of(self.without, *untried)}")
@@ -112,7 +112,7 @@ class Vocabulary:
         """Give what gap.json holds under ``asked``."""
         return {
             "without": list(self.without),
-            "with": list(self.fixed),
+            "with": list(self.put_in),
             "impossible": list(self.impossible),
             "sentence": "; ".join(self.words()),
         }

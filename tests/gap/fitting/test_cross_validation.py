@@ -7,9 +7,9 @@ import pytest
 from scipy import optimize
 
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting import cross_validation as held_back
+from hystbench.gap.fitting import cross_validation
 from hystbench.gap.fitting import score as scores
-from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.cross_validation import gain_on_folds
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import refit
 from hystbench.gap.fitting.state import Free
@@ -58,7 +58,7 @@ def with_gain(state, value, count=1):
 
 
 @pytest.mark.parametrize("gains", [[1.1] * 6, SPREAD])
-def test_the_gain_on_held_back_records_is_that_of_a_plain_cross_validation(gains):
+def test_the_gain_on_folds_is_that_of_a_plain_cross_validation(gains):
     """Every record is judged by the gain that scores least on the other folds'."""
     given = measured(lines(6), gains)
     before = state_of((block("gain", value=1.0),), given)
@@ -83,7 +83,7 @@ def test_the_gain_on_held_back_records_is_that_of_a_plain_cross_validation(gains
             lambda gain, others=others: terms(gain, others), bounds=(0.5, 2.0)
         ).x
         wanted += terms(1.0, held) - terms(best, held)
-    assert gain_held_back(before, after, score) == pytest.approx(wanted, rel=2e-3)
+    assert gain_on_folds(before, after, score) == pytest.approx(wanted, rel=2e-3)
 
 
 def candidate(gains):
@@ -99,17 +99,17 @@ def candidate(gains):
 def test_what_the_records_do_not_agree_on_gains_less_on_the_others():
     item, before, score = candidate(UNSURE)
     assert score.of(before.residual) - item.score > 5.0
-    told = gain_held_back(before, item.state, score)
+    told = gain_on_folds(before, item.state, score)
     assert told < 0.0
     judged = on_folds(item, before, score)
-    assert judged.held_back == judged.gain == pytest.approx(told)
+    assert judged.gain_on_folds == judged.gain == pytest.approx(told)
     assert judged.score == pytest.approx(item.score + 50.0 - told)
 
 
 def test_folds_lower_a_gain_and_never_raise_it():
     item, before, score = candidate([1.1] * 6)
     judged = on_folds(item, before, score)
-    assert judged.held_back > 50.0
+    assert judged.gain_on_folds > 50.0
     assert judged.gain == 50.0
     assert judged.score == item.score
 
@@ -141,7 +141,7 @@ def test_a_limit_is_foretold_whichever_records_come_to_it(sizes):
     before, after, score = limited(sizes, clipped=1.0)
     gained = score_of(before, score) - score_of(after, score)
     assert gained > CERTAIN
-    assert gain_held_back(before, after, score) > gained / 2
+    assert gain_on_folds(before, after, score) > gained / 2
 
 
 def test_what_shows_in_the_farthest_record_alone_has_to_show_throughout_it():
@@ -149,7 +149,7 @@ def test_what_shows_in_the_farthest_record_alone_has_to_show_throughout_it():
     before, after, score = limited((1, 1, 1, 1.7), clipped=0.8)
     gained = score_of(before, score) - score_of(after, score)
     assert gained > SCALE
-    assert gain_held_back(before, after, score) < gained / 2
+    assert gain_on_folds(before, after, score) < gained / 2
 
 
 def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
@@ -158,7 +158,7 @@ def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
     before = state_of((block("gain", value=1.0),), given)
     score = make_score(before, FLOOR)
     plain, finished = rank(before, score), []
-    last = [item for item in plain if item.held_back is not None][-1]
+    last = [item for item in plain if item.gain_on_folds is not None][-1]
 
     exactly = ranked.finished
 
@@ -169,7 +169,7 @@ def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
     def told(before, after, score):
         return 1e3 if after.added[-1].effect == last.effect else -1e3
 
-    monkeypatch.setattr("hystbench.gap.naming.rivals.gain_held_back", told)
+    monkeypatch.setattr("hystbench.gap.naming.rivals.gain_on_folds", told)
     monkeypatch.setattr(ranked, "finished", noted)
     monkeypatch.setattr(ranked, "EXACT", 1)
     ranking = rank(before, score)
@@ -194,9 +194,9 @@ def test_a_model_that_runs_away_on_a_fold_is_told_in_finite_numbers(monkeypatch,
     def run_away(*_):
         return with_gain(before, 1e30, gains), np.inf
 
-    monkeypatch.setattr(held_back, "refit", run_away)
+    monkeypatch.setattr(cross_validation, "refit", run_away)
     judged = on_folds(item, before, score)
-    assert np.isfinite([judged.gain, judged.score, judged.held_back]).all()
+    assert np.isfinite([judged.gain, judged.score, judged.gain_on_folds]).all()
     assert judged.gain < 0
 
 
@@ -206,16 +206,16 @@ def test_what_does_not_pay_or_was_not_refitted_is_not_put_to_folds():
         assert on_folds(other, before, score) is other
 
 
-def test_finalists_are_ranked_by_records_held_back():
+def test_finalists_are_ranked_by_their_gain_on_folds():
     given = measured(lines(6), [1.0] * 6, bend=0.08)
     before = state_of((block("gain", value=1.0),), given)
     score = make_score(before, FLOOR)
     ranking = rank(before, score)
-    judged = [item for item in ranking if item.held_back is not None]
+    judged = [item for item in ranking if item.gain_on_folds is not None]
     assert judged[0] is ranking[0]
     for item in judged:
-        told = gain_held_back(before, item.state, score)
-        assert item.held_back == pytest.approx(told)
+        told = gain_on_folds(before, item.state, score)
+        assert item.gain_on_folds == pytest.approx(told)
         on_all = score_of(before, score) - score_of(item.state, score)
         # Of several laws and places one alone may fit: then it pays for the others.
         paid = min(on_all, told - PARAMETER * item.state.freedom) - item.gain

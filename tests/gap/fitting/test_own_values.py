@@ -22,8 +22,8 @@ from hystbench.gap.fitting.own_values import (
 from hystbench.gap.naming.with_own_values import SHARED
 from hystbench.gap.progress import silent
 from hystbench.gap.records.evidence import load_evidence
-from hystbench.gap.run import decide_in, show_in
 from hystbench.gap.schema import RECORD_VALUES
+from hystbench.gap.stages import decide_in, show_in
 from hystbench.model import Model
 from hystbench.schema import check_against_schema
 from tests.gap.closing import close_gap

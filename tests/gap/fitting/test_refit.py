@@ -13,7 +13,7 @@ from hystbench.blocks.stop import Stop
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting import refit as refits
-from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.cross_validation import gain_on_folds
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import (
     make_score,
@@ -364,11 +364,11 @@ def test_gains_are_what_the_score_falls_by():
     assert finalists == sorted(finalists)
     # Those of several laws pay for the choice as well.
     plain = [item for item in judged if len(item.variants) == 1]
-    assert any(item.held_back is not None for item in plain)
+    assert any(item.gain_on_folds is not None for item in plain)
     for item in plain:
-        if item.held_back is not None:
+        if item.gain_on_folds is not None:
             gain = now - score_of(item.state, score)
-            held = gain_held_back(state, item.state, score)
+            held = gain_on_folds(state, item.state, score)
             charged = held - PARAMETER * item.state.freedom
             assert item.gain == pytest.approx(min(gain, charged))
         elif item.state is not None:

@@ -150,7 +150,7 @@ def test_a_base_that_runs_away_on_a_hold_out_record_is_refused_before_the_search
     def find(*given):
         pytest.fail("a search")
 
-    monkeypatch.setattr(run, "search", find)
+    monkeypatch.setattr(run, "search_and_judge", find)
     chain = (
         block("gain", value=FORCE),
         block(

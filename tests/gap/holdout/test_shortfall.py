@@ -2,7 +2,8 @@
 
 import pytest
 
-from hystbench.gap.holdout.shortfall import no_surer_than_even, shortfall
+from hystbench.gap.holdout.confidence_cap import no_surer_than_even
+from hystbench.gap.holdout.shortfall import shortfall
 
 
 def content(

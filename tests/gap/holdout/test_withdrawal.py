@@ -15,8 +15,8 @@ from hystbench.gap.holdout.withdraw import (
 )
 from hystbench.gap.records.evidence import Evidence, load_evidence
 from hystbench.gap.report.words import verdict_sentence
-from hystbench.gap.run import DECISION, decide_in, show_in
 from hystbench.gap.schema import SCHEMA
+from hystbench.gap.stages import DECISION_FILE, decide_in, show_in
 from hystbench.model import Model, load_model
 from hystbench.schema import check_against_schema
 from tests.gap.closing import close_gap
@@ -215,7 +215,7 @@ def test_jobs_take_back_what_one_process_does(misled, tmp_path):
     folder, data, base, _ = misled
     asked = Asked(vocabulary=LATE)
     decide_in(tmp_path, load_evidence(data, "fit"), load_model(base), asked)
-    decided = json.loads((tmp_path / DECISION).read_text())
+    decided = json.loads((tmp_path / DECISION_FILE).read_text())
     assert (decided["verdict"], len(decided["effects"])) == ("named", 1)
     assert not (tmp_path / "model.yaml").exists()
     show_in(tmp_path, load_evidence(data), load_model(base))

@@ -808,7 +808,7 @@ def test_what_a_chain_needs_more_counts_against_it(
     inside = Inside(None, state, Named(replace(state, added=(one,) * forces), ()), "")
     named = Named(replace(state, added=(one,) * chain), ())
     monkeypatch.setattr(
-        "hystbench.gap.inside.named_inside.gain_held_back",
+        "hystbench.gap.inside.named_inside.gain_on_folds",
         lambda _, found, *__: gain if found is inside.named.state else 0.0,
     )
     assert beats_chain(inside, named, FLOOR) == better
@@ -836,7 +836,7 @@ def test_fewer_effects_of_a_chain_stand_where_they_leave_as_little(
     inside = Inside(None, state, Named(replace(state, added=(force,) * forces), ()), "")
     given = Named(replace(state, added=(law,) * chain), (before,))
     monkeypatch.setattr(
-        "hystbench.gap.inside.named_inside.gain_held_back",
+        "hystbench.gap.inside.named_inside.gain_on_folds",
         lambda _, found, *__: 1000.0 if found is inside.named.state else 0.0,
     )
     assert beats_chain(inside, given, FLOOR) == stands

@@ -381,7 +381,7 @@ def test_where_one_record_shows_a_force_both_answers_are_judged_on_blocks(monkey
     plain = SimpleNamespace(plain=lambda *_: None)
     monkeypatch.setattr(named_inside_module, "Score", plain)
     monkeypatch.setattr(named_inside_module, "shows_in_one_record", shows)
-    monkeypatch.setattr(named_inside_module, "gain_held_back", gain)
+    monkeypatch.setattr(named_inside_module, "gain_on_folds", gain)
     inside = Inside(None, start, Named(state), "")
     assert beats_chain(inside, Named(chain), Floor(1e-3, "declared"))
     assert asked == [

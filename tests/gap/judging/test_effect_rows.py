@@ -96,7 +96,7 @@ def test_an_effect_whose_block_another_took_is_told_without_numbers():
 
 def test_the_ranking_gives_every_round_and_keeps_its_order():
     _, state = started((block("gain", value=12.0),))
-    lag = Candidate("drive-lag", "drive", "", -90.0, 80.0, state, held_back=55.0)
+    lag = Candidate("drive-lag", "drive", "", -90.0, 80.0, state, gain_on_folds=55.0)
     creep = Candidate("creep", "mechanics", "two", -60.0, 50.0, state)
     none = Candidate("friction", "mechanics", declined="too short")
     then = replace(creep, score=-95.0, gain=5.0)

@@ -19,15 +19,15 @@ from hystbench.gap.judging.known_signals import (
     random_walks,
 )
 from hystbench.gap.judging.unnamed import (
-    SORTS,
-    Unnamed,
     means_may_differ_by_chance,
     what_is_unnamed,
     winding,
 )
+from hystbench.gap.judging.unowned import SORTS, Unowned
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.free_mass import runs
 from hystbench.gap.report.words import verdict_sentence
+from hystbench.gap.schema import UNNAMED
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import LOOSE, UNNAMED_SHARE
 from hystbench.record import Channel, Record
@@ -131,7 +131,8 @@ def test_a_strength_that_differs_between_records_is_found_with_its_factors(sprea
     state = state_of((GAIN, named), given, count=800, added=(added,))
     found = what_is_unnamed(start, state, FLOOR)
     assert found.too_much
-    assert found.sort == "strength"
+    # A gain is named, so its strength and the gain of the whole change alike.
+    assert found.sort in ("strength", "gain")
     assert found.factors == pytest.approx(strength, abs=0.02)
     # Of strengths 1 + e_k the mean of e_k^2 over the mean of (1 + e_k)^2 goes, but for
     # a common gain, which the name may own: the records' own powers weigh both.
@@ -143,6 +144,8 @@ def test_a_strength_that_differs_between_records_is_found_with_its_factors(sprea
 
 
 SHAPES = {
+    "gain": lambda k, one: 12.0 * (0.3, -0.3, 0.15, -0.15)[k] * one.u,
+    "path": lambda k, one: (k + 1) * np.sin(np.linspace(0.0, 3.0, len(one))),
     "memory": lambda k, one: lag_of(3e-3)(k, one),
     "curve": lambda k, one: 2.0 * np.abs(one.u) ** 3,
     "history": lambda k, one: 3.0 * one.u * low_pass(one.u**2, one.dt, 0.6, 0.0),
@@ -223,16 +226,16 @@ def test_a_path_that_is_named_owns_what_its_most_winding_form_could_do():
 
 def test_one_number_sets_both_limits():
     for share in (0.01, 0.05):
-        assert Unnamed(1.01 * share, share).too_much
-        assert not Unnamed(0.99 * share, share, 0.5).too_much
+        assert Unowned(1.01 * share, share).too_much
+        assert not Unowned(0.99 * share, share, 0.5).too_much
 
 
 def test_a_sort_is_told_where_more_stays_than_may():
-    found = Unnamed(0.02, gains={"statics": 50.0, "rate": 20.0})
+    found = Unowned(0.02, gains={"statics": 50.0, "rate": 20.0})
     assert found.sort == "curve"
     assert "2 %" in found.reason
     assert found.mapping()["sentence"] == SORTS["curve"]
-    fine = Unnamed(0.002, unrelated=0.1, gains={"statics": 50.0}).mapping()
+    fine = Unowned(0.002, unrelated=0.1, gains={"statics": 50.0}).mapping()
     assert fine["sort"] is fine["sentence"] is None
 
 
@@ -271,6 +274,10 @@ def test_windows_of_one_record_are_one_run():
 
 
 PLAIN = {"verdict": "unnamed", "reason": "", "withdrawn": None}
+
+
+def test_gap_json_may_hold_every_sort():
+    assert {*UNNAMED["properties"]["sort"]["enum"]} == {*SORTS, None}
 
 
 @pytest.mark.parametrize("sort", SORTS)

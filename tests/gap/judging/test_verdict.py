@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.gap.judging.leftover import Leftover, what_is_left
-from hystbench.gap.judging.unnamed import Unnamed
+from hystbench.gap.judging.unowned import Unowned
 from hystbench.gap.judging.verdict import (
     GIVE,
     confidence,
@@ -84,7 +84,7 @@ def test_a_wide_gap_is_one_though_reshaping_could_do_all_of_it(beyond, whole):
     assert (word == "no-gap") == ("% of the output" in reason)
 
 
-def test_names_that_leave_most_of_a_slightly_wrong_shape_are_to_be_taken_back():
+def test_names_that_leave_most_of_a_slightly_wrong_shape_go():
     assert Leftover(2.0, 2.0, 100.0, 60.0, 1e6).little_named
     # What they leave is 40 % of the gap, nearly all of it what reshaping could do.
     assert not Leftover(20.0, 2.0, 100.0, 40.0, 1e6).little_named
@@ -96,7 +96,7 @@ def test_beside_an_upper_bound_of_the_noise_what_follows_signals_may_be_a_gap(
 ):
     """A floor that may hold the whole gap: all else is judged as with a known one."""
     found = Leftover(before, after, one, other, output)
-    some = Unnamed(1.1 * UNNAMED_SHARE)
+    some = Unowned(1.1 * UNNAMED_SHARE)
     known = judge(found, False, 0.0, retuned=retuned, unnamed=some)
     bound = judge(
         found, False, 0.0, retuned=retuned, unnamed=some, floor_is_upper_bound=True
@@ -119,7 +119,7 @@ def test_noise_whose_size_nobody_told_is_no_gap_if_it_is_little_and_follows_noth
 ):
     """Else white noise would be a gap, and noise of another colour none."""
     found = Leftover(0.0, 0.0, 0.0, 0.0, 1.0 / share**2)
-    given = {"unnamed": Unnamed(structured), "floor_is_upper_bound": True}
+    given = {"unnamed": Unowned(structured), "floor_is_upper_bound": True}
     assert judge(found, False, **given)[0] == word
     # Noise of a sensor has one size.
     assert judge(found, False, size_follows=True, **given)[0] == "unnamed"
@@ -128,7 +128,7 @@ def test_noise_whose_size_nobody_told_is_no_gap_if_it_is_little_and_follows_noth
 @pytest.mark.parametrize(("share", "word"), [(0.2, "named"), (0.3, "unnamed")])
 def test_a_name_that_leaves_more_than_a_quarter_does_not_stand(share, word):
     """Windows of a free mass own paths: nearly all of it counted as owned."""
-    some = Unnamed(0.001, unrelated=0.001)
+    some = Unowned(0.001, unrelated=0.001)
     found = Leftover(1000.0, 1000.0 * share, 1000.0, 1000.0 * share, 1e4)
     assert judge(found, True, unnamed=some)[0] == word
     # A wrong base leaves much of the whole; of the part beyond it little stays.
@@ -163,22 +163,22 @@ def test_a_percent_of_the_output_that_reshaping_explains_is_no_gap():
 
 @given(SHARES, SHARES, SHARES, st.floats(1e-3, 0.5))
 def test_what_stays_unnamed_decides_whether_a_name_holds(follows, changes, rest, share):
-    found = Unnamed(follows, share, changes, rest)
+    found = Unowned(follows, share, changes, rest)
     word, reason = judge(left(1.0), True, unnamed=found)
     known = follows > share
     assert word == ("unnamed" if known or follows + rest > LOOSE else "named")
     assert ("too much stays" in reason) == (not known and follows + rest > LOOSE)
-    assert judge(left(1.0), True, unnamed=Unnamed(0.0))[0] == "named"
+    assert judge(left(1.0), True, unnamed=Unowned(0.0))[0] == "named"
 
 
 @pytest.mark.parametrize(("stays", "less"), [(0.05, False), (0.3, True)])
 def test_a_withdrawal_is_less_sure_beside_a_base_that_may_be_wrong(stays, less):
     found = Leftover(100.0, 2.0, 100.0, 100.0 * stays, 1e3)
-    word, reason = judge(found, True, unnamed=Unnamed(0.02))
+    word, reason = judge(found, True, unnamed=Unowned(0.02))
     assert word == "unnamed"
     assert ("less sure" in reason) == less
     # What is structured is none of that.
-    assert "less sure" not in judge(found, True, unnamed=Unnamed(0.28))[1]
+    assert "less sure" not in judge(found, True, unnamed=Unowned(0.28))[1]
 
 
 def test_what_would_be_no_gap_does_not_speak_against_a_name():
@@ -186,7 +186,7 @@ def test_what_would_be_no_gap_does_not_speak_against_a_name():
     output = 8.0 / (0.9 * SLIGHT) ** 2
     found = Leftover(100.0, 8.0, 100.0, 15.0, output)
     assert judge(replace(found, before=8.0, all_before=15.0), False)[0] == "no-gap"
-    structure = Unnamed(0.03)
+    structure = Unowned(0.03)
     word, reason = judge(found, True, unnamed=structure)
     assert word == "named"
     assert "less sure" in reason
@@ -197,14 +197,14 @@ def test_what_would_be_no_gap_does_not_speak_against_a_name():
     for other in (large, alien, lone, differing):
         assert judge(other, True, unnamed=structure)[0] == "unnamed"
     # Nor does a name stand where most of the gap is left.
-    assert judge(found, True, unnamed=Unnamed(0.03, unrelated=0.3))[0] == "unnamed"
+    assert judge(found, True, unnamed=Unowned(0.03, unrelated=0.3))[0] == "unnamed"
     for much, word in ((0.039, "named"), (0.041, "unnamed")):
-        assert judge(found, True, unnamed=Unnamed(much))[0] == word
-    word, reason = judge(found, True, unnamed=Unnamed(0.3))
+        assert judge(found, True, unnamed=Unowned(much))[0] == word
+    word, reason = judge(found, True, unnamed=Unowned(0.3))
     assert word == "unnamed"
     assert "follows known signals" in reason
     assert structure.trust() < structure.trust(of_base=True) < 1
-    assert Unnamed(0.005).trust(of_base=True) == 1
+    assert Unowned(0.005).trust(of_base=True) == 1
 
 
 @given(st.lists(st.floats(0, 200), min_size=1, max_size=6), st.floats(0, 100))
@@ -357,7 +357,7 @@ def test_what_is_new_in_each_period_is_told_as_that():
 def test_noise_that_follows_nothing_is_no_gap_but_where_the_noise_is_known():
     """As surrogates tell it where no record repeats."""
     found = replace(left(30.0), output=2e4)
-    chance = Unnamed(0.0, unrelated=0.3, by_chance=0.3)
+    chance = Unowned(0.0, unrelated=0.3, by_chance=0.3)
     for bound, expected in ((True, "no-gap"), (False, "unnamed")):
         word, reason = judge(
             found, False, -0.1, unnamed=chance, floor_is_upper_bound=bound
@@ -365,7 +365,7 @@ def test_noise_that_follows_nothing_is_no_gap_but_where_the_noise_is_known():
         assert word == expected
         assert "moved in time" in reason
     # Nothing that seems to follow a signal needs no surrogate.
-    nothing = Unnamed(1e-4, unrelated=0.9)
+    nothing = Unowned(1e-4, unrelated=0.9)
     word, reason = judge(
         found, False, -1e-5, unnamed=nothing, floor_is_upper_bound=True
     )
@@ -386,6 +386,6 @@ def test_noise_that_follows_nothing_is_no_gap_but_where_the_noise_is_known():
 def test_what_follows_nothing_is_noise_only_if_it_is_little(share, word):
     """A torque of cogging follows no known signal either, at a tenth of the output."""
     found = replace(left(2300.0), output=2300.0 / share**2)
-    nothing = Unnamed(1e-4, unrelated=0.9)
+    nothing = Unowned(1e-4, unrelated=0.9)
     given = {"unnamed": nothing, "floor_is_upper_bound": True}
     assert judge(found, False, -0.1, **given)[0] == word

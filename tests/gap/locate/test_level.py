@@ -242,7 +242,7 @@ def test_named_effects_are_held_against_how_modes_move(slipping):
     for named in (("drag", "inside"), ("friction", "mechanics")):
         told = beside_level(views, [named])
         assert told.endswith(": no named effect can do so")
-        assert beside_level(views, [named], closed=True) == ""
+        assert beside_level(views, [named], little_left=True) == ""
     assert beside_level(views, []) == ""
 
 

@@ -53,18 +53,18 @@ def test_effects_that_do_nothing_gain_nothing_from_the_refit(lag_s):
 
 def test_a_round_beside_a_model_that_has_all_is_none():
     after = advance(progress_with(LAG_S), FLOOR, print)
-    assert after.closed
+    assert after.nothing_to_gain
     assert after.done
     assert not after.rounds
 
 
-@pytest.mark.parametrize(("share", "closed"), [(0.01, False), (0.2, True)])
-def test_the_search_ends_where_no_more_is_left_than_may_stay_unnamed(share, closed):
+@pytest.mark.parametrize(("share", "ended"), [(0.01, False), (0.2, True)])
+def test_the_search_ends_where_no_more_is_left_than_may_stay_unnamed(share, ended):
     """A mode is missing still, and takes more of the gap than the lesser share."""
     progress = progress_with(LAG_S, (block("resonance", **MODE),))
     left = progress.state.power(NOISE**2)
     asked = replace(progress, gap=10 * left, share=share)
-    assert advance(asked, FLOOR, print).closed is closed
+    assert advance(asked, FLOOR, print).nothing_to_gain is ended
 
 
 def two_effects():

@@ -125,7 +125,7 @@ def searched(heated):
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "roughly_known", spied)
-        return module.search(evidence, base, Asked(vocabulary=LAWS)), asked
+        return module.search_and_judge(evidence, base, Asked(vocabulary=LAWS)), asked
 
 
 def told(found):
@@ -134,7 +134,7 @@ def told(found):
 
 
 def named(evidence, base):
-    return told(module.search(evidence, base, Asked(vocabulary=LAWS)))
+    return told(module.search_and_judge(evidence, base, Asked(vocabulary=LAWS)))
 
 
 def test_heat_that_the_loop_had_taken_for_its_own_is_named(

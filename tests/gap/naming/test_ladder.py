@@ -94,10 +94,10 @@ def test_an_effect_that_went_and_came_again_has_one_rung():
         assert had < has
 
 
-def test_effects_that_were_all_taken_back_have_no_rung():
+def test_effects_that_all_went_out_again_have_no_rung():
     start, one = with_names(), with_names("lag")
-    taken_back = named(one, start).taken_back()
-    (base,) = rungs(start, taken_back)
+    none_named = named(one, start).with_none_named()
+    (base,) = rungs(start, none_named)
     assert (base.name, base.state) == (BASE, start)
 
 

@@ -138,5 +138,5 @@ def test_what_is_named_beside_them_is_the_rest_and_leaves_as_little(records):
     one = Round(start, 0.0, (), True)
     found = named_beside_them(Named(state, (one, one)), start, floor, print)
     assert [item.effect for item in found.state.added] == ["saturation"]
-    assert [item.name for item in found.gone] == ["creep"]
+    assert [item.name for item in found.taken_out] == ["creep"]
     assert found.state.power(1e-4) < 0.1 * 1e-4

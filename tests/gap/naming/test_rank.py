@@ -227,7 +227,7 @@ def test_one_that_was_not_judged_on_records_held_back_is_never_first(monkeypatch
     lag = block("sensor-lag", time_constant_s=0.004)
     first, *_ = ranked((*LOOP, lag), LOOP, names)
     assert first.effect == "drive-lag"
-    assert first.held_back is not None
+    assert first.gain_on_folds is not None
 
 
 OTHER = replace(LOOP[0], weights=(4.0, 2.0, 4.0))

@@ -14,7 +14,7 @@ from hystbench.gap.fitting.uncertainty import (
     size_error,
     standard_errors,
 )
-from hystbench.gap.naming import removal as taken_out
+from hystbench.gap.naming import removal
 from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.removal import TakenOut, needless, unknown, without_what_goes
 from hystbench.gap.naming.rounds import Round
@@ -64,7 +64,7 @@ def test_a_curve_that_is_there_stays_and_one_that_is_not_goes():
 
 
 @pytest.mark.parametrize(
-    ("error", "held_back", "kept"),
+    ("error", "on_folds", "kept"),
     [
         (0.4, 0.0, ["drive-lag", "asymmetry"]),
         (0.6, CERTAIN - 1, ["drive-lag"]),  # the first effect is not asked
@@ -74,11 +74,11 @@ def test_a_curve_that_is_there_stays_and_one_that_is_not_goes():
     ],
 )
 def test_an_error_of_more_than_half_the_size_decides(
-    error, held_back, kept, monkeypatch
+    error, on_folds, kept, monkeypatch
 ):
     """Unless records that did not fit the effect are foretold beyond doubt."""
-    monkeypatch.setattr(taken_out, "size_error", lambda *given: error)
-    monkeypatch.setattr(taken_out, "gain_held_back", lambda *given: held_back)
+    monkeypatch.setattr(removal, "size_error", lambda *given: error)
+    monkeypatch.setattr(removal, "gain_on_folds", lambda *given: on_folds)
     found = unknown(with_two(BEND), FLOOR)
     assert names(with_two(BEND) if found is None else found[1]) == kept
 
@@ -148,8 +148,8 @@ def test_a_wrong_shape_stays_by_the_rule_by_which_it_came(
             return one, gain
         return one, 0.0 if "drive-lag" in names(one) else 10 * FURTHER
 
-    monkeypatch.setattr(taken_out, "finished", fitted)
-    monkeypatch.setattr(taken_out, "score_of", lambda one, score: 0.0)
+    monkeypatch.setattr(removal, "finished", fitted)
+    monkeypatch.setattr(removal, "score_of", lambda one, score: 0.0)
     found = needless(state, FLOOR, gap / share)
     assert (found is not None) == goes
     if found is not None:
@@ -165,8 +165,8 @@ def test_what_went_is_told_with_the_reason():
     assert curve.name == "asymmetry"
     assert curve.reason.startswith("needless beside the others")
     assert said == [f"asymmetry goes: {curve.reason}"]
-    all_of_it = Named(state, (Round(state, 0.0, (), True),), gone).taken_back()
-    assert all_of_it.gone == (curve, TakenOut("drive-lag", LITTLE))
+    all_of_it = Named(state, (Round(state, 0.0, (), True),), gone).with_none_named()
+    assert all_of_it.taken_out == (curve, TakenOut("drive-lag", LITTLE))
 
 
 def test_what_a_wrong_shape_could_do_as_well_has_a_size_all_the_same():

@@ -113,11 +113,11 @@ def test_a_rival_that_takes_a_place_is_seen_with_what_it_scored(two, monkeypatch
         return (best, old)
 
     monkeypatch.setattr(reconsider, "rank", looked)
-    monkeypatch.setattr(reconsider, "gain_held_back", lambda *_: PAYS + 50.0)
+    monkeypatch.setattr(reconsider, "gain_on_folds", lambda *_: PAYS + 50.0)
     after, (look,) = reconsidered(state, rounds, FLOOR, silent, {"sensor-lag"})
     assert after.chain is other.chain
     assert [item.effect for item in after.added] == ["sensor-lag", "asymmetry"]
-    assert look.ranking[0].held_back == PAYS + 50.0
+    assert look.ranking[0].gain_on_folds == PAYS + 50.0
     assert (look.instead_of, look.taken) == ("drive-lag", "sensor-lag")
     rows = ranking_rows(Named(after, (replace(rounds[0], looks=(look,)),)))
     assert [
@@ -147,7 +147,7 @@ def test_of_a_tie_a_rival_of_fewer_numbers_takes_the_place(
         return best, Candidate("drive-lag", "drive", score=now, state=state)
 
     monkeypatch.setattr(reconsider, "rank", looked)
-    monkeypatch.setattr(reconsider, "gain_held_back", lambda *_: PAYS + 50.0)
+    monkeypatch.setattr(reconsider, "gain_on_folds", lambda *_: PAYS + 50.0)
     after, _ = reconsidered(state, rounds, FLOOR, silent, {"sensor-lag"})
     assert state.added[0].charge == 1.0
     assert ("sensor-lag" in {item.effect for item in after.added}) == taken
@@ -165,12 +165,12 @@ def test_a_rival_that_does_not_pay_on_records_held_back_takes_no_place(
         return rival, *own
 
     monkeypatch.setattr(reconsider, "rank", looked)
-    monkeypatch.setattr(reconsider, "gain_held_back", lambda *_: PAYS - 1.0)
+    monkeypatch.setattr(reconsider, "gain_on_folds", lambda *_: PAYS - 1.0)
     after, looks = reconsidered(state, rounds, FLOOR, silent)
     assert after is state
     assert [look.taken for look in looks] == ["drive-lag", "asymmetry"]
     for look in looks:
-        told = {item.effect: item.held_back for item in look.ranking}
+        told = {item.effect: item.gain_on_folds for item in look.ranking}
         assert told["creep"] == PAYS - 1.0
 
 

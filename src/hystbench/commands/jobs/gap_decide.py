@@ -11,7 +11,8 @@ from hystbench.gap.asked import Asked
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.computing_time import write_took
 from hystbench.gap.records.evidence import check_units, load_evidence
-from hystbench.gap.run import decide_in, write_next_experiment
+from hystbench.gap.run import write_next_experiment
+from hystbench.gap.stages import decide_in
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.options import (
     DatasetFile,

@@ -1,10 +1,10 @@
-"""``hystbench job gap-show``: read the hold-out records, once, and write gap.json."""
+"""``hystbench job gap-show``: compare with the hold-out records, write gap.json."""
 
 from hystbench import options
 from hystbench.gap.bases.load import checked_base
 from hystbench.gap.computing_time import write_took
 from hystbench.gap.records.evidence import load_evidence
-from hystbench.gap.run import show_in
+from hystbench.gap.stages import show_in
 from hystbench.model import load_model
 from hystbench.options import DatasetFile, In, Out, OutFolder, command
 

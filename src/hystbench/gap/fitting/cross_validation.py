@@ -37,7 +37,7 @@ class _Fold(NamedTuple):
     """Terms of the score there of the model without the effect, by record."""
 
 
-def gain_held_back(
+def gain_on_folds(
     before: ModelState, after: ModelState, score: Score, in_blocks: bool | None = None
 ) -> float:
     """Tell by how much an effect lowers the score of records that did not fit it.

@@ -124,7 +124,7 @@ class OwnValues:
         articles = {"delay": "a delay", "gain": "a gain", "offset": "an offset"}
         return " and ".join(articles[kind] for kind in self.kinds)
 
-    def fitted_first(self, record: Record, simulated: FloatArray, floor: float) -> Own:
+    def fitted_first(self, record: Record, simulated: FloatArray, square: float) -> Own:
         """Fit the same to a hold-out record, to the part that is not scored.
 
         Nothing where it lowers the score by less than its numbers are charged.
@@ -136,7 +136,7 @@ class OwnValues:
             np.mean((record.y - one.of(simulated, record.dt))[:until] ** 2)
             for one in (Own(), own)
         ]
-        gain = RECORD_WEIGHT * np.diff(-np.log(np.maximum(squares, floor)))[0]
+        gain = RECORD_WEIGHT * np.diff(-np.log(np.maximum(squares, square)))[0]
         return own if gain > PARAMETER * len(self.kinds) else Own()
 
     def _sentence(self, unit: str) -> str:
@@ -171,7 +171,7 @@ NONE = OwnValues()
 def own_values(
     records: Sequence[Record],
     simulated: Sequence[FloatArray],
-    floor: float,
+    square: float,
     kinds: Sequence[str] = KINDS,
 ) -> OwnValues:
     """Find what records have of their own: those kinds and records that score least.
@@ -184,7 +184,7 @@ def own_values(
     ----------
     records : sequence of Record
     simulated : sequence of ndarray, shape (n,) each
-    floor : float
+    square : float
         Mean square of the noise.
     kinds : sequence of str
         Those that may differ.
@@ -201,11 +201,11 @@ def own_values(
             for (record, signal), own in zip(pairs, owns, strict=True)
         )
         squares = [float(np.mean(rest**2)) for rest in rests]
-        return weight * np.log(np.maximum(squares, floor))
+        return weight * np.log(np.maximum(squares, square))
 
     as_simulated = costs([Own()] * len(pairs))
     best, chosen = float(as_simulated.sum()), None
-    if best - weight * len(pairs) * np.log(floor) < PAYS:
+    if best - weight * len(pairs) * np.log(square) < PAYS:
         return NONE  # noise alone costs no less
     # With the most freedom first: what that does not gain, less cannot.
     for count in range(len(kinds), 0, -1):

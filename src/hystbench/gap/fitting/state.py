@@ -260,12 +260,12 @@ class ModelState:
             found[own] = np.linalg.lstsq(columns[:, own], rest, rcond=1e-10)[0]
         return found
 
-    def share(self, other: ModelState, floor: float, gap: float) -> float:
+    def share(self, other: ModelState, square: float, gap: float) -> float:
         """Give the share of a gap that this state takes beyond another.
 
-        ``floor`` is the mean square of the noise, ``gap`` that of the gap above it.
+        ``square`` is the mean square of the noise, ``gap`` that of the gap above it.
         """
-        return (other.power(floor) - self.power(floor)) / gap
+        return (other.power(square) - self.power(square)) / gap
 
     @cached_property
     def squares(self) -> FloatArray:
@@ -278,13 +278,13 @@ class ModelState:
         beside = self.beside_columns @ self.beside_amplitudes if self.beside else 0.0
         return self.residual - beside
 
-    def power(self, floor: float) -> float:
+    def power(self, square: float) -> float:
         """Mean square of the residual above the floor, of the records alike."""
-        return float(np.mean(self.squares)) - floor
+        return float(np.mean(self.squares)) - square
 
-    def gap(self, floor: float) -> float:
+    def gap(self, square: float) -> float:
         """Give its power as a gap that shares are taken of: the noise's at least."""
-        return max(self.power(floor), floor)
+        return max(self.power(square), square)
 
     @cached_property
     def steps(self) -> tuple[float, ...]:

@@ -84,7 +84,7 @@ def standard_errors(state: ModelState, score: Score) -> FloatArray:
     return _errors(columns, residual, usable, state, score.floor)[: len(state.free)]
 
 
-def size_error(state: ModelState, floor: float, number: int) -> float:
+def size_error(state: ModelState, square: float, number: int) -> float:
     """Estimate the standard error of an added effect's size, as a share of it.
 
     Of all its numbers together: they may stand in for each other, and none of them be
@@ -97,7 +97,7 @@ def size_error(state: ModelState, floor: float, number: int) -> float:
     Parameters
     ----------
     state : ModelState
-    floor : float
+    square : float
         Mean square of what no model explains, in squared output units.
     number : int
         Place of the effect among those that were added.
@@ -121,8 +121,8 @@ def size_error(state: ModelState, floor: float, number: int) -> float:
         ]
     )
     residual = _cleaned(state, np.hstack([state.tangents, state.beside_columns]))
-    usable = np.mean(columns**2, axis=0) > SHOWN**2 * floor
-    return float(_errors(columns, residual, usable, state, floor, uncounted=1)[0])
+    usable = np.mean(columns**2, axis=0) > SHOWN**2 * square
+    return float(_errors(columns, residual, usable, state, square, uncounted=1)[0])
 
 
 def _cleaned(state: ModelState, columns: FloatArray) -> FloatArray:
@@ -148,12 +148,12 @@ def _errors(
     residual: FloatArray,
     usable: NDArray[np.bool_],
     state: ModelState,
-    floor: float,
+    square: float,
     uncounted: int = 0,
 ) -> FloatArray:
     """Give robust standard errors of the amplitudes of columns; NaN of those unused."""
     scale = np.sqrt(np.mean(columns[:, usable] ** 2, axis=0))
-    pieces = _by_record(columns[:, usable] / scale, residual, state, floor)
+    pieces = _by_record(columns[:, usable] / scale, residual, state, square)
     between = between_records(pieces, uncounted)
     variance = np.maximum(np.diag(_between_stretches(pieces)), between)
     errors = np.full(len(usable), np.nan)
@@ -169,12 +169,12 @@ class Pieces(NamedTuple):
 
 
 def _by_record(
-    columns: FloatArray, residual: FloatArray, state: ModelState, floor: float
+    columns: FloatArray, residual: FloatArray, state: ModelState, square: float
 ) -> Pieces:
     """Give the pieces of least squares in which every record weighs by its residual."""
     normals, pushes = [], []
     for part in state.sample.slices:
-        weight = 1.0 / max(float(np.mean(residual[part] ** 2)), floor)
+        weight = 1.0 / max(float(np.mean(residual[part] ** 2)), square)
         weighted = weight * columns[part]
         normals.append(columns[part].T @ weighted)
         pushes.append(residual[part, None] * weighted)

@@ -12,7 +12,7 @@ from typing import Any
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.locate.along_axes import RECORDS_TOLD
-from hystbench.gap.thresholds import AS_GOOD, MOST
+from hystbench.gap.thresholds import AS_GOOD
 
 ONLY_FITTED = 0.15
 """Share of the gap's power that is gone on fit records alone, to be told."""
@@ -30,13 +30,13 @@ def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
         gone (None where there was none), and a ``sentence``; None where the hold-out
         records keep the promise and no effect widens the gap there.
     """
-    promised, kept = content["fit"]["explained"], _kept(content)
+    promised, kept = content["fit"]["explained"], kept_share(content)
     sentences = [_less(content, promised, kept), *_widens(content)]
     told = " ".join(sentence for sentence in sentences if sentence)
     return {"fit": promised, "hold_out": kept, "sentence": told} if told else None
 
 
-def _kept(content: Mapping[str, Any]) -> float | None:
+def kept_share(content: Mapping[str, Any]) -> float | None:
     """Give the share that is gone there; of a range the most, as it may be that."""
     kept = content["gap"]["explained"]
     return kept if kept is None or isinstance(kept, int | float) else max(kept)
@@ -68,39 +68,18 @@ def _widens(content: Mapping[str, Any]) -> list[str]:
     return [
         f"On the hold-out records {step['name']} widens the gap, from "
         f"{last['rms']:.3g} to {step['rms']:.3g} {content['unit']}."
-        for last, step in _steps_up(content)
+        for last, step in steps_up(content)
     ]
 
 
-def _steps_up(content: Mapping[str, Any]) -> list[tuple[Any, Any]]:
+def steps_up(content: Mapping[str, Any]) -> list[tuple[Any, Any]]:
+    """Give the steps of the ladder that widen the gap, each with the one before."""
     return [
         (last, step)
         for last, step in pairwise(content["ladder"])
         if last["rms"]
         and step["rms"]
         and step["rms"] ** 2 > (1 + AS_GOOD) * last["rms"] ** 2
-    ]
-
-
-def no_surer_than_even(content: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Give the effects, no surer than even where hold-out records do not bear them out.
-
-    Confidence is capped at 0.5 for a name whose step widens the gap there. If less than
-    half of the share that is gone on the fit records is gone there, it is capped for
-    all names but signals that are new in every record.
-    """
-    doubtful = {
-        name for _, step in _steps_up(content) for name in step["name"].split(" + ")
-    }
-    promised, kept = content["fit"]["explained"], _kept(content)
-    if promised is not None and kept is not None and kept < MOST * promised:
-        names = [item["name"] for item in content["effects"]]
-        doubtful |= {name for name in names if not _is_beside(effects()[name])}
-    return [
-        item | {"confidence": min(item["confidence"], MOST)}
-        if item["name"] in doubtful
-        else item
-        for item in content["effects"]
     ]
 
 
@@ -118,7 +97,7 @@ def _runs_away(content: Mapping[str, Any]) -> list[str]:
 
 def _new_in_every_record(content: Mapping[str, Any], names: list[str]) -> list[str]:
     share = content["fit"]["new_in_every_record"]
-    beside = [name for name in names if _is_beside(effects()[name])]
+    beside = [name for name in names if is_beside(effects()[name])]
     if share < WORTH_A_REASON or not beside:
         return []
     return [
@@ -127,7 +106,7 @@ def _new_in_every_record(content: Mapping[str, Any], names: list[str]) -> list[s
     ]
 
 
-def _is_beside(effect: Effect) -> bool:
+def is_beside(effect: Effect) -> bool:
     """Tell whether an effect can be a signal beside the chain."""
     return type(effect).describe is not Effect.describe
 

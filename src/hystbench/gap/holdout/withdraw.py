@@ -18,15 +18,16 @@ from hystbench.gap.bases.gpi import is_another
 from hystbench.gap.bases.lead import lead_warnings
 from hystbench.gap.bases.roughly_known import as_it_was
 from hystbench.gap.fitting.on_records import run_base
+from hystbench.gap.holdout.confidence_cap import no_surer_than_even
 from hystbench.gap.holdout.scored import (
     Outcome,
     as_recorded,
     nuisance_of,
     score_hold_out,
 )
-from hystbench.gap.holdout.shortfall import no_surer_than_even, shortfall
-from hystbench.gap.naming.built_in import BuiltIn
+from hystbench.gap.holdout.shortfall import shortfall
 from hystbench.gap.naming.ladder import FitResult
+from hystbench.gap.naming.put_in import PutIn
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.lone_samples import (
     lone_share,
@@ -42,8 +43,8 @@ from hystbench.model import Model
 from hystbench.units import sized
 
 
-@dataclass(frozen=True)
-class Decided:
+@dataclass(frozen=True, kw_only=True)
+class ToShow:
     """What goes from the fit records to those that are held out."""
 
     first: Model
@@ -55,22 +56,22 @@ class Decided:
     """What gap.json holds, but for what the hold-out records show."""
     vocabulary: Vocabulary
     """What the user put in or left out, which is told."""
-    built_in: BuiltIn | None
+    put_in: PutIn | None
     """None where no effect was put in."""
     damper: float = 0.0
     """Of the observer that it was decided with; zero without one."""
-    plain: Decided | None = None
+    plain: ToShow | None = None
     """What stands where hold-out records take that back: decided without an observer,
     and with nothing named."""
 
 
-def show_on_hold_out(decided: Decided, evidence: Evidence) -> Outcome:
+def show_on_hold_out(decided: ToShow, evidence: Evidence) -> Outcome:
     """Show a decision on the hold-out records; take back what is worse there.
 
     It is worse where it leaves more than the base, or than the hysteresis that was
     identified before any effect was known.
     """
-    first, fitted, built_in = decided.first, decided.fitted, decided.built_in
+    first, fitted, put_in = decided.first, decided.fitted, decided.put_in
     shown = score_hold_out(fitted, evidence.hold_out)
     other = first if is_another(first, fitted.base) else None
     least = np.inf if other is None else _left(other, fitted, evidence)
@@ -115,9 +116,9 @@ def show_on_hold_out(decided: Decided, evidence: Evidence) -> Outcome:
         content["reason"] = f"{worse[0]}; of the fit records: {content['reason']}"
     content["shortfall"] = shortfall(content)
     content = with_what_was_asked(content, decided.vocabulary)
-    if built_in is not None:
-        alone_rms = _left(built_in.alone, fitted, evidence)
-        content = _with_built_in(content, built_in, alone_rms)
+    if put_in is not None:
+        alone_rms = _left(put_in.alone, fitted, evidence)
+        content = _with_put_in(content, put_in, alone_rms)
     content = with_device(content, evidence.device_kind, evidence.quantities)
     return replace(shown, content=content)
 
@@ -324,19 +325,19 @@ def with_what_was_asked(
     return {**content, "reason": reason, "asked": vocabulary.mapping()}
 
 
-def _with_built_in(
-    content: Mapping[str, Any], built_in: BuiltIn, alone: float
+def _with_put_in(
+    content: Mapping[str, Any], put_in: PutIn, alone: float
 ) -> dict[str, Any]:
     """Tell what the effects that the user put in do, apart from what was found.
 
     The ``gap`` of the content begins with them; ``alone`` is the RMS residual of the
     simulator without them on the hold-out records.
     """
-    names = " and ".join(built_in.names)
+    names = " and ".join(put_in.names)
     first, *rest = content["ladder"]
     after, unit = content["gap"]["before"], content["unit"]
     told = {
-        "effects": list(built_in.effects),
+        "effects": list(put_in.effects),
         "before": alone,
         "after": after,
         "sentence": (

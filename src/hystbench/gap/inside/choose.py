@@ -28,16 +28,16 @@ def for_a_further(taken: float, share: float) -> float:
 
 
 def charged(
-    item: Fitted, found: Sequence[Fitted], floor: float, share: float = UNNAMED_SHARE
+    item: Fitted, found: Sequence[Fitted], square: float, share: float = UNNAMED_SHARE
 ) -> float:
     """Give the score with what effects have to pay: the first, and each further one.
 
     A further one must take a share of the gap that matters, or be beyond doubt: what is
     left after the right force is also what its law, or the simulation, misses.
     """
-    gap, value = found[0].state.gap(floor), item.score
+    gap, value = found[0].state.gap(square), item.score
     for before, after in pairwise((found[0], *way_to(item, found))):
-        taken = after.state.share(before.state, floor, gap)
+        taken = after.state.share(before.state, square, gap)
         value += for_a_further(taken, share) if before.effects else PAYS
     return value
 
@@ -70,7 +70,7 @@ def with_a_way(found: Sequence[Fitted]) -> list[Fitted]:
 
 
 def chosen(
-    found: Sequence[Fitted], floor: float, share: float = UNNAMED_SHARE
+    found: Sequence[Fitted], square: float, share: float = UNNAMED_SHARE
 ) -> Fitted:
     """Take the least score with what effects have to pay; of a tie the fewest numbers.
 
@@ -78,7 +78,7 @@ def chosen(
     As many numbers have a weight that turns a little and a spring that grows softer:
     then it is the effect that is offered only where its cause can be.
     """
-    values = [charged(item, found, floor, share) for item in found]
+    values = [charged(item, found, square, share) for item in found]
     best = found[int(np.argmin(values))]
     tied = [
         item

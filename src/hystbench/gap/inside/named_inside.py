@@ -17,7 +17,7 @@ from hystbench.gap.asked import USUAL, Asked
 from hystbench.gap.bases.linear import is_identified_linear
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.cross_validation import (
-    gain_held_back,
+    gain_on_folds,
     shows_in_one_record,
 )
 from hystbench.gap.fitting.model_score import score_of
@@ -67,7 +67,7 @@ class Inside:
 
     base: Model
     start: ModelState
-    """The same on the fit records."""
+    """The base on the fit records, before anything is named."""
     named: Named
     sentence: str
     """What it stands in place of."""
@@ -97,7 +97,7 @@ def named_inside(
     ----------
     base : Model
     start : ModelState
-        The same on the fit records.
+        The base on the fit records, before anything is named.
     floor : Floor
     quantities : Quantities
         What the device takes and gives: they tell which hosts there are.
@@ -185,7 +185,7 @@ def with_effects_inside(
 
 
 def without_forces(
-    base: Model, start: ModelState, tried: Tried, floor: float
+    base: Model, start: ModelState, tried: Tried, square: float
 ) -> Inside:
     """Give a host that leaves nothing but noise in place of an identified base.
 
@@ -194,7 +194,7 @@ def without_forces(
     """
     host, found = tried.host, tried.found
     alone = found[0].state.settled()
-    before, after = lefts((start, alone), floor, base.output.unit)
+    before, after = lefts((start, alone), square, base.output.unit)
     sentence = (
         f"{host.words}; then {after} rms of the fit records is left above the noise "
         f"floor, with the base {before}"
@@ -204,9 +204,9 @@ def without_forces(
     return Inside(model, alone, Named(alone, rounds), sentence, host.counts, host.kind)
 
 
-def lefts(states: Iterable[ModelState], floor: float, unit: str) -> list[str]:
+def lefts(states: Iterable[ModelState], square: float, unit: str) -> list[str]:
     """Give in words what models leave above the noise floor."""
-    powers = (state.power(floor) for state in states)
+    powers = (state.power(square) for state in states)
     return [sized(float(np.sqrt(max(power, 0.0))), unit) for power in powers]
 
 
@@ -300,8 +300,8 @@ def beats_chain(inside: Inside, named: Named, floor: Floor, say: Say = silent) -
     score = Score.plain(state.sample, floor.square)
     # What the chain changes elsewhere says nothing of where forces show.
     in_blocks = shows_in_one_record(inside.start, state, score)
-    gain = gain_held_back(chain, state, score, in_blocks)
-    gain -= gain_held_back(chain, chain, score, in_blocks)
+    gain = gain_on_folds(chain, state, score, in_blocks)
+    gain -= gain_on_folds(chain, chain, score, in_blocks)
     better = "better" if gain > 0 else "worse"
     say(f"inside: on folds {abs(gain):.1f} {better} than what a chain has found")
     gain -= state.moved_charge - chain.moved_charge
@@ -311,26 +311,26 @@ def beats_chain(inside: Inside, named: Named, floor: Floor, say: Say = silent) -
     return gain - FURTHER * further >= PAYS
 
 
-def _in_fewer_numbers(inside: Inside, named: Named, floor: float) -> bool:
+def _in_fewer_numbers(inside: Inside, named: Named, square: float) -> bool:
     """Tell whether as few effects, none of many numbers, leave as little of the gap."""
     state, chain = inside.named.state, named.state
     many = any(x.is_of_many_numbers for x in chain.added)
     few = len(state.added) + inside.counts <= len(chain.added)
-    return many and few and not bends(state) and _no_better(chain, state, named, floor)
+    return many and few and not bends(state) and _no_better(chain, state, named, square)
 
 
-def _in_fewer_effects(inside: Inside, named: Named, floor: float) -> bool:
+def _in_fewer_effects(inside: Inside, named: Named, square: float) -> bool:
     """Tell whether a chain of fewer effects of few numbers leaves as little."""
     state, chain = inside.named.state, named.state
     fewer = 0 < len(chain.added) < len(state.added) + inside.counts
-    return fewer and not bends(chain) and _no_better(state, chain, named, floor)
+    return fewer and not bends(chain) and _no_better(state, chain, named, square)
 
 
 def _no_better(
-    state: ModelState, other: ModelState, named: Named, floor: float
+    state: ModelState, other: ModelState, named: Named, square: float
 ) -> bool:
     """Tell whether a model takes no more of the gap than another one does as well."""
-    return state.share(other, floor, named.rounds[0].before.gap(floor)) < AS_GOOD
+    return state.share(other, square, named.rounds[0].before.gap(square)) < AS_GOOD
 
 
 def quantities_if_linear(base: Model, evidence: Evidence) -> Quantities | None:

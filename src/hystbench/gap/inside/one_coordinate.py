@@ -287,7 +287,7 @@ def solved(columns: FloatArray, wanted: FloatArray) -> FloatArray:
 
 
 def same_as(
-    start: ModelState, quantities: Quantities, floor: float
+    start: ModelState, quantities: Quantities, square: float
 ) -> ModelState | None:
     """Give a model of one coordinate that simulates what a given base does.
 
@@ -301,7 +301,7 @@ def same_as(
     moves = wanted - static @ solved(static, wanted)
     if np.mean(moves**2) < most:
         return None
-    unseen = min(AS_GOOD * floor, most)
+    unseen = min(AS_GOOD * square, most)
     shown = [float(np.sum(moves[part] ** 2)) for part in start.sample.slices]
     one = _ByContent((simulated[int(np.argmax(shown))],))
     every, count = _ByContent(simulated), len(ScoredSamples.of(simulated))

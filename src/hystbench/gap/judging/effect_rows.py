@@ -142,7 +142,7 @@ def _rows(
             "place": item.place,
             "taken": item.effect == taken,
             "refitted": item.state is not None,
-            "held_back": item.held_back,
+            "held_back": item.gain_on_folds,
         }
         if item.form:
             row["form"] = item.form

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from hystbench.gap.judging.leftover import Leftover
-from hystbench.gap.judging.unnamed import Unnamed
+from hystbench.gap.judging.unowned import Unowned
 from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.thresholds import (
     ABOVE_NOISE,
@@ -51,7 +51,7 @@ def what_mends(records: Sequence[Record]) -> str:
 
 def judge_none(
     left: Leftover,
-    unnamed: Unnamed,
+    unnamed: Unowned,
     explained_by_box: float | None,
     retuned: bool,
     floor_is_upper_bound: bool,
@@ -63,7 +63,7 @@ def judge_none(
     Parameters
     ----------
     left : Leftover
-    unnamed : Unnamed
+    unnamed : Unowned
         What stays, and what of it follows known signals.
     explained_by_box : float or None
         Share of what the base leaves, above the floor, that a black box takes away on
@@ -125,13 +125,13 @@ def judge_none(
     )
 
 
-def judge_names(left: Leftover, unnamed: Unnamed) -> tuple[Verdict, str]:
+def judge_names(left: Leftover, unnamed: Unowned) -> tuple[Verdict, str]:
     """Choose the word where effects were added, and say why.
 
     Parameters
     ----------
     left : Leftover
-    unnamed : Unnamed
+    unnamed : Unowned
         What stays that the named effects cannot own.
     """
     much = unnamed.too_much
@@ -158,7 +158,7 @@ def judge_names(left: Leftover, unnamed: Unnamed) -> tuple[Verdict, str]:
     return "named", left.sentence
 
 
-def _why_new(left: Leftover, unrelated: Unnamed | None, explained: float | None) -> str:
+def _why_new(left: Leftover, unrelated: Unowned | None, explained: float | None) -> str:
     """Say why what is left follows nothing that is recorded; or nothing."""
     if left.is_new:
         return (

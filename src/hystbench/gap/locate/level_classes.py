@@ -49,7 +49,7 @@ IN_A_CHAIN = (
 
 
 def beside_level(
-    views: Sequence[View], named: Sequence[tuple[str, str]], closed: bool = False
+    views: Sequence[View], named: Sequence[tuple[str, str]], little_left: bool = False
 ) -> str:
     """Hold the named effects against how modes move with the level.
 
@@ -61,7 +61,7 @@ def beside_level(
     named : sequence of (str, str)
         The named effects and their places. A force moves a mode inside the dynamics
         alone.
-    closed : bool
+    little_left : bool
         Whether they leave nothing that matters. Of a mode that none of them moves
         nothing is said then: it was the gap that seemed to move it.
 
@@ -79,7 +79,7 @@ def beside_level(
             for name, place in named
             if name in effects and (place == "inside" or name in IN_A_CHAIN)
         ]
-        who = " and ".join(fit) or ("" if closed else "no named effect")
+        who = " and ".join(fit) or ("" if little_left else "no named effect")
         if who:
             told.append(f"a mode moves with the level as of {words}: {who} can do so")
     return "; ".join(told)

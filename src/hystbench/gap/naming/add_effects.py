@@ -55,7 +55,7 @@ class Named:
     state: ModelState
     """The model with all effects that were added."""
     rounds: tuple[Round, ...] = ()
-    gone: tuple[TakenOut, ...] = ()
+    taken_out: tuple[TakenOut, ...] = ()
     """Effects that were added and went out again."""
 
     @property
@@ -75,10 +75,12 @@ class Named:
             found |= {x.taken: x.ranking for x in one.looks if x.taken is not None}
         return found
 
-    def taken_back(self) -> Named:
+    def with_none_named(self) -> Named:
         """Give the same with no effect named: the base as it was before the first."""
-        gone = [TakenOut(item.effect, LITTLE) for item in self.state.added]
-        return replace(self, state=self.rounds[0].before, gone=(*self.gone, *gone))
+        out = [TakenOut(item.effect, LITTLE) for item in self.state.added]
+        return replace(
+            self, state=self.rounds[0].before, taken_out=(*self.taken_out, *out)
+        )
 
 
 def add_effects(state: ModelState, floor: Floor, asked: Asked) -> Named:
@@ -187,7 +189,7 @@ class SoFar:
     rounds: tuple[Round, ...] = ()
     deferred: bool = False
     """Whether a shape that takes more of the gap was put off."""
-    closed: bool = False
+    nothing_to_gain: bool = False
     """Whether nothing is left that an effect could gain."""
     in_place_of: Collection[str] = ()
     """Effects whose place these took together; each may still do better than one."""
@@ -217,15 +219,15 @@ class SoFar:
     def done(self) -> bool:
         """Whether nothing more is to be added."""
         stopped = bool(self.rounds) and not self.rounds[-1].taken
-        return stopped or self.closed or len(self.state.added) >= MOST_EFFECTS
+        return stopped or self.nothing_to_gain or len(self.state.added) >= MOST_EFFECTS
 
-    def little_left(self, floor: float) -> bool:
+    def little_left(self, square: float) -> bool:
         """Tell whether no more is left than may stay unnamed, of whatever sort it is.
 
         Then no effect could take what matters.
         """
         return bool(self.state.added) and (
-            self.state.power(floor) <= self.share * self.gap
+            self.state.power(square) <= self.share * self.gap
         )
 
 
@@ -265,7 +267,7 @@ def advance(
     found = None if little else _before_a_round(progress.state, floor)
     if found is None:
         say(NO_MORE_LEFT if little else "nothing is left that an effect could gain")
-        return replace(progress, closed=True)
+        return replace(progress, nothing_to_gain=True)
     state, score = found
     ranking = rank(state, score, needs=FURTHER if state.added else PAYS)
     deferred = progress.deferred
@@ -291,7 +293,7 @@ def advance(
     )
 
 
-def with_all_numbers(state: ModelState, floor: float) -> ModelState:
+def with_all_numbers(state: ModelState, square: float) -> ModelState:
     """Fit all numbers of a model without hysteresis together, the base's own as well.
 
     A linear base was fitted with the gap in it: what an effect bends much may take its
@@ -302,7 +304,7 @@ def with_all_numbers(state: ModelState, floor: float) -> ModelState:
     bound = any(free.tolerance is not None for free in re_tuned)
     if bound or not re_tuned or state.beside or state.simulation.loop is not None:
         return state
-    score = Score.plain(state.sample, floor)
+    score = Score.plain(state.sample, square)
     best = fitted_to_the_end(state, score)
     better = best.score < score_of(state, score) and not at_end(best.state)
     return best.state if better else state
@@ -325,7 +327,7 @@ def _before_a_round(state: ModelState, floor: Floor) -> tuple[ModelState, Score]
 
 
 def _shape_takes_more(
-    ranking: tuple[Candidate, ...], before: ModelState, floor: float
+    ranking: tuple[Candidate, ...], before: ModelState, square: float
 ) -> bool:
     """Tell whether a wrong shape pays and takes twice as much as the best effect."""
     shape = next((x for x in ranking if x.effect == SHAPE and x.state), None)
@@ -334,13 +336,13 @@ def _shape_takes_more(
         return False
     if shape is first or shape.gain < PAYS:
         return False
-    gap = before.power(floor)
-    most = shape.state.share(before, floor, gap)
-    return first.state.share(before, floor, gap) < MOST * most
+    gap = before.power(square)
+    most = shape.state.share(before, square, gap)
+    return first.state.share(before, square, gap) < MOST * most
 
 
 def pays(
-    item: Candidate, state: ModelState, floor: float, gap: float, needed: float
+    item: Candidate, state: ModelState, square: float, gap: float, needed: float
 ) -> bool:
     """Tell whether an effect is to be added.
 
@@ -352,7 +354,7 @@ def pays(
         return False
     if not state.added:
         return True
-    share = item.state.share(state, floor, gap)
+    share = item.state.share(state, square, gap)
     if is_shape_that_matters(item.effect, item.gain, share):
         return True
     return item.gain > FURTHER and share > needed

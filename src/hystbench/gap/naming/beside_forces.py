@@ -43,7 +43,7 @@ def beside_forces(
     state, gone = without_what_goes(named.state, floor, None, say)
     if gone:  # what went was judged beside other forms of those that stay
         state = finished_to_the_end(state, make_score(state, floor, forms=False))
-    named = replace(named, state=state, gone=(*named.gone, *gone))
+    named = replace(named, state=state, taken_out=(*named.taken_out, *gone))
     gap = start.gap(floor.square)
     while (more := _with_one_beside(named, floor, gap, share)) is not None:
         if len(more.rounds) > len(named.rounds):

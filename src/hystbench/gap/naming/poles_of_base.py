@@ -111,7 +111,7 @@ def named_beside_them(
         return None
     first, *rest = named.rounds
     rounds = (replace(first, before=start), *rest)
-    return Named(state, rounds, (*named.gone, *gone))
+    return Named(state, rounds, (*named.taken_out, *gone))
 
 
 class _Piece(NamedTuple):

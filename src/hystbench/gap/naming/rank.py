@@ -182,7 +182,7 @@ def _first_exact(
     """
     found = first_on_folds(candidates, state, score)
     candidates = in_order(_not_cut_short(item, state) for item in found)
-    while candidates[0].effect not in exact and candidates[0].held_back:
+    while candidates[0].effect not in exact and candidates[0].gain_on_folds:
         first = candidates.pop(0)
         exact.append(first.effect)
         again = on_folds(exactly(first, score, now), state, score)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.cross_validation import gain_on_folds
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import finished
@@ -112,7 +112,7 @@ def unknown(state: ModelState, floor: Floor) -> Without | None:
         short = without_effect(state, number)
         score = make_score(short, floor)
         short, _ = finished(short, score)
-        if gain_held_back(short, finished(state, score)[0], score) > CERTAIN:
+        if gain_on_folds(short, finished(state, score)[0], score) > CERTAIN:
             continue
         reason = f"the standard error of its size is {error:.0%} of it"
         if np.isnan(error):

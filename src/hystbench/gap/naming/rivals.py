@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench.blocks.calls import CallsUsedUp
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.cross_validation import gain_on_folds
 from hystbench.gap.fitting.model_score import directions_of, score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
@@ -27,7 +27,7 @@ def first_on_folds(
     """
     best, found = np.inf, []
     for item in candidates:
-        if item.held_back is None and item.score < best + CERTAIN:
+        if item.gain_on_folds is None and item.score < best + CERTAIN:
             item = on_folds(item, before, score)
         if item.state is not None and not item.declined:
             best = min(best, item.score)
@@ -45,12 +45,12 @@ def on_folds(item: Candidate, before: ModelState, score: Score) -> Candidate:
     if item.state is None or item.gain < PAYS:
         return item
     try:
-        held = gain_held_back(before, item.state, score)
+        held = gain_on_folds(before, item.state, score)
     except CallsUsedUp as error:
         return item.but(str(error))
     charge = PARAMETER * (item.state.freedom - before.freedom)
     lost = max(item.gain - (held - charge), 0.0)
-    return replace(item.dearer(lost), held_back=held)
+    return replace(item.dearer(lost), gain_on_folds=held)
 
 
 def by_all_their_laws(candidates: Sequence[Candidate]) -> list[Candidate]:
@@ -117,7 +117,7 @@ def beside_their_own_shapes(
     candidates: Sequence[Candidate],
     alike: Sequence[str],
     before: ModelState,
-    floor: float,
+    square: float,
 ) -> list[Candidate]:
     """Compare candidates that score alike beside what a wrong shape does in each.
 
@@ -133,13 +133,13 @@ def beside_their_own_shapes(
         Effects of those that are compared.
     before : ModelState
         Without them; where it has no hysteresis, nothing is to be compared.
-    floor : float
+    square : float
         Mean square of the noise.
     """
     if len(alike) < 2 or not before.wrong_shape.shape[1]:
         return list(candidates)
     own = {
-        item.effect: above_noise_of_its_own(item.state, before, floor)
+        item.effect: above_noise_of_its_own(item.state, before, square)
         for item in candidates
         if item.effect in alike and item.state is not None
     }
@@ -160,13 +160,13 @@ def beside_their_own_shapes(
 
 
 def above_noise_of_its_own(
-    state: ModelState, before: ModelState, floor: float
+    state: ModelState, before: ModelState, square: float
 ) -> float:
     """Score a model above noise, beside what a wrong shape of its own could do.
 
     Its numbers stay charged; effects that were there before may be of another form.
     """
-    own = Score(state.sample, directions_of(state.wrong_shape, before), floor)
+    own = Score(state.sample, directions_of(state.wrong_shape, before), square)
     return score_of(state, own) - own.least()
 
 

@@ -50,7 +50,7 @@ class Candidate:
     """Why it could not be judged, if so."""
     refused: bool = False
     """Whether that is a block that refuses the numbers of this law."""
-    held_back: float | None = None
+    gain_on_folds: float | None = None
     """What a finalist that pays gains on folds."""
     variants: tuple[TriedVariant, ...] = ()
     """Every place and form of it that could be scored, best first."""

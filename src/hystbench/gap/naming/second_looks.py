@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.gap.effects import among, effects
-from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.cross_validation import gain_on_folds
 from hystbench.gap.fitting.edit_chain import last_to, removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import finished
@@ -80,9 +80,9 @@ def reconsidered(
         fewer = best.state is not None and best.state.freedom < numbers
         enough = least if fewer else least - SCALE
         if best.state and best.effect != item.effect and best.score < enough:
-            held_back = gain_held_back(short, best.state, score)
-            ranking = (replace(best, held_back=held_back), *ranking[1:])
-            if held_back > PAYS:
+            on_folds = gain_on_folds(short, best.state, score)
+            ranking = (replace(best, gain_on_folds=on_folds), *ranking[1:])
+            if on_folds > PAYS:
                 say(f"{item.effect} gives way to {best.effect}")
                 looks.append(SecondLook(item.effect, have, ranking, best.effect))
                 return last_to(best.state, number), tuple(looks)

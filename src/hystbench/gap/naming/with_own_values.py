@@ -233,14 +233,14 @@ def _likely(
 
 
 def _own_values(
-    state: ModelState, start: ModelState, floor: float, kinds: Sequence[str]
+    state: ModelState, start: ModelState, square: float, kinds: Sequence[str]
 ) -> OwnValues:
     """Find what records have of their own beside a model, or look it up."""
     unit = start.records[0].output.unit
     found = remembered_of(
         state,
-        lambda: ["own values", records_digest(start.records), floor, kinds],
-        lambda: own_values(start.records, state.exact, floor, kinds).mapping(unit),
+        lambda: ["own values", records_digest(start.records), square, kinds],
+        lambda: own_values(start.records, state.exact, square, kinds).mapping(unit),
     )
     return OwnValues.of_mapping(found)
 

@@ -58,7 +58,7 @@ def observer_for(evidence: Evidence) -> float | None:
     return float(np.sqrt(force / motion)) if force and motion else None
 
 
-def observed(evidence: Evidence, damper: float) -> Evidence:
+def with_observer_signal(evidence: Evidence, damper: float) -> Evidence:
     """Give records that an observer of such a damper has added its force to.
 
     Parameters

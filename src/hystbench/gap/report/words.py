@@ -82,15 +82,15 @@ def rerun_commands(gap: dict[str, Any]) -> list[tuple[str, str]]:
 def _command(
     place: dict[str, str], asked: dict[str, list[str]], without: list[str], put_in: str
 ) -> str:
-    closed = [*asked["without"], *without]
-    fixed = [*asked["with"], *([put_in] if put_in else [])]
+    barred = [*asked["without"], *without]
+    effects = [*asked["with"], *([put_in] if put_in else [])]
     label = "".join(f"-without-{name}" for name in without)
     label += f"-with-{put_in}" if put_in else ""
     words = ["hystbench", "gap", place["dataset"], "--model", place["model"]]
     words += ["--out", f"{place['out'].rstrip('/')}{label}"]
-    for name in closed:
+    for name in barred:
         words += ["--without", name]
-    for name in fixed:
+    for name in effects:
         words += ["--with", name]
     return shlex.join(words)
 

@@ -20,13 +20,13 @@ from hystbench.gap.fitting.on_records import on_records
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.uncertainty import on_more_samples, standard_errors
-from hystbench.gap.holdout.withdraw import Decided
+from hystbench.gap.holdout.withdraw import ToShow
 from hystbench.gap.inside.one_coordinate import best_host, one_coordinate
 from hystbench.gap.judge_and_tell import Decision
 from hystbench.gap.naming.ladder import FitResult
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.records.observer import observed, observer_for
+from hystbench.gap.records.observer import observer_for, with_observer_signal
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model
@@ -35,10 +35,10 @@ from hystbench.units import sized
 
 def with_observer(
     evidence: Evidence,
-    decide: Callable[[Evidence, Model, Asked], tuple[Decision, Decided]],
+    decide: Callable[[Evidence, Model, Asked], tuple[Decision, ToShow]],
     asked: Asked,
-    plain: Decided,
-) -> tuple[Decision, Decided] | None:
+    plain: ToShow,
+) -> tuple[Decision, ToShow] | None:
     """Decide anew beside an observer, where a free run may go astray.
 
     That stands if forces are named then, inside the mass alone, and a free run does not
@@ -51,24 +51,24 @@ def with_observer(
     decide : callable
         Decides on records beside a base.
     asked : Asked
-    plain : Decided
+    plain : ToShow
         What was decided on them, which stands where hold-out records take names back.
 
     Returns
     -------
-    tuple of Decision and Decided, or None
+    tuple of Decision and ToShow, or None
         None where it does not stand, or no force moves the device.
     """
     damper, say = observer_for(evidence), asked.say
     if damper is None:
         return None
-    own = observed(evidence, damper)
+    own = with_observer_signal(evidence, damper)
     mass = mass_on_a_spring(own)
     if mass is None:
         return None
     say("a free run may go astray: naming forces beside an observer")
     forces = replace(asked, vocabulary=of_forces(asked.vocabulary))
-    decision, decided = decide(own, mass, forces)
+    decision, to_show = decide(own, mass, forces)
     elsewhere = any(item.place != "inside" for item in decision.state.added)
     if decision.content["verdict"] != "named" or elsewhere:
         say("beside an observer none is named")
@@ -77,10 +77,10 @@ def with_observer(
     if not free.may_be_grown_noise:
         say("a free run speaks against what is named beside an observer")
         return None
-    content = told(decided.content, evidence, damper, free)
+    content = told(to_show.content, evidence, damper, free)
     decision = replace(decision, content=content, experiment=None)
     return decision, replace(
-        decided,
+        to_show,
         fitted=decision,
         content=content,
         vocabulary=asked.vocabulary,
@@ -112,11 +112,11 @@ def of_forces(vocabulary: Vocabulary) -> Vocabulary:
     An observer acts on the mass. What lies before the mass or behind it would change
     the observer's force, which was measured.
     """
-    closed = {*vocabulary.without, *vocabulary.fixed}
+    barred = {*vocabulary.without, *vocabulary.put_in}
     elsewhere = tuple(
         name
         for name, effect in effects().items()
-        if type(effect).in_mechanism is Effect.in_mechanism and name not in closed
+        if type(effect).in_mechanism is Effect.in_mechanism and name not in barred
     )
     return replace(vocabulary, without=(*vocabulary.without, *elsewhere))
 

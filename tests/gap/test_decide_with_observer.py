@@ -10,14 +10,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hystbench.gap import run
+from hystbench.gap import run, stages
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.linear import IdentifiedModel
+from hystbench.gap.decide_with_observer import FreeRun, with_observer
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.fitting.state import Free
-from hystbench.gap.observed import FreeRun, with_observer
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.records.observer import observed, observer_for
+from hystbench.gap.records.observer import observer_for, with_observer_signal
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model, load_model
 from hystbench.quantities import Quantities
@@ -87,7 +87,7 @@ def test_beside_an_observer_the_true_machine_leaves_noise_and_alone_it_does_not(
     kept_in_place,
 ):
     damper = observer_for(kept_in_place)
-    own = observed(kept_in_place, damper)
+    own = with_observer_signal(kept_in_place, damper)
     assert left(true_model(), kept_in_place.fit) > 2 * NOISE
     assert left(true_model(damper), own.fit) < 1.1 * NOISE
 
@@ -122,14 +122,14 @@ def test_both_jobs_of_the_workflow_give_the_same(
 ):
     plain = replace(decided[1], damper=0.0)
     both = decided[0], replace(decided[1], plain=plain)
-    monkeypatch.setattr(run, "decide", lambda *args: both)
+    monkeypatch.setattr(stages, "decide", lambda *args: both)
     first = true_model()
-    run.decide_in(tmp_path, kept_in_place.deciding, first, Asked())
-    kept = run._decided_in(tmp_path, kept_in_place, decided[0].base)
+    stages.decide_in(tmp_path, kept_in_place.deciding, first, Asked())
+    kept = stages._to_show_in(tmp_path, kept_in_place, decided[0].base)
     assert kept.first == decided[1].first
     assert (kept.damper, kept.plain.damper) == (decided[1].damper, 0.0)
     assert kept.plain.fitted.base.chain == plain.fitted.base.chain
-    run.show_in(tmp_path, kept_in_place, decided[0].base)
+    stages.show_in(tmp_path, kept_in_place, decided[0].base)
     _, shown = run.show(kept_in_place, decided[1])
     again = json.loads((tmp_path / "gap.json").read_text())
     assert again["gap"]["after"] == pytest.approx(shown.content["gap"]["after"])
@@ -156,7 +156,7 @@ def test_what_was_decided_without_it_stands_where_names_are_taken_back(
 
 
 @pytest.mark.parametrize(
-    ("verdict", "fixed", "identified", "tries"),
+    ("verdict", "put_in", "identified", "tries"),
     [
         ("unnamed", (), True, True),
         ("named", (), True, False),
@@ -166,7 +166,7 @@ def test_what_was_decided_without_it_stands_where_names_are_taken_back(
     ],
 )
 def test_it_is_tried_where_nothing_is_named_beside_an_identified_base(
-    kept_in_place, monkeypatch, verdict, fixed, identified, tries
+    kept_in_place, monkeypatch, verdict, put_in, identified, tries
 ):
     first = SimpleNamespace(content={"verdict": verdict}), None
     tried = []
@@ -175,7 +175,7 @@ def test_it_is_tried_where_nothing_is_named_beside_an_identified_base(
     chain = (block("mechanism", mass=1.0, damping=1.0, stiffness=1.0),)
     kind = IdentifiedModel if identified else Model
     base = kind("base", FORCE, VELOCITY, chain, free=("mechanism.mass",))
-    asked = Asked(vocabulary=Vocabulary.of(fixed=fixed))
+    asked = Asked(vocabulary=Vocabulary.of(put_in=put_in))
     assert run.decide(kept_in_place, base, asked) is first
     assert bool(tried) == tries
 
@@ -213,7 +213,7 @@ def test_a_velocity_is_taken_from_a_position():
     about = Channel("force", "N"), Channel("position", "mm"), "twin"
     one = Record("swing", DT, 3.0 * swing, swing, *about)
     given = evidence_of("swing", [one], "linear", None, "force", "position")
-    (fit,) = observed(given, 2.0).fit
+    (fit,) = with_observer_signal(given, 2.0).fit
     velocity = rate * np.cos(rate * time)
     assert fit.injected == pytest.approx(2.0 * velocity, abs=1e-2 * rate)
     assert observer_for(given) == pytest.approx(3.0 / rate, rel=0.01)
@@ -230,13 +230,16 @@ def test_a_motion_that_is_counted_against_the_force_is_drawn_the_other_way(
     other = replace(kept_in_place, fit=tuple(turned))
     damper = observer_for(kept_in_place)
     assert observer_for(other) == pytest.approx(damper)
-    both = (observed(given, damper).fit for given in (kept_in_place, other))
+    both = (with_observer_signal(given, damper).fit for given in (kept_in_place, other))
     for mine, its in zip(*both, strict=True):
         np.testing.assert_allclose(mine.injected, its.injected)
 
 
 def test_a_staircase_holds_the_mean_over_its_step(kept_in_place):
     held = replace(kept_in_place, input_hold="zero-order")
-    (one, *_), (other, *_) = observed(kept_in_place, 2.0).fit, observed(held, 2.0).fit
+    (one, *_), (other, *_) = (
+        with_observer_signal(kept_in_place, 2.0).fit,
+        with_observer_signal(held, 2.0).fit,
+    )
     between = (one.injected[:-1] + one.injected[1:]) / 2
     np.testing.assert_allclose(other.injected[:-1], between)

@@ -30,7 +30,7 @@ from hystbench.model import Model
 
 
 @dataclass(frozen=True)
-class BuiltIn:
+class PutIn:
     """A simulator with effects that its user put in."""
 
     alone: Model
@@ -49,15 +49,15 @@ class BuiltIn:
         return {"alone": self.alone.to_mapping(), "effects": list(self.effects)}
 
     @classmethod
-    def of_mapping(cls, content: Mapping[str, Any]) -> BuiltIn:
+    def of_mapping(cls, content: Mapping[str, Any]) -> PutIn:
         """Give back what :meth:`mapping` gave."""
         alone = Model.from_mapping(content["alone"], "the simulator alone")
         return cls(alone, tuple(content["effects"]))
 
 
-def build_in(
+def with_put_in(
     base: Model, evidence: Evidence, names: Sequence[str], say: Say = silent
-) -> tuple[Model, BuiltIn | None]:
+) -> tuple[Model, PutIn | None]:
     """Put effects into a simulator and fit them to the fit records, one by one.
 
     Whether an effect pays is not asked. Each takes the place and the form that score
@@ -77,7 +77,7 @@ def build_in(
     -------
     Model
         The simulator with the effects.
-    BuiltIn or None
+    PutIn or None
         None where no effect is named.
 
     Raises
@@ -116,7 +116,7 @@ def build_in(
     own = {f"{labels[item.block]}.{item.parameter}" for item in state.free}
     free = tuple(name for name in model.free if name in own)
     title = f"{base.name} with {' and '.join(names)}"
-    return replace(model, name=title, free=free), BuiltIn(base, told)
+    return replace(model, name=title, free=free), PutIn(base, told)
 
 
 def _with(state: ModelState, score: Score, name: str) -> ModelState:
