@@ -65,7 +65,7 @@ def search_and_judge(
     asked: Asked,
     quantities: Quantities | None = None,
 ) -> Decision:
-    """Locate the gap, name what is missing and add it.
+    """Name what is missing and add it, then give the verdict on that.
 
     A given base is first taken as it is. Where re-tuning it might replace an effect, or
     pay beside one, the search is repeated with its numbers and timing free within their
