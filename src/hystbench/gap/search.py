@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cache, cached_property, partial
 
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.gpi import again_words, is_another
@@ -205,62 +205,70 @@ class GapSearch:
         say("the base may have the poles that were named: they are no effect")
         return replace(begun, chain=chain, tried=found.tried)
 
+    @cached_property
+    def chain_of(self) -> Callable[[ModelState, Floor], Named]:
+        """Names effects in a chain; kept, as it is slow and asked for often."""
+        return cache(lambda start, floor: add_effects(start, floor, self.asked))
+
+    def in_a_chain(self, found: BesideBase) -> Named:
+        """Give the effects that are named in a chain, whatever forces there are."""
+        return self.chain_of(found.start, found.floor)
+
     def beside(self, base: Model, kinds: tuple[Kind, ...] = ()) -> BesideBase:
         """Name in a chain and inside the dynamics, on the records as they are.
 
         Forces are tried in hosts of some kinds; in all by default.
         """
-        say, share = self.asked.say, self.asked.unnamed_share
-        quantities, identified = self.quantities, is_identified_linear(base)
-
-        @cache
-        def named(start: ModelState, floor: Floor) -> Named:
-            return add_effects(start, floor, self.asked)
-
-        def in_a_chain(found: BesideBase) -> Named:
-            return named(found.start, found.floor)
-
-        def without_its_leads(found: BesideBase) -> BesideBase:
-            return self.without_leads(found, augmented(base, in_a_chain(found).state))
-
         found = self.started(self.evidence.fit, base)
         known = bool(places_between_halves(found.start.simulation) or found_with(base))
         if known:  # what that effect hides of a start is no reason to try forces
-            found = without_its_leads(found)
+            found = self.without_leads_beside_chain(found)
+        if self.quantities is None:
+            return self.with_chain(found)
         # A base of two filters tells that a curve lies between them. One that was found
         # beside an effect tells that there is this effect. So the chain is tried first.
         # So it is beside a given base: forces must beat that.
-        if known or (quantities is not None and not identified):
-            chain = in_a_chain(found)
-            enough = known and _why_enough(found.start, chain.state, found.floor, share)
-            none_could = enough or most_inside(chain, found.floor) < 1
-            if quantities is not None and none_could:
-                say("no force could gain what matters, so none is tried inside")
-                quantities = None
-        if quantities is not None:
-            found = self.with_forces(found, quantities, in_a_chain, kinds)
+        chain_first = known or not is_identified_linear(base)
+        if chain_first and self.none_could_gain(found, known):
+            self.asked.say("no force could gain what matters, so none is tried inside")
+        else:
+            found = self.with_forces(found, self.quantities, kinds)
+        return self.with_chain(found)
+
+    def none_could_gain(self, found: BesideBase, known: bool) -> bool:
+        """Tell whether a chain leaves nothing to forces.
+
+        Beside an effect that the base tells of, it is enough if it leaves little.
+        """
+        chain, share = self.in_a_chain(found), self.asked.unnamed_share
+        enough = known and _why_enough(found.start, chain.state, found.floor, share)
+        return bool(enough) or most_inside(chain, found.floor) < 1
+
+    def with_chain(self, found: BesideBase) -> BesideBase:
+        """Name in a chain too, unless forces are enough; what does better stands."""
+        inside, say, floor = found.inside, self.asked.say, found.floor
         # A base that was given is re-tuned where it is a host: that may stand for a
         # chain.
-        inside = found.inside
-        if inside is not None and identified:
-            state = inside.named.state
-            enough = _why_enough(inside.start, state, found.floor, share)
+        if inside is not None and is_identified_linear(found.base):
+            state, share = inside.named.state, self.asked.unnamed_share
+            enough = _why_enough(inside.start, state, floor, share)
             if enough:
                 say(f"inside: {enough}, so no chain of effects is tried")
                 return found
-        if inside is None and in_a_chain(found).state.added:
-            found = without_its_leads(found)
-        chain = in_a_chain(found)
-        if inside is not None and not beats_chain(inside, chain, found.floor, say):
+        if inside is None and self.in_a_chain(found).state.added:
+            found = self.without_leads_beside_chain(found)
+        chain = self.in_a_chain(found)
+        if inside is not None and not beats_chain(inside, chain, floor, say):
             inside = None
         return replace(found, chain=chain, inside=inside)
 
+    def without_leads_beside_chain(self, found: BesideBase) -> BesideBase:
+        """Start without the leads that a base shows with the chain beside it."""
+        chain = self.in_a_chain(found)
+        return self.without_leads(found, augmented(found.base, chain.state))
+
     def with_forces(
-        self,
-        whole: BesideBase,
-        quantities: Quantities,
-        in_a_chain: Callable[[BesideBase], Named],
-        kinds: tuple[Kind, ...],
+        self, whole: BesideBase, quantities: Quantities, kinds: tuple[Kind, ...]
     ) -> BesideBase:
         """Look for forces inside the dynamics, beside what is a record's own.
 
@@ -269,47 +277,27 @@ class GapSearch:
         much, and an offset would take some of it. What does not beat the base is left
         out, with all that was found beside it.
         """
-        found, say = whole, self.asked.say
-
-        def most() -> float:
-            return most_inside(in_a_chain(whole), whole.floor)
-
-        def shows_leads(model: Model) -> bool:
-            nonlocal found
-            before, found = found, self.without_leads(found, model)
-            return found is not before
-
-        def forces(
-            start: ModelState, again: Callable[[Model], bool] = lambda found: False
-        ) -> Inside | None:
-            nonlocal kinds
-            inside = named_inside(
-                whole.base,
-                start,
-                found.floor,
-                quantities,
-                asked=self.asked,
-                most=most,
-                again=again,
-                kinds=kinds,
-            )
+        look = partial(
+            named_inside,
+            whole.base,
+            quantities=quantities,
+            asked=self.asked,
+            most=lambda: most_inside(self.in_a_chain(whole), whole.floor),
+        )
+        shorter, found, inside = whole, None, None
+        while shorter is not found:  # each time fewer records are whole
+            found = shorter
+            inside, shorter = self.forces_and_leads(found, partial(look, kinds=kinds))
             kinds = kinds if inside is None else (inside.host,)
-            return inside
-
-        before = None
-        while found is not before:  # each time fewer records are whole
-            before, inside = found, forces(found.start, shows_leads)
-            if inside is not None:
-                shows_leads(augmented(inside.base, inside.named.state))
         if inside is None:  # no force shows where a motion begins
             found = whole
-        start, floor, own = found.start, found.floor, NONE
+        start, floor, own, say = found.start, found.floor, NONE, self.asked.say
         if (
             not _leaves_little(inside, floor)
             and self.evidence.own_offsets
-            and leaves_much(in_a_chain(whole).state, whole.start, whole.floor)
+            and leaves_much(self.in_a_chain(whole).state, whole.start, whole.floor)
         ):
-            start, inside, own = apart_inside(start, inside, floor, forces, say)
+            start, inside, own = apart_inside(start, inside, floor, look, kinds, say)
         if inside is None:
             return whole
         if not beats_base(inside, start, floor):
@@ -317,6 +305,25 @@ class GapSearch:
             return whole
         start, inside, own = self.not_of_the_input(start, floor, inside, own)
         return replace(found, start=start, inside=inside, own=own, tried=inside)
+
+    def forces_and_leads(
+        self, found: BesideBase, look: Callable[..., Inside | None]
+    ) -> tuple[Inside | None, BesideBase]:
+        """Look for forces once, and start without the leads that these show.
+
+        If the first host shows leads, the look ends with nothing: on shorter records it
+        is to begin again.
+        """
+        starts = [found]
+
+        def shows_leads(model: Model) -> bool:
+            starts.append(self.without_leads(found, model))
+            return starts[-1] is not found
+
+        inside = look(found.start, found.floor, again=shows_leads)
+        if inside is not None:
+            shows_leads(augmented(inside.base, inside.named.state))
+        return inside, starts[-1]
 
     def not_of_the_input(
         self, start: ModelState, floor: Floor, inside: Inside, own: OwnValues

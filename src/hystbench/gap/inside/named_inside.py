@@ -222,7 +222,8 @@ def apart_inside(
     start: ModelState,
     inside: Inside | None,
     floor: Floor,
-    look: Callable[[ModelState], Inside | None],
+    look: Callable[..., Inside | None],
+    kinds: Collection[Kind],
     say: Say,
 ) -> tuple[ModelState, Inside | None, OwnValues]:
     """Look for forces again without the offsets that records have of their own.
@@ -239,7 +240,9 @@ def apart_inside(
         What was found on them as they are.
     floor : Floor
     look : callable
-        Finds forces beside a base.
+        Finds forces beside a base, as :func:`named_inside` of start, floor and kinds.
+    kinds : collection of str
+        Hosts that are tried, till forces are found in one; all if it is empty.
     say : callable
 
     Returns
@@ -259,7 +262,8 @@ def apart_inside(
             break
         say("inside: records have an offset of their own: looking beside that")
         apart = on_records(start, own.taken_off(start.records, start.hold))
-        again, before = look(apart), [item.effect for item in state.added]
+        again = look(apart, floor, kinds=kinds)
+        before = [item.effect for item in state.added]
         state = apart if again is None else again.named.state
         value = score_of(state, score) + own.charge
         if again is None or value >= least:
@@ -268,6 +272,7 @@ def apart_inside(
         found, least = (apart, again, replace(own, share=share)), value
         if [item.effect for item in state.added] == before:
             break  # looking has told all that it can
+        kinds = (again.host,)
     return found
 
 
