@@ -20,7 +20,7 @@ from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.refit import added, finished, refit
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, ModelState
-from hystbench.gap.fitting.tried import Seen, on_all_records, seen
+from hystbench.gap.fitting.tried import on_all_records, seen
 from hystbench.gap.fitting.variant_search import Trial, fine, fine_each
 from hystbench.gap.naming.rivals import (
     beside_their_own_shapes,
@@ -83,90 +83,109 @@ def rank(
         Finalists first, then the others, then those that declined.
     """
     known = tuple(among(state.offered).values()) if known is None else tuple(known)
-    now = score_of(state, score)
-    places = {effect.name: effect.place for effect in known}
-    looks, why_not = _first_looks(known, state, score)
-    worth = needs * (1 - BEHIND)
-    found, refused = on_all_records(
-        looks, now, lambda most: max(min(_near(most), most * (1 - BEHIND)), worth)
-    )
-    why_not |= {name: refused[name] for name in places if name in refused}
-    declined = [Candidate(x, places[x], declined=why) for x, why in why_not.items()]
+    now, worth = score_of(state, score), needs * (1 - BEHIND)
+    found, declined = _first_looks(known, state, score, now, worth)
     if not found:
         return tuple(declined)
-    best = min(trial.score for trial in found)
-    least = max(_near(now - best), worth)
-    refined = _refined(found, now, least)
-    of_effect: dict[str, Trial] = {}
-    tested: dict[str, list[TriedVariant]] = {}
-    for trial in refined:
-        of_effect.setdefault(trial.variant.effect, trial)
-        own, one = tested.setdefault(trial.variant.effect, []), _tested(trial)
-        # The same law from another start is no other law: the better one counts.
-        if all(one[:-1] != other[:-1] for other in own):
-            own.append(one)
-    enough = now - max((now - best) * (1 - BEHIND), worth)
-    likely = [
-        trial
-        for number, trial in enumerate(of_effect.values())
-        if (number < FINALISTS and trial.score < enough)
-        or (trial.variant.effect == SHAPE and now - trial.score > PAYS)
-    ]
-    shown = {trial.variant.effect for trial in likely}
-    likely += [
-        trial
-        for trial in refined
-        if trial.variant.begun
-        and not any(trial is item for item in likely)
-        and (not state.added or trial.variant.effect in shown)
-    ]
-    likely += _of_fewer_numbers(refined, [of_effect[x] for x in sorted(shown)], now)
+    most = now - min(trial.score for trial in found)
+    refined = _refined(found, now, max(_near(most), worth))
+    likely = _likely(refined, now, max(most * (1 - BEHIND), worth), bool(state.added))
     # A form that bends far on all records may still foretell none of them.
     judged = best_forms(
         _each_judged(likely, refined, state, score, now, folds),
         lambda item: on_folds(item, state, score).score,
     )
     finalists = {trial.variant.effect for trial in likely}
-    judged += [
-        _candidate(trial, now)
-        for effect, trial in of_effect.items()
-        if effect not in finalists
-    ]
-    judged = [replace(x, variants=tuple(tested[x.effect])) for x in judged]
+    others = [x for x in _best_of_each(refined) if x.variant.effect not in finalists]
+    judged += [_candidate(trial, now) for trial in others]
+    judged = [replace(x, variants=_laws_of(x.effect, refined)) for x in judged]
     candidates = in_order(_not_cut_short(x, state) for x in (*declined, *judged))
-    exact = [
-        item.effect
-        for item in candidates[:EXACT]
-        if item.score < candidates[0].score + NEAR
-    ]
-    again = each_candidate(
-        lambda item: exactly(item, score, now),
-        [item for item in candidates if item.effect in exact],
-        state,
-        "exact refits",
-    )
-    refitted = {item.effect: item for item in again}
-    candidates = in_order(refitted.get(item.effect, item) for item in candidates)
+    candidates, exact = _best_exact(candidates, state, score, now)
     candidates = beside_their_own_shapes(candidates, exact, state, score.floor)
-    if not folds:
-        candidates = by_all_their_laws(candidates)
-        return tuple(beyond_simpler_laws(candidates, state, score))
-    candidates = _first_exact(candidates, exact, state, score, now)
+    if folds:
+        candidates = _first_exact(candidates, exact, state, score, now)
     candidates = beyond_simpler_laws(by_all_their_laws(candidates), state, score)
-    return tuple(simplest_of_a_tie(candidates, exact, needs))
+    return tuple(simplest_of_a_tie(candidates, exact, needs) if folds else candidates)
 
 
 def _first_looks(
-    known: Sequence[Effect], state: ModelState, score: Score
-) -> tuple[list[Seen], dict[str, str]]:
-    """Try effects on some samples; tell why not, by name."""
-    names, have = [item.name for item in known], {x.effect for x in state.added}
-    why_not = {name: "added already" for name in names if name in have}
-    if SHAPE in names and _loop_is_free(state):
+    known: Sequence[Effect], state: ModelState, score: Score, now: float, worth: float
+) -> tuple[Sequence[Trial], list[Candidate]]:
+    """Try effects on some samples, and what gains enough there on all.
+
+    Beside these trials stand the effects that declined.
+    """
+    places, have = {x.name: x.place for x in known}, {x.effect for x in state.added}
+    why_not = {name: "added already" for name in places if name in have}
+    if SHAPE in places and _loop_is_free(state):
         why_not.setdefault(SHAPE, FITTED_WITH_IT)
     asked = [effect for effect in known if effect.name not in why_not]
     looks, declined = seen(asked, state, score)
-    return looks, why_not | declined
+    found, refused = on_all_records(
+        looks, now, lambda most: max(min(_near(most), most * (1 - BEHIND)), worth)
+    )
+    why_not |= declined
+    why_not |= {name: refused[name] for name in places if name in refused}
+    return found, [Candidate(x, places[x], declined=y) for x, y in why_not.items()]
+
+
+def _best_of_each(refined: Sequence[Trial]) -> list[Trial]:
+    """Give the first trial of each effect: the best, as they are in order."""
+    first: dict[str, Trial] = {}
+    for trial in refined:
+        first.setdefault(trial.variant.effect, trial)
+    return list(first.values())
+
+
+def _likely(
+    refined: Sequence[Trial], now: float, least: float, beside: bool
+) -> list[Trial]:
+    """Choose the trials that are refitted: several of an effect, if need be.
+
+    First the best of each effect that gains nearly as much as any. Then those that
+    begin at numbers of their own; beside other effects only of those chosen first. Then
+    laws of fewer numbers of these.
+    """
+    likely = [
+        trial
+        for number, trial in enumerate(_best_of_each(refined))
+        if (number < FINALISTS and trial.score < now - least)
+        or (trial.variant.effect == SHAPE and now - trial.score > PAYS)
+    ]
+    shown = {trial.variant.effect: trial for trial in likely}
+    begun = [
+        trial
+        for trial in refined
+        if trial.variant.begun
+        and shown.get(trial.variant.effect) is not trial
+        and (not beside or trial.variant.effect in shown)
+    ]
+    fewer = _of_fewer_numbers(refined, [shown[x] for x in sorted(shown)], now)
+    return [*likely, *begun, *fewer]
+
+
+def _laws_of(effect: str, refined: Sequence[Trial]) -> tuple[TriedVariant, ...]:
+    """Give what was tried of an effect, each law by the better of its starts."""
+    laws: dict[tuple[object, ...], TriedVariant] = {}
+    for trial in refined:
+        if trial.variant.effect == effect:
+            one = _tested(trial)
+            laws.setdefault(one[:-1], one)
+    return tuple(laws.values())
+
+
+def _best_exact(
+    candidates: Sequence[Candidate], state: ModelState, score: Score, now: float
+) -> tuple[list[Candidate], list[str]]:
+    """Simulate the best candidates exactly. Beside all, in order, stand their names."""
+    close = [
+        item for item in candidates[:EXACT] if item.score < candidates[0].score + NEAR
+    ]
+    again = each_candidate(
+        lambda item: exactly(item, score, now), close, state, "exact refits"
+    )
+    exact = {item.effect: item for item in again}
+    return in_order(exact.get(item.effect, item) for item in candidates), list(exact)
 
 
 def _first_exact(
