@@ -7,7 +7,8 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.possible_hosts import further_modes_of, hosts
+from hystbench.gap.inside.possible_hosts import hosts
+from hystbench.gap.inside.two_masses import further_modes_of
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record

@@ -8,15 +8,10 @@ in place of a base that does something else, which is then said.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import replace
-from functools import cache
-from itertools import product
-from typing import Any
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
 
-import numpy as np
-
-from hystbench.blocks.attached_mass import AttachedMass
 from hystbench.blocks.base import Block
 from hystbench.blocks.force import Force
 from hystbench.blocks.gain import Gain
@@ -31,7 +26,7 @@ from hystbench.gap.fitting.edit_chain import rearranged
 from hystbench.gap.fitting.least_squares import Fitted, fitted
 from hystbench.gap.fitting.on_records import free_within
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.first_order import both_readings, of_first_order
 from hystbench.gap.inside.given_hosts import as_given, held_about, is_seen_moving
 from hystbench.gap.inside.host import Host, Kind
@@ -39,7 +34,6 @@ from hystbench.gap.inside.host_places import host_of, host_places, own_numbers
 from hystbench.gap.inside.joint import structure
 from hystbench.gap.inside.linear_stores import store_hosts
 from hystbench.gap.inside.one_coordinate import (
-    BEGUN,
     MOTIONS,
     best_host,
     free_masses,
@@ -48,7 +42,8 @@ from hystbench.gap.inside.one_coordinate import (
     same_as,
 )
 from hystbench.gap.inside.timing import in_front, with_free_timing
-from hystbench.gap.thresholds import PARAMETER, PAYS
+from hystbench.gap.inside.two_masses import further_modes_of, of_two_masses
+from hystbench.gap.thresholds import PARAMETER
 from hystbench.quantities import Quantities
 
 
@@ -58,10 +53,12 @@ def hosts(
     identified: bool,
     score: Score,
     exact: bool = False,
-    timed: bool = False,
     kinds: Collection[Kind] = (),
 ) -> Iterator[Host]:
     """Give the linear models that forces are tried in.
+
+    Of an identified base that takes its input late or early, hosts behind that timing
+    come first, then hosts without it.
 
     Parameters
     ----------
@@ -74,85 +71,128 @@ def hosts(
     score : Score
     exact : bool
         Whether a given base calls its numbers exact.
-    timed : bool
-        Whether the input was moved in time already.
     kinds : collection of str
         Those that are wanted; all by default.
     """
-
-    def wanted(*some: Kind) -> bool:
-        return not kinds or any(kind in kinds for kind in some)
-
-    @cache
-    def modes() -> ModelState | None:
-        """Give the base as a structure where a force makes a motion."""
-        if quantities.causality not in ("force to motion", "unknown"):
-            return None
-        known = quantities.output in MOTIONS
-        return structure(start, quantities.output if known else "position", identified)
-
-    about = quantities, identified, score
+    wanted = PossibleHosts(start, quantities, identified, score, exact, kinds)
     delay = start.chain[0]
-    if identified and isinstance(delay, InputDelay):
-        for host in hosts(_behind(start), *about, timed=True, kinds=kinds):
-            state = _in_front(delay, start, host.fitted.state)
-            alone = _in_front(delay, start, host.alone)
-            other = host.unfitted_start
-            other = other and _in_front(delay, start, other)
-            whole = replace(host.fitted, state=state)
-            yield replace(host, alone=alone, fitted=whole, unfitted_start=other)
-        # A force that is not linear turns the phase: it may be what looked like timing.
-        yield from hosts(_without_timing(start), *about, kinds=kinds)
+    if not (identified and isinstance(delay, InputDelay)):
+        yield from wanted.every()
         return
-    stored = quantities.causality in ("storage", "unknown")
-    if stored and not exact and wanted("stores"):
-        yield from store_hosts(start, identified, score)
-    # Of a mass that follows at once only its spring is seen: a force inside is then a
-    # curve or a loop of what drives it, which a chain has.
-    shows_a_pole = not all(isinstance(block, Gain) for block in start.chain)
-    moves = shows_a_pole or quantities.causality == "motion to force"
-    of_masses = wanted("coordinate", "loose mass", "two masses")
-    if identified and moves and not of_many_modes(start) and of_masses:
-        begun = one_coordinate(start.records, quantities, start.hold)
-        best = best_host(begun, score)
-        if best is not None and is_seen_moving(best.state):
-            words = "a model of one coordinate stands in place of the linear base"
-            if wanted("coordinate"):
-                yield Host(best.state, best, words)
-                if not timed:
-                    yield from _in_time(best, score)
-                if quantities.output not in MOTIONS and of_first_order(start):
-                    yield from both_readings(best.state, score)
-            if wanted("loose mass"):
-                yield from _loose(best.state, score, words)
-            # Two masses that both swing are a structure that is driven at its joint.
-            if wanted("two masses") and not _of_two_modes(modes()):
-                yield from _of_two(best, further_modes_of(start), score)
-    behind_timing = start.chain[isinstance(delay, InputDelay) :]
-    of_stores = behind_timing and all(isinstance(x, Store) for x in behind_timing)
-    if of_stores and not identified:
-        words = "the base is stores already"
-        yield Host(start, fitted(start, score), words, kind="stores")
-        return
-    if not identified and wanted("given"):
+    for host in replace(wanted, start=_behind(start), timed=True).every():
+        state = _in_front(delay, start, host.fitted.state)
+        alone = _in_front(delay, start, host.alone)
+        other = host.unfitted_start
+        other = other and _in_front(delay, start, other)
+        whole = replace(host.fitted, state=state)
+        yield replace(host, alone=alone, fitted=whole, unfitted_start=other)
+    # A force that is not linear turns the phase: it may be what looked like timing.
+    yield from replace(wanted, start=_without_timing(start)).every()
+
+
+@dataclass(frozen=True)
+class PossibleHosts:
+    """Linear models that stand for a base, as told in :func:`hosts`, by their kinds."""
+
+    start: ModelState
+    quantities: Quantities
+    identified: bool
+    score: Score
+    exact: bool
+    kinds: Collection[Kind]
+    timed: bool = False
+    """Whether the input was moved in time already."""
+
+    def wants(self, *some: Kind) -> bool:
+        """Tell whether hosts of one of these kinds are wanted."""
+        return not self.kinds or any(kind in self.kinds for kind in some)
+
+    def every(self) -> Iterator[Host]:
+        """Give those of each kind that is wanted."""
+        if self.wants("stores"):
+            yield from self.fitted_stores()
+        if self.wants("coordinate", "loose mass", "two masses"):
+            yield from self.masses()
+        delays = isinstance(self.start.chain[0], InputDelay)
+        behind_timing = self.start.chain[delays:]
+        of_stores = behind_timing and all(isinstance(x, Store) for x in behind_timing)
+        if of_stores and not self.identified:
+            own = fitted(self.start, self.score)
+            yield Host(self.start, own, "the base is stores already", kind="stores")
+            return
+        if self.wants("given"):
+            yield from self.given()
+        if self.wants("structure"):
+            yield from self.structures()
+
+    def fitted_stores(self) -> Iterator[Host]:
+        """Give stores, unless the base calls its numbers exact."""
+        if self.quantities.causality in ("storage", "unknown") and not self.exact:
+            yield from store_hosts(self.start, self.identified, self.score)
+
+    def masses(self) -> Iterator[Host]:
+        """Give masses that are fitted to the records of an identified base."""
+        # Of a mass that follows at once only its spring is seen: a force inside is then
+        # a curve or a loop of what drives it, which a chain has.
+        shows_a_pole = not all(isinstance(block, Gain) for block in self.start.chain)
+        moves = shows_a_pole or self.quantities.causality == "motion to force"
+        if not (self.identified and moves) or of_many_modes(self.start):
+            return
+        begun = one_coordinate(self.start.records, self.quantities, self.start.hold)
+        best = best_host(begun, self.score)
+        if best is None or not is_seen_moving(best.state):
+            return
+        words = "a model of one coordinate stands in place of the linear base"
+        if self.wants("coordinate"):
+            yield Host(best.state, best, words)
+            if not self.timed:
+                yield from _in_time(best, self.score)
+            if self.quantities.output not in MOTIONS and of_first_order(self.start):
+                yield from both_readings(best.state, self.score)
+        if self.wants("loose mass"):
+            yield from _loose(best.state, self.score, words)
+        # Two masses that both swing are a structure that is driven at its joint.
+        if self.wants("two masses") and not _of_two_modes(self.modes):
+            yield from of_two_masses(best, further_modes_of(self.start), self.score)
+
+    def given(self) -> Iterator[Host]:
+        """Give what a given base holds, or one coordinate that simulates the same."""
+        if self.identified:
+            return
         words = "the base holds what forces act in"
-        same = own_mechanism(start)
+        same = own_mechanism(self.start)
         if same is None:
             words = (
                 "a model of one coordinate that simulates the same stands for the base"
             )
-            same = same_as(start, quantities, score.floor)
+            same = same_as(self.start, self.quantities, self.score.floor)
         if same is not None:
-            own = same, held_about(same), score, words, start.free, exact
-            yield from as_given("given", *own)
-    whole_base = modes() if wanted("structure") else None
-    words = "the modes of the base move one joint"
-    if whole_base is not None and identified:
-        best = fitted(whole_base, score)
-        yield Host(best.state, best, words, kind="structure")
-    elif whole_base is not None:
-        own = whole_base, whole_base, score, words, start.free, exact
-        yield from as_given("structure", *own)
+            yield from self.as_it_is("given", same, held_about(same), words)
+
+    @cached_property
+    def modes(self) -> ModelState | None:
+        """The base as a structure, where a force makes a motion."""
+        if self.quantities.causality not in ("force to motion", "unknown"):
+            return None
+        output = self.quantities.output
+        seen = output if output in MOTIONS else "position"
+        return structure(self.start, seen, self.identified)
+
+    def structures(self) -> Iterator[Host]:
+        """Give the modes of the base, if it has any that move one joint."""
+        modes, words = self.modes, "the modes of the base move one joint"
+        if modes is not None and self.identified:
+            best = fitted(modes, self.score)
+            yield Host(best.state, best, words, kind="structure")
+        elif modes is not None:
+            yield from self.as_it_is("structure", modes, modes, words)
+
+    def as_it_is(
+        self, kind: Kind, state: ModelState, about: ModelState, words: str
+    ) -> Iterator[Host]:
+        """Give a host that does what a given base does, then the same fitted."""
+        own = self.score, words, self.start.free, self.exact
+        yield from as_given(kind, state, about, *own)
 
 
 def _of_two_modes(state: ModelState | None) -> bool:
@@ -203,19 +243,6 @@ def _with_timing(state: ModelState) -> ModelState:
         state = state.with_values({place: {"blend": 0.0}})
         state = replace(state, free=tuple(free))
     return with_free_timing(state)
-
-
-def _of_two(one: Fitted, frequencies: Sequence[float], score: Score) -> Iterator[Host]:
-    """Give a mass with another one attached, where that pays as an effect does."""
-    state = one.state
-    block = state.chain[0]
-    if not (frequencies and isinstance(block, Mechanism)):
-        return
-    loose = free_masses(state.records, block.output, state.hold)
-    best = best_host(two_masses([state, *loose], frequencies), score)
-    if best is not None and best.score < one.score - PAYS:
-        words = "a mass with another one attached stands in place of the linear base"
-        yield Host(best.state, best, words, kind="two masses")
 
 
 def _behind(start: ModelState) -> ModelState:
@@ -271,97 +298,3 @@ def of_many_modes(start: ModelState) -> bool:
         isinstance(block, TransferFunction) and len(block.denominator) > HIGHEST + 1
         for block in start.chain
     )
-
-
-SHARES = (0.2, 0.5, 0.8)
-"""Shares of the mass that is attached."""
-RATIO = 0.05
-"""Damping ratio with which they are begun."""
-
-
-def two_masses(
-    hosts: Iterable[ModelState], frequencies: Sequence[float]
-) -> Iterator[ModelState]:
-    """Write masses as two of as much together, which swing against each other.
-
-    What friction or a clearance holds at the driven side of a flexible shaft acts on
-    the motion of both modes: of the mass as a whole, and of the two against each other.
-
-    Parameters
-    ----------
-    hosts : iterable of ModelState
-        Each begins with a mechanism; further blocks do not depend on what enters them.
-    frequencies : sequence of float
-        At which the two are begun, in rad/s.
-
-    Yields
-    ------
-    ModelState
-        With all numbers of both masses free.
-    """
-    found: list[tuple[float, int, ModelState]] = []
-    for host in hosts:
-        for w, share in product(frequencies, SHARES):
-            begun = _sized(_split(host, w, share))
-            if begun is not None:
-                rest = float(np.mean(begun.residual**2))
-                found.append((rest, len(found), begun))
-    for _, _, state in sorted(found)[:BEGUN]:
-        yield state
-
-
-def further_modes_of(base: ModelState) -> list[float]:
-    """Give the frequencies, in rad/s, at which a base swings beside one coordinate.
-
-    It has two poles of one coordinate; those of a further mode were asked for by
-    folds, as those that only imitate friction are not.
-    """
-    poles = [
-        pole
-        for block in base.chain
-        if isinstance(block, TransferFunction)
-        for pole in np.roots(block.denominator)
-    ]
-    if len(poles) < 3:
-        return []
-    return [float(abs(pole)) for pole in poles if pole.imag > 0]
-
-
-def _split(state: ModelState, frequency: float, share: float) -> ModelState:
-    """Attach a share of the mass of a mechanism to the rest of it."""
-    whole, *behind = state.chain
-    assert isinstance(whole, Mechanism)  # noqa: S101  (for the type checker)
-    own, attached = (1 - share) * whole.mass, share * whole.mass
-    reduced = own * share
-    other = AttachedMass(
-        mass=attached,
-        damping=2 * RATIO * frequency * reduced,
-        stiffness=frequency**2 * reduced,
-    )
-    split = rearranged(
-        state,
-        (replace(whole, mass=own), other, *behind),
-        {k: k + (k > 0) for k in range(len(state.chain))},
-    )
-    free = (*split.free, *(Free(1, name) for name in AttachedMass.parameters()))
-    return replace(split, free=free).settled()
-
-
-def _sized(state: ModelState) -> ModelState | None:
-    """Give two masses the size that fits best; None if they would move backwards."""
-    output = state.sample.take(state.simulation.output)
-    columns = np.column_stack([output, np.ones(len(output))])
-    if not np.all(np.isfinite(columns)):
-        return None
-    gain = float(np.linalg.lstsq(columns, state.measured, rcond=1e-10)[0][0])
-    if gain <= 0.0:
-        return None
-    return state.with_blocks({k: _over(state.chain[k], gain) for k in (0, 1)})
-
-
-def _over(block: Block, gain: float) -> Block:
-    """Divide a mass, its damper and its spring by a number."""
-    numbers: dict[str, Any] = {
-        name: getattr(block, name) / gain for name in ("mass", "damping", "stiffness")
-    }
-    return replace(block, **numbers)
