@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from hystbench.gap.fitting.cross_validation import gain_on_folds
 from hystbench.gap.fitting.edit_chain import last_to, removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.refit import finished
+from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.naming.rank import does_without_itself, rank
 from hystbench.gap.naming.rounds import WIDER, Candidate, Round, SecondLook, in_order
@@ -56,51 +58,88 @@ def reconsidered(
         At each effect in turn; the last one is that at which one gave way, if any did.
     """
     looks: list[SecondLook] = []
-    better: tuple[int, ModelState, tuple[Candidate, ...]] | None = None
+    anew: tuple[ModelState, int, SecondLook] | None = None
     for number, item in enumerate(state.added):
         if item.effect == SHAPE or not removable(state, number):
             continue
-        short = without_effect(state, number)
-        # Other forms of the effect itself would do for a rival what the rival does not.
-        score = make_score(short, floor)
-        as_is, now = finished(state, score)
-        have = tuple(other.effect for other in short.added)
-        near = rivals or _near(item.effect, rounds)
-        is_itself = bool(rivals) or _is_itself(state, item, floor)
-        if item.is_of_many_numbers or not is_itself:
-            near = among(state.offered)
-        known = list(among({item.effect, *near} - set(have)).values())
-        ranking = rank(short, score, known, folds=False)
-        best = ranking[0]
-        own = next((x for x in ranking if x.effect == item.effect and x.state), None)
-        least = now if own is None else min(now, own.score)
-        least = least if is_itself else np.inf  # if it lost itself, any rival wins
-        # A rival of fewer numbers need only score better.
-        numbers = min(x.freedom for x in (state, own and own.state) if x)
-        fewer = best.state is not None and best.state.freedom < numbers
-        enough = least if fewer else least - SCALE
-        if best.state and best.effect != item.effect and best.score < enough:
+        place = _judged_anew(state, number, rounds, floor, rivals)
+        if place.rival is not None:
+            say(f"{item.effect} gives way to {place.look.taken}")
+            return last_to(place.rival, number), (*looks, place.look)
+        if anew is None and (better := place.in_another_form()):
+            form, look = better
+            anew = last_to(form, number), len(looks), look
+        looks.append(place.look)
+    if anew is not None:
+        state, which, look = anew
+        looks[which] = look
+        say(f"{look.instead_of} is fitted anew")
+    return state, tuple(looks)
+
+
+class JudgedPlace(NamedTuple):
+    """An effect and its rivals, all judged in its place."""
+
+    ranking: tuple[Candidate, ...]
+    own: Candidate | None
+    """The effect in that ranking, if it could be judged again."""
+    now: float
+    """What the model scores as it is."""
+    score: Score
+    look: SecondLook
+    """What is told of it, with the model as it is unless a rival takes the place."""
+    rival: ModelState | None
+    """The model in which a rival takes the place, if one does."""
+
+    def in_another_form(self) -> tuple[ModelState, SecondLook] | None:
+        """Give the effect as it was judged again, if that scores clearly better."""
+        own, enough = self.own, self.now - SCALE
+        if own is None or own.state is None or own.score >= enough:
+            return None
+        state, value = finished(own.state, self.score)
+        if value >= enough:
+            return None
+        ranking = _with(self.ranking, own, own.form, value, state)
+        return state, replace(self.look, ranking=ranking)
+
+
+def _judged_anew(
+    state: ModelState,
+    number: int,
+    rounds: Sequence[Round],
+    floor: Floor,
+    rivals: Collection[str],
+) -> JudgedPlace:
+    """Judge an effect and its rivals in its place; tell whether it gives way."""
+    item, short = state.added[number], without_effect(state, number)
+    # Other forms of the effect itself would do for a rival what the rival does not.
+    score = make_score(short, floor)
+    as_is, now = finished(state, score)
+    near = rivals or _near(item.effect, rounds)
+    is_itself = bool(rivals) or _is_itself(state, item, floor)
+    if item.is_of_many_numbers or not is_itself:
+        near = among(state.offered)
+    have = tuple(other.effect for other in short.added)
+    known = list(among({item.effect, *near} - set(have)).values())
+    ranking = rank(short, score, known, folds=False)
+    own = next((x for x in ranking if x.effect == item.effect and x.state), None)
+    best, forms = ranking[0], [(now, state.freedom)]
+    if own is not None and own.state is not None:
+        forms.append((own.score, own.state.freedom))
+    if best.state is not None and best.effect != item.effect:
+        # If it lost itself, any rival wins. One of fewer numbers only has to score
+        # better.
+        least = min(value for value, _ in forms) if is_itself else np.inf
+        fewer = best.state.freedom < min(numbers for _, numbers in forms)
+        if best.score < (least if fewer else least - SCALE):
             on_folds = gain_on_folds(short, best.state, score)
             ranking = (replace(best, gain_on_folds=on_folds), *ranking[1:])
             if on_folds > PAYS:
-                say(f"{item.effect} gives way to {best.effect}")
-                looks.append(SecondLook(item.effect, have, ranking, best.effect))
-                return last_to(best.state, number), tuple(looks)
-        if own is None:
-            looks.append(SecondLook(item.effect, have, ranking, None))
-            continue
-        if better is None and own.state and own.score < now - SCALE:
-            anew, least = finished(own.state, score)
-            if least < now - SCALE:
-                anew = last_to(anew, number)
-                better = len(looks), anew, _with(ranking, own, own.form, least, anew)
-        shown = _with(ranking, own, item.form, now, as_is)
-        looks.append(SecondLook(item.effect, have, shown, item.effect))
-    if better is not None:
-        place, state, ranking = better
-        looks[place] = replace(looks[place], ranking=ranking)
-        say(f"{looks[place].instead_of} is fitted anew")
-    return state, tuple(looks)
+                look = SecondLook(item.effect, have, ranking, best.effect)
+                return JudgedPlace(ranking, own, now, score, look, best.state)
+    shown = ranking if own is None else _with(ranking, own, item.form, now, as_is)
+    look = SecondLook(item.effect, have, shown, None if own is None else own.effect)
+    return JudgedPlace(ranking, own, now, score, look, None)
 
 
 def _is_itself(state: ModelState, item: Added, floor: Floor) -> bool:
