@@ -170,40 +170,61 @@ def best_with_several(trial: HostTrial, every: Sequence[Tried], limit: float) ->
     What a timing does, a lag may do too: no other force is tried without that timing.
     """
     best = min(every, key=trial.cost)
-    numbers = [len(tried.host.fitted.state.free) for tried in every]
-    cheaper = [
-        tried
-        for tried, count in zip(every, numbers, strict=True)
-        if tried.host.charge < best.host.charge
-        or count == min(numbers) < len(best.host.fitted.state.free)
-    ]
     if trial.identified and not trial.wants_more(best):
         return best
-    full = [
-        trial.with_several(tried, limit, lags=tried is best.before) for tried in cheaper
+    tried = [
+        trial.with_several(one, limit, lags=one is best.before)
+        for one in _plainer(every, best.host)
     ]
-    wanting = all(map(trial.wants_more, full))
-    full.append(trial.with_several(best, limit) if wanting else best)
-    if wanting and not trial.identified and limit - best.host.counts > 1:
-        if best.host.kind == "given" and not best.host.charge:
-            full += [
-                trial.with_several(tried, limit)
-                for tried in every
-                if tried.host.charge and tried.host.kind == "given"
-            ]
-        charged = (x.found for x in full if x.host.charge and x.host.kind == "given")
-        free = next(charged, ())
-        full = [
-            tried if tried.host.charge else trial.with_best_beside_free(tried, free)
-            for tried in full
-        ]
+    if all(map(trial.wants_more, tried)):
+        tried.append(trial.with_several(best, limit))
+        if not trial.identified and limit - best.host.counts > 1:
+            tried = _beside_known_numbers(trial, tried, every, best.host, limit)
+    else:
+        tried.append(best)
     fewest = min(
-        (len(tried.best.effects) for tried in full if not tried.host.charge),
-        default=np.inf,
+        (len(one.best.effects) for one in tried if not one.host.charge), default=np.inf
     )
 
-    def cost(tried: Tried) -> float:
-        more = more_for_numbers(tried.host, tried.best.state, fewest)
-        return trial.cost(tried) + more
+    def cost(one: Tried) -> float:
+        more = more_for_numbers(one.host, one.best.state, fewest)
+        return trial.cost(one) + more
 
-    return min(full, key=cost)
+    return min(tried, key=cost)
+
+
+def _plainer(every: Sequence[Tried], than: Host) -> list[Tried]:
+    """Choose hosts of the fewest numbers, fewer than another's, or with less charge."""
+    numbers = [len(one.host.fitted.state.free) for one in every]
+    return [
+        one
+        for one, count in zip(every, numbers, strict=True)
+        if one.host.charge < than.charge
+        or count == min(numbers) < len(than.fitted.state.free)
+    ]
+
+
+def _beside_known_numbers(
+    trial: HostTrial,
+    tried: Sequence[Tried],
+    every: Sequence[Tried],
+    best: Host,
+    limit: float,
+) -> list[Tried]:
+    """Add to hosts of known numbers what does best where these numbers are re-tuned.
+
+    If the best host is a given base as it is, that is looked for first.
+    """
+    if best.kind == "given" and not best.charge:
+        more = (trial.with_several(one, limit) for one in every if _is_re_tuned(one))
+        tried = [*tried, *more]
+    free = next((one.found for one in tried if _is_re_tuned(one)), ())
+    return [
+        one if one.host.charge else trial.with_best_beside_free(one, free)
+        for one in tried
+    ]
+
+
+def _is_re_tuned(tried: Tried) -> bool:
+    """Tell whether a host is a given base whose known numbers were fitted."""
+    return tried.host.charge > 0.0 and tried.host.kind == "given"
