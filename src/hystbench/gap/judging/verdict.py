@@ -60,6 +60,8 @@ def judge_none(
 ) -> tuple[Verdict, str]:
     """Choose the word where no effect was added, and say why.
 
+    Comments number the cases as docs/design.md does; the first that holds decides.
+
     Parameters
     ----------
     left : Leftover
@@ -78,28 +80,32 @@ def judge_none(
     mends : str
         What to write so that the noise is measured.
     """
-    seen = explained_by_box or 0.0
-    none = unnamed.follows_nothing and seen < AS_GOOD
-    new = _why_new(left, unnamed if none else None, explained_by_box)
-    if left.slight and left.foreign and not new:
+    alone = unnamed.follows_nothing and (explained_by_box or 0.0) < AS_GOOD
+    in_no_record = _why_in_no_record(left, unnamed if alone else None, explained_by_box)
+    # 1a. Little is left; a part of it is nothing that an effect or a hysteresis does.
+    if left.slight and left.foreign and not in_no_record:
         return "unnamed", left.foreign
+    # 1b. The base only has wrong numbers.
     if retuned and left.all_before > ABOVE_NOISE and left.share < LOOSE:
         return "parameters", (
             "re-tuning the base within what is free is enough, and no effect pays "
             f"beside it: {left.sentence}"
         )
-    if new and size_follows:
-        return "unnamed", f"{new}, but its size follows signals, as no noise does"
-    if new:
+    # 1c. What is left follows nothing that is recorded.
+    if in_no_record and size_follows:
+        return "unnamed", (
+            f"{in_no_record}, but its size follows signals, as no noise does"
+        )
+    if in_no_record:
         # Only where the noise is not known may all of it be noise, and little.
         noise = floor_is_upper_bound and left.may_be_noise
-        word: Verdict = "no-gap" if noise else "unnamed"
-        return word, (
-            f"{new}: it is noise of another colour, or has a cause that is in no record"
+        return "no-gap" if noise else "unnamed", (
+            f"{in_no_record}: it is noise of another colour, or has a cause that is in "
+            "no record"
         )
+    # 1d. Little is left beside a noise that may hold the whole gap.
     if left.slight and floor_is_upper_bound:
-        follows = unnamed.too_much or size_follows
-        if left.may_be_noise and not follows:
+        if left.may_be_noise and not (unnamed.too_much or size_follows):
             rms = finely(float(np.sqrt((1.0 + left.all_after) / left.output)))
             return "no-gap", (
                 f"no effect pays, and what is left, {rms} of the output's rms, "
@@ -110,6 +116,7 @@ def judge_none(
             "no effect pays; the floor is only an upper bound, so that there is "
             f"no gap cannot be claimed: {mends}"
         )
+    # 1e. Little is left beside a known noise.
     if left.slight and left.all_after <= ABOVE_NOISE:
         return "no-gap", "what is left is noise"
     if left.slight:
@@ -118,6 +125,7 @@ def judge_none(
             f"what is left on the fit records, {100 * share:.2g} % of the output's "
             "rms, is no more than a slightly wrong shape of the base could leave"
         )
+    # 1f. Much is left.
     return "unnamed", (
         f"on the fit records a gap of {left.after:.2g} times the noise power is "
         "there and no effect of the vocabulary pays; "
@@ -158,8 +166,13 @@ def judge_names(left: Leftover, unnamed: Unowned) -> tuple[Verdict, str]:
     return "named", left.sentence
 
 
-def _why_new(left: Leftover, unrelated: Unowned | None, explained: float | None) -> str:
-    """Say why what is left follows nothing that is recorded; or nothing."""
+def _why_in_no_record(
+    left: Leftover, unrelated: Unowned | None, explained: float | None
+) -> str:
+    """Say why the cause of what is left is in no record; or nothing.
+
+    ``unrelated`` is what stays where that follows nothing, and none where it does.
+    """
     if left.is_new:
         return (
             f"what is left on the fit records, {left.all_after:.2g} times the power of "
