@@ -73,47 +73,23 @@ def show_on_hold_out(decided: ToShow, evidence: Evidence) -> Outcome:
     """
     first, fitted, put_in = decided.first, decided.fitted, decided.put_in
     shown = score_hold_out(fitted, evidence.hold_out)
-    other = first if is_another(first, fitted.base) else None
-    least = np.inf if other is None else _left(other, fitted, evidence)
     content = {**decided.content, "withdrawn": None, **shown.content}
-    still = rms_of_a_constant(evidence, fitted.floor.rms)
+    other, least = first if is_another(first, fitted.base) else None, np.inf
     if other is not None:
+        least = _left(other, fitted, evidence)
         content["reason"] += (
             f"; as it was first identified it leaves {sized(least, content['unit'])} "
             "rms of the hold-out records"
         )
     taken = withdrawal(content, least)
     if taken is not None:
+        shown = _base_alone(fitted, other, evidence)
         # The ladder and what runs away stay: they tell why.
-        rung = fitted.rungs[0]
-        if other is not None:
-            chain = other.with_hold(fitted.state.hold).chain
-            state = replace(rung.state, chain=chain, free=()).settled()
-            rung = rung._replace(state=state)
-            fitted = replace(fitted, base=other)
-        unchanged = replace(fitted, state=rung.state, rungs=(rung,))
-        alone = score_hold_out(unchanged, evidence.hold_out)
-        kept = {key: alone.content[key] for key in ("gap", "records", "black_box")}
-        content = without_names({**content, **kept}, taken)
-        given = as_it_was(fitted.base)
-        shown = replace(alone, model=given.with_hold(fitted.state.hold))
+        alone = {key: shown.content[key] for key in ("gap", "records", "black_box")}
+        content = without_names({**content, **alone}, taken)
     elif content["effects"] or content["verdict"] == "parameters":
-        content["effects"] = no_surer_than_even(content)
-        content["reason"] = f"{first_figure(content)}; {content['reason']}"
-    gap = content["gap"]
-    left = gap["before"] if gap["after"] is None else gap["after"]
-    worse = worse_than_a_constant(left, still, content["unit"])
-    lone = _lone_samples(shown, evidence, fitted.floor.rms)
-    content["warnings"] = [
-        *evidence.warnings,
-        *decided.content.get("warnings", ()),
-        *lead_warnings((*fitted.state.records, *evidence.hold_out)),
-        *([*worse, *lone] or more_than_on_fit_records(content)),
-    ]
-    if content["verdict"] == "no-gap" and worse:
-        # The fit records show none, but nothing of the device is known by that.
-        content["verdict"] = "unnamed"
-        content["reason"] = f"{worse[0]}; of the fit records: {content['reason']}"
+        content = _as_borne_out(content)
+    content = _with_warnings(content, shown, decided, evidence)
     content["shortfall"] = shortfall(content)
     content = with_what_was_asked(content, decided.vocabulary)
     if put_in is not None:
@@ -121,6 +97,49 @@ def show_on_hold_out(decided: ToShow, evidence: Evidence) -> Outcome:
         content = _with_put_in(content, put_in, alone_rms)
     content = with_device(content, evidence.device_kind, evidence.quantities)
     return replace(shown, content=content)
+
+
+def _base_alone(fitted: FitResult, other: Model | None, evidence: Evidence) -> Outcome:
+    """Compare the base with the hold-out records, or another in its place, if any."""
+    rung, base, hold = fitted.rungs[0], fitted.base, fitted.state.hold
+    if other is not None:
+        chain, base = other.with_hold(hold).chain, other
+        state = replace(rung.state, chain=chain, free=()).settled()
+        rung = rung._replace(state=state)
+    unchanged = replace(fitted, base=base, state=rung.state, rungs=(rung,))
+    alone = score_hold_out(unchanged, evidence.hold_out)
+    return replace(alone, model=as_it_was(base).with_hold(hold))
+
+
+def _as_borne_out(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Give names that stay the confidence that hold-out records allow, and a figure."""
+    reason = f"{first_figure(content)}; {content['reason']}"
+    return {**content, "effects": no_surer_than_even(content), "reason": reason}
+
+
+def _with_warnings(
+    content: Mapping[str, Any], shown: Outcome, decided: Decided, evidence: Evidence
+) -> dict[str, Any]:
+    """Warn of what hold-out records show; a base that predicts nothing has a gap."""
+    gap, fitted = content["gap"], decided.fitted
+    left = gap["before"] if gap["after"] is None else gap["after"]
+    still = rms_of_a_constant(evidence, fitted.floor.rms)
+    worse = worse_than_a_constant(left, still, content["unit"])
+    lone = _lone_samples(shown, evidence, fitted.floor.rms)
+    warned = {
+        **content,
+        "warnings": [
+            *evidence.warnings,
+            *decided.content.get("warnings", ()),
+            *lead_warnings((*fitted.state.records, *evidence.hold_out)),
+            *([*worse, *lone] or more_than_on_fit_records(content)),
+        ],
+    }
+    if content["verdict"] == "no-gap" and worse:
+        # The fit records show none, but nothing of the device is known by that.
+        reason = f"{worse[0]}; of the fit records: {content['reason']}"
+        warned |= {"verdict": "unnamed", "reason": reason}
+    return warned
 
 
 def _lone_samples(shown: Outcome, evidence: Evidence, floor: float) -> list[str]:
