@@ -216,43 +216,16 @@ def linear_of(evidence: Evidence) -> Linear:
     evidence : Evidence
         Only its fit records are looked at.
     """
-    everything = Orders(evidence)
-    orders = Orders(_coarse(evidence))
-    if orders.evidence is evidence:
-        orders = everything
-    gain, moved = static(orders), impedance(orders)
-    found = orders.searched(gain)
-    tried: list[Sum | Found] = [gain, *([] if moved is None else [moved]), *found]
-    best = next(item for item in tried if none_lowers_both(item, tried))
-    if isinstance(best, Sum):
-        # An impedance was fitted to all samples, as its records are never coarse.
-        best = static(everything) if best is gain else best
-        chain, what = best.chain, best.words
-    else:
-        steps = {item.dt for item in evidence.fit}
-        best = simplest_as_good(best, tried, min(steps) if len(steps) == 1 else None)
-        if best.orders.late:
-            orders, found = best.orders, [best]
-            spared = len(orders.evidence.fit[0]) < len(evidence.fit[0])
-            moved_too = everything.moved(orders.late, min(steps))
-            everything = moved_too if spared else orders
-        if best.orders is not everything:  # the same order, on every sample
-            best = _on_all_samples(best, everything)
-        ratio = best.task.block(best.ratio)
-        chain = (ratio, Gain(value=1.0, offset=float(best.ratio.offset)))
-        zeros = len(best.ratio.b) - 1
-        what = f"order {len(best.ratio.a)}, {zeros} zero{'s' * (zeros != 1)}"
-        what += f", start: {ratio.start}"
-    fit, fold = best.fit, best.folds
+    best, found, orders, everything = _chosen(evidence)
+    (chain, what), fit, between = _written(best), best.fit, math.inf
     unit = evidence.output.unit
     note = (
         f"linear base: {what}; rms error {fit:.4g} {unit} on the fit records, "
-        f"{fold:.4g} {unit} on folds of them"
+        f"{best.folds:.4g} {unit} on folds of them"
     )
     # A free mass adds up what drives it: it is no filter with a curve in the middle.
     split = not evidence.in_windows and not isinstance(chain[0], Impedance)
-    ratios, between = [item.ratio for item in found], math.inf
-    if split and is_bent(_errors(orders, found), ratios):
+    if split and is_bent(_errors(orders, found), [item.ratio for item in found]):
         halves = _halves(everything, found)
         if halves is not None:
             chain, fit, between, more = halves
@@ -264,7 +237,52 @@ def linear_of(evidence: Evidence) -> Linear:
         delay = InputDelay.by(orders.late * evidence.fit[0].dt, evidence.input_hold)
         chain = (delay, *chain)
     model = IdentifiedModel(LINEAR, evidence.input, evidence.output, chain)
-    return Linear(model, note, fit, fold, best.constant, between)
+    return Linear(model, note, fit, best.folds, best.constant, between)
+
+
+class Chosen(NamedTuple):
+    """The best linear base, and what halves of it would begin with."""
+
+    best: Sum | Found
+    """Fitted to every sample."""
+    found: Sequence[Found]
+    """Ratios of one timing, found on as many samples as the search takes."""
+    orders: Orders
+    """Those samples, in that timing."""
+    everything: Orders
+    """Every sample, in that timing."""
+
+
+def _chosen(evidence: Evidence) -> Chosen:
+    """Choose the order, then the zeros and the timing; fit that to every sample."""
+    everything, coarse = Orders(evidence), _coarse(evidence)
+    orders = everything if coarse is evidence else Orders(coarse)
+    gain, moved = static(orders), impedance(orders)
+    found = orders.searched(gain)
+    tried: list[Sum | Found] = [gain, *([] if moved is None else [moved]), *found]
+    best = next(item for item in tried if none_lowers_both(item, tried))
+    if isinstance(best, Sum):
+        # An impedance was fitted to all samples, as its records are never coarse.
+        best = static(everything) if best is gain else best
+        return Chosen(best, found, orders, everything)
+    steps = {item.dt for item in evidence.fit}
+    best = simplest_as_good(best, tried, min(steps) if len(steps) == 1 else None)
+    if best.orders.late:
+        found, orders = [best], best.orders
+        spared = len(orders.evidence.fit[0]) < len(evidence.fit[0])
+        everything = everything.moved(orders.late, min(steps)) if spared else orders
+    return Chosen(_on_all_samples(best, everything), found, orders, everything)
+
+
+def _written(best: Sum | Found) -> tuple[tuple[Block, ...], str]:
+    """Write a base as a chain, and say in a few words what it is."""
+    if isinstance(best, Sum):
+        return best.chain, best.words
+    ratio = best.task.block(best.ratio)
+    zeros = len(best.ratio.b) - 1
+    order = f"order {len(best.ratio.a)}, {zeros} zero{'s' * (zeros != 1)}"
+    chain = (ratio, Gain(value=1.0, offset=float(best.ratio.offset)))
+    return chain, f"{order}, start: {ratio.start}"
 
 
 def _coarse(evidence: Evidence) -> Evidence:
@@ -280,6 +298,8 @@ def _coarse(evidence: Evidence) -> Evidence:
 
 def _on_all_samples(found: Found, everything: Orders) -> Found:
     """Fit a ratio that was found on fewer samples to all of them."""
+    if found.orders is everything:
+        return found
     records = everything.evidence.fit
     task = with_plainest_start(replace(found.task, records=records), found.ratio)
     ratio = task.refined(found.ratio, everything.whole, ROUNDS)
@@ -304,8 +324,7 @@ def _halves(
     Returns the chain, its error on the fit records without the curve and with it, and a
     few words.
     """
-    if found[-1].orders is not everything:  # those were found on fewer samples
-        found = [_on_all_samples(item, everything) for item in found]
+    found = [_on_all_samples(item, everything) for item in found]
     task, spectra = _errors(everything, found), everything.spectra
     free_run = replace(found[-1].task, scale=spectra.scale)
     ratios = [
