@@ -91,26 +91,8 @@ class ForceSearch:
         list of Fitted
             The host alone first; of each set of effects the best laws.
         """
-        score = self.score
-        every, alone, carried = list(found), found[0].score, list(found[1:])
-        went_on: list[Fitted] = []
-        asked: list[Fitted] = []
-        for count, keep in ((2, PAIRS), (3, 1)):
-            if (
-                count > most
-                or not may_gain(least(every), score)
-                or _in_vain(every, carried)
-            ):
-                break
-            if not of_stores(found[0]):
-                carried = [item for item in carried if item.score < alone]
-            went_on += carried
-            carried = self.one_more(carried, keep, alone)
-            asked.append(least([*carried, found[0]]))
-            carried += by_other_laws(asked[-1], score)
-            carried = sorted(best_of_each(carried), key=lambda item: item.score)
-            every += carried
-        best = least(every)
+        every, went_on, asked = self._pairs_and_threes(found, most)
+        score, alone, best = self.score, found[0].score, least(every)
         if not of_stores(best):
             every += with_one_fewer(best, every, score)
             paying = best_that_pays(every)
@@ -120,6 +102,34 @@ class ForceSearch:
             if not any(last is item for item in asked):
                 every += by_other_laws(last, score)
         return with_a_way(best_of_each(every))
+
+    def _pairs_and_threes(
+        self, found: Sequence[Fitted], most: float
+    ) -> tuple[list[Fitted], list[Fitted], list[Fitted]]:
+        """Add pairs and threes to what was found.
+
+        Given too is what a further force was put into, and what was tried by its other
+        laws: the best of each round.
+        """
+        every, alone, carried = list(found), found[0].score, list(found[1:])
+        went_on: list[Fitted] = []
+        asked: list[Fitted] = []
+        for count, keep in ((2, PAIRS), (3, 1)):
+            if (
+                count > most
+                or not may_gain(least(every), self.score)
+                or _in_vain(every, carried)
+            ):
+                break
+            if not of_stores(found[0]):
+                carried = [item for item in carried if item.score < alone]
+            went_on += carried
+            more = self.one_more(carried, keep, alone)
+            asked.append(least([*more, found[0]]))
+            more += by_other_laws(asked[-1], self.score)
+            carried = sorted(best_of_each(more), key=lambda item: item.score)
+            every += carried
+        return every, went_on, asked
 
     def with_another(
         self, best: Fitted, went_on: Sequence[Fitted], alone: float
