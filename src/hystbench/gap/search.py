@@ -311,7 +311,7 @@ class GapSearch:
     ) -> tuple[Inside | None, BesideBase]:
         """Look for forces once, and start without the leads that these show.
 
-        If the first host shows leads, the look ends with nothing: on shorter records it
+        If a host shows leads already, the look ends with nothing: on shorter records it
         is to begin again.
         """
         starts = [found]
