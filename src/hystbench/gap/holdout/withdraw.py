@@ -118,7 +118,7 @@ def _as_borne_out(content: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _with_warnings(
-    content: Mapping[str, Any], shown: Outcome, decided: Decided, evidence: Evidence
+    content: Mapping[str, Any], shown: Outcome, decided: ToShow, evidence: Evidence
 ) -> dict[str, Any]:
     """Warn of what hold-out records show; a base that predicts nothing has a gap."""
     gap, fitted = content["gap"], decided.fitted
