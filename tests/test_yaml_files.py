@@ -22,6 +22,12 @@ def test_what_is_written_comes_back(content):
     assert parse_yaml(yaml_text(content), "x.yaml") == content
 
 
+@pytest.mark.parametrize("end", ["\x85", "\u2028", "\u2029"])
+def test_an_unusual_end_of_a_line_comes_back(end):
+    for content in ({end: 1}, {"a": f"b{end}c"}, [end]):
+        assert parse_yaml(yaml_text(content), "x.yaml") == content
+
+
 @pytest.mark.parametrize(
     "text", ["1e-5", "2.6e4", "+1.5E3", ".5", "-.5", "-1.e+2", "3.", "0.0", "1.0e-05"]
 )

@@ -152,6 +152,10 @@ def yaml_text(content: Any, width: int = 88, flow: bool | None = None) -> str:
     return text
 
 
+UNUSUAL_ENDS = frozenset("\x85\u2028\u2029")
+"""Characters that end a line in YAML 1.1."""
+
+
 @cache
 def _loader() -> Any:
     """Give the loader: of plain data, with floats as YAML 1.2 has them."""
@@ -164,10 +168,21 @@ def _loader() -> Any:
 
 @cache
 def _dumper() -> Any:
-    """Give the dumper, which quotes text that the loader would take for a float."""
+    """Give the dumper.
+
+    It quotes text that the loader would take for a float, and escapes what YAML takes
+    for the end of a line where Python does not.
+    """
     import yaml
 
-    return _with_floats(type("Dumper", (yaml.SafeDumper,), {}))
+    kind: Any = _with_floats(type("Dumper", (yaml.SafeDumper,), {}))
+
+    def text(dumper: Any, value: str) -> Any:
+        style = '"' if UNUSUAL_ENDS.intersection(value) else None
+        return dumper.represent_scalar("tag:yaml.org,2002:str", value, style=style)
+
+    kind.add_representer(str, text)
+    return kind
 
 
 def _with_floats(kind: Any) -> Any:
