@@ -15,12 +15,17 @@ GAIN = block("gain", value=12.0)
 PLAY = block("backlash", half_width=0.8)
 
 
-def beside(records, *added, charge=1.0):
-    """What stands beside a gain, as a law of so many numbers."""
-    start = state_of((GAIN,), records)
+def model(records, *added, charge=1.0):
+    """A gain with what is added, as a law of so many numbers."""
     effect = Added("backlash", "mechanics", "", (1,), {}, charge)
-    state = state_of((GAIN, *added), records, added=(effect,) if added else ())
-    named = SimpleNamespace(state=state)
+    return state_of((GAIN, *added), records, added=(effect,) if added else ())
+
+
+def beside(records, *added, charge=1.0, rivals=()):
+    """What stands beside a gain, with the laws that stood beside it in its round."""
+    start, state = model(records), model(records, *added, charge=charge)
+    ranking = [SimpleNamespace(state=each) for each in (state, None, *rivals)]
+    named = SimpleNamespace(state=state, rounds=(SimpleNamespace(ranking=ranking),))
     return BesideBase(None, start, Floor(NOISE, "stated"), named, None, NONE)
 
 
@@ -42,10 +47,24 @@ def test_it_stays_where_a_law_of_few_leaves_more(records):
     assert stays(beside(records, PLAY, charge=17.0), beside(records, wider), True)
 
 
-def test_naming_is_repeated_beside_a_re_tuned_base_for_a_law_of_many(records):
-    exact = beside(records, PLAY)
-    assert not exact.may_be_simpler()
-    assert beside(records, PLAY, charge=17.0).may_be_simpler()
+@pytest.mark.parametrize(
+    ("half_width", "charge", "repeated"),
+    [(0.8, 17.0, True), (0.3, 17.0, False), (0.8, 1.0, False)],
+)
+def test_naming_is_repeated_for_a_law_of_many_where_one_of_few_comes_near(
+    records, half_width, charge, repeated
+):
+    """Beside a re-tuned base that one may do as well."""
+    few = model(records, block("backlash", half_width=half_width))
+    found = beside(records, PLAY, charge=charge, rivals=(few,))
+    assert found.may_be_simpler() == repeated
+
+
+def test_naming_is_repeated_for_a_law_of_many_where_the_base_alone_comes_near():
+    """A gain that is off: nothing is needed beside another one."""
+    given = measured((block("gain", value=12.6),), NOISE)
+    found = beside(given, block("backlash", half_width=1e-3), charge=17.0)
+    assert found.may_be_simpler()
 
 
 def test_a_base_stays_where_the_other_was_scored_on_fewer_samples(records):

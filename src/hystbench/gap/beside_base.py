@@ -99,11 +99,13 @@ class BesideBase:
         many does. And where it pays for its numbers beside the effects, these may stand
         for a base that is off.
         """
+        state, score = self.named.state, self.score_beside(self)
+        now = score_of(state, score)
+        if self.laws_of_many_numbers and len(self.named.rounds) == 1:
+            return self._few_numbers_may_do(score, now)
         # What is asked below is of one or two effects of few numbers.
         if self.counts > 2 or self.laws_of_many_numbers:
             return True
-        state, score = self.named.state, self.score_beside(self)
-        now = score_of(state, score)
         count, margin = len(state.added), self.margin
         shorter = [
             (without_effect(state, number), now - margin)
@@ -119,6 +121,21 @@ class BesideBase:
         far = repeats_the_base(state)
         return re_tuned_score(state, score, beside) < beside or any(
             re_tuned_score(short, score, most, far) < most for short, most in shorter
+        )
+
+    def _few_numbers_may_do(self, score: Score, now: float) -> bool:
+        """Tell whether a re-tuned base may do with a law of few numbers, or with none.
+
+        The laws are those that stood beside the one that was taken; one has to come as
+        near to it as a further effect, or another form, could make up for.
+        """
+        ranking = self.named.rounds[0].ranking
+        others = [item.state for item in ranking if item.state is not None]
+        few = [x for x in others if not any(y.is_of_many_numbers for y in x.added)]
+        most = now + FURTHER
+        return any(
+            re_tuned_score(state, score, most, far=True) < most
+            for state in (self.start, *few)
         )
 
 
