@@ -116,7 +116,7 @@ def check_moves(file: Path, item: Mapping[str, str], values: FloatArray) -> None
     if span == 0:
         raise InputError(
             f"{where}: constant ({values[0]:g} {item['unit']}); "
-            "expected a signal that moves"
+            "expected a signal that moves (of a step, with a sample before it)"
         )
     largest = float(np.abs(values).max())
     if not (span > SMALLEST and largest < 1 / SMALLEST):

@@ -249,6 +249,8 @@ def test_another_sampling_rate_from_some_row_on_is_refused(run, tmp_path):
     error = refused("init", *files)
     assert "run-5.csv: row 403: a step in time of 0.002 s" in error
     assert "expected uniform sampling" in error
+    assert "give 'sampling_frequency_hz: " in error
+    assert "(init: --sampling-frequency)" in error
 
 
 def test_a_piece_of_one_time_is_left_out(run, tmp_path):

@@ -136,7 +136,9 @@ def ticks_of(time: FloatArray, where: str, table: Table, first: int = 0) -> Tick
     raise InputError(
         f"{where}: {table.place(first + int(places[row + 1]))}: a step in time of "
         f"{steps[row]:g} s where the mean is {mean:g} s; expected uniform sampling: "
-        "give the parts between such steps as files of their own"
+        "give the parts between such steps as files of their own; or, if only the "
+        f"clock is uneven, give 'sampling_frequency_hz: {1 / mean:.4g}' in place of "
+        "'time' (init: --sampling-frequency)"
     )
 
 
