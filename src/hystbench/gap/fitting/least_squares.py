@@ -15,6 +15,7 @@ from functools import lru_cache
 import numpy as np
 
 from hystbench.errors import InputError
+from hystbench.gap.fitting.minpack import least_squares_point
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.thresholds import SCALE
@@ -82,8 +83,6 @@ def fitted(
     """
     if not state.free:
         return Fitted(state, judged(state, score))
-    from scipy.optimize import leastsq  # late: a start alone needs none of it
-
     logs = np.array([_positive(state, free) for free in state.free], dtype=bool)
     values = np.array([state.value(free) for free in state.free])
     steps = np.where(values == 0.0, NOTHING, STEP * np.abs(values))
@@ -126,15 +125,13 @@ def fitted(
         held[np.arange(len(known)), known] = scale[known] * per_unit
         return np.vstack([-weights[:, None] * own * scale, held])
 
-    point, *_ = leastsq(
+    point = least_squares_point(
         residual,
-        np.zeros(len(values)),
-        Dfun=slopes,
-        full_output=True,
-        maxfev=evaluations,
-        xtol=SMALL,
-        ftol=SMALL,
-        diag=np.full(len(values), FACTOR / REACH),
+        slopes,
+        len(values),
+        scale=FACTOR / REACH,
+        evaluations=evaluations,
+        enough=SMALL,
     )
     best = moved(point)
     return Fitted(best, judged(best, score))
