@@ -538,3 +538,20 @@ def test_a_base_far_off_is_re_tuned_down_to_the_noise():
     state = state_of((base,), (record(u, y, dt=dt),), free=free)
     found, _ = finished(state, plain_score(state, noise**2))
     assert np.sqrt(np.mean(found.squares)) < 1.2 * noise
+
+
+def test_tangents_of_poles_at_the_very_edge_are_taken():
+    """Three swings alike part whichever way a coefficient goes, and one grows."""
+    poles = [-1e-3 + 1j, -1e-3 - 1j] * 3
+    edge = block(
+        "transfer-function",
+        numerator=[1.0],
+        denominator=np.poly(poles).real.tolist(),
+        hold="linear",
+    )
+    one = record(np.sin(0.3 * np.arange(300)), y=np.zeros(300), dt=0.1)
+    state = state_of((edge,), (one,), free=(Free(0, "denominator", 2),))
+    for way in (1, -1):
+        with pytest.raises(InputError, match="unstable"):
+            state.moved({0: way * state.steps[0]})
+    assert np.isfinite(state.tangents).all()

@@ -179,7 +179,8 @@ class ModelState:
             change = self._change(k, step)
         except InputError:  # beyond what the block accepts, so the other way
             step = -step
-            change = self._change(k, step)
+            # A pole at the very edge crosses it both ways: it is put back.
+            change = self._change(k, step, reflected=True)
         if not rms(change) >= ROUNDING * rms(self._simulated):
             # As of a play that never moves: divided by its step, it would look like
             # something, and any weight would do. Nor does what runs away tell a slope.
@@ -349,12 +350,13 @@ class ModelState:
         chain = tuple(blocks.get(k, block) for k, block in enumerate(self.chain))
         return replace(self, chain=chain)
 
-    def _change(self, k: int, by: float) -> FloatArray:
+    def _change(self, k: int, by: float, reflected: bool = False) -> FloatArray:
         """How the output changes where one free number is another."""
         start = self.free[k].block
         while isinstance(self.chain[start], AttachedBlock):
             start -= 1
-        after = self.simulation.tail(start, self.moved({k: by}).chain[start:])
+        chain = self.moved({k: by}, reflected).chain
+        after = self.simulation.tail(start, chain[start:])
         return self.sample.take(after) - self._simulated
 
     @cached_property
