@@ -126,11 +126,18 @@ def judge_none(
             "rms, is no more than a slightly wrong shape of the base could leave"
         )
     # 1f. Much is left.
+    beyond = "" if left.after >= left.all_after else _beyond_shapes(left.after)
     return "unnamed", (
-        f"on the fit records a gap of {left.after:.2g} times the noise power is "
-        "there and no effect of the vocabulary pays; "
+        f"on the fit records a gap of {left.all_after:.2g} times the noise power is "
+        f"there{beyond} and no effect of the vocabulary pays; "
         f"{_box_words(explained_by_box)}"
     )
+
+
+def _beyond_shapes(power: float) -> str:
+    """Say what no wrong shape of the base's hysteresis could leave."""
+    times = f"{max(power, 0.0):.2g} times"
+    return f" ({times} are more than a wrong shape of the loop could leave)"
 
 
 def judge_names(left: Leftover, unnamed: Unowned) -> tuple[Verdict, str]:
