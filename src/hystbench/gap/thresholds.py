@@ -117,8 +117,7 @@ WORTH_A_WORD = 0.1
 LOOSE = 0.25
 """Share that is too much to leave, or enough to matter: half of the rms, 6 dB.
 
-- A name does not stand where more than this of the gap is left; where hold-out records
-  keep more of what was promised, it is no surer than even.
+- A name does not stand where more than this of the gap is left.
 - An effect may not widen the gap by more, as it can where a wrong shape hides it.
 - A wrong shape of the hysteresis matters where it takes more.
 - Records get no numbers of their own where forces inside, or a chain, leave less.
