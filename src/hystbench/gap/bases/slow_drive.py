@@ -16,7 +16,7 @@ import numpy as np
 from hystbench.blocks.slew_limit import SlewLimit
 from hystbench.gap.bases.spectral import Spectra, fit_ratio
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.thresholds import LOOSE, MOST, NUMBER_PAYS
+from hystbench.gap.thresholds import LOOSE, NUMBER_PAYS
 from hystbench.record import Record
 
 ORDER = 3
@@ -33,6 +33,10 @@ FURTHER_STEPS = 80
 """Drives that are tried with another rate downwards, or with a lag as well."""
 
 
+LONGEST_LAG = 1e3
+"""Seconds; what a block may have."""
+
+
 def behind_a_slow_drive(evidence: Evidence) -> tuple[Evidence, SlewLimit] | None:
     """Give the fit records with what such a drive makes of their inputs.
 
@@ -45,7 +49,7 @@ def behind_a_slow_drive(evidence: Evidence) -> tuple[Evidence, SlewLimit] | None
     -------
     tuple or None
         The records, and the drive; None where no rate lets a linear model leave less
-        than half of the power that one leaves without a limit.
+        than a quarter of the power that one leaves without a limit.
     """
     records = evidence.fit
     if any(record.decay_s is not None for record in records):
@@ -77,7 +81,7 @@ def behind_a_slow_drive(evidence: Evidence) -> tuple[Evidence, SlewLimit] | None
     drive, cost = SlewLimit(rate=rate), min(found.fun, costs[best])
     if cost < (1 - LOOSE) * costs[-1]:
         drive, cost = _with_more_numbers(drive, cost, left, records[0].dt)
-    if cost > MOST * costs[-1]:
+    if cost > LOOSE * costs[-1]:
         return None
     return replace(evidence, fit=_slowed(records, drive)), drive
 
@@ -90,7 +94,7 @@ def _with_more_numbers(
 
     def servo(logs: Sequence[float]) -> SlewLimit:
         rate, falling, *lag = np.exp(logs).tolist()
-        tau = lag[0] if lag else 0.0
+        tau = min(lag[0], LONGEST_LAG) if lag else 0.0
         return SlewLimit(rate=rate, falling=falling, time_constant_s=tau, form="sharp")
 
     plain = cost
