@@ -81,6 +81,10 @@ class Record:
         Of a record that begins in the middle of a motion: the time constant, in
         seconds, with which an unknown velocity at its first sample dies out. Scores
         leave out what such a velocity does.
+    start_poles : tuple of complex
+        Of a record that begins in the middle of a motion: poles, in 1/s, of dynamics
+        that remember for long what was before it. One of a pair stands for both. Scores
+        leave out what any state of them at the first sample does.
     lead : int
         Samples at the beginning that remember what was before the record. Models run
         over them; scores leave them out.
@@ -103,6 +107,7 @@ class Record:
     simulated: FloatArray | None = None
     interpolated: Mask | None = None
     decay_s: float | None = None
+    start_poles: tuple[complex, ...] = ()
     lead: int = 0
     past: int = 0
     injected: FloatArray | None = None
@@ -156,14 +161,18 @@ class Record:
 
     @cached_property
     def of_start(self) -> FloatArray:
-        """What an unknown velocity at the first sample does, shape (n, 0 or 1).
+        """What is not known of the first sample does, shape (n, columns).
 
-        The way that a mass goes on while its velocity dies out.
+        A velocity: the way that a mass goes on while it dies out. A state of dynamics:
+        how each of their poles fades.
         """
-        if self.decay_s is None:
-            return np.zeros((len(self), 0))
-        way = -self.decay_s * np.expm1(-self.time / self.decay_s)
-        return way[:, None]
+        columns = []
+        if self.decay_s is not None:
+            columns.append(-self.decay_s * np.expm1(-self.time / self.decay_s))
+        for pole in self.start_poles:
+            fading = np.exp(pole * self.dt * np.arange(len(self)))
+            columns += [fading.real, fading.imag] if pole.imag else [fading.real]
+        return np.column_stack(columns) if columns else np.zeros((len(self), 0))
 
     @property
     def rate(self) -> float:
@@ -183,6 +192,8 @@ class Record:
         about += [*asdict(self.output).values(), self.use, self.period_samples]
         if self.decay_s is not None:
             about.append(self.decay_s)
+        if self.start_poles:
+            about.append([[pole.real, pole.imag] for pole in self.start_poles])
         if self.lead:
             about.append({"lead": self.lead, "past": self.past})
         whole = blake2b(json.dumps(about).encode(), digest_size=16)

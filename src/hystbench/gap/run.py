@@ -201,9 +201,9 @@ def hold_out_begun_like_fit(
     They are asked for beside the base, and again beside what was found: the base's own
     error may hide a start. Beside another base a steady motion gets its past.
     """
+    records = begun_beside(base, evidence.hold_out)
     if not is_identified_linear(base):
-        return replace(evidence, hold_out=begun_beside(base, evidence.hold_out))
-    records = evidence.hold_out
+        return replace(evidence, hold_out=records)
     for model in (None, augmented(found.base, found.state)):
         records = without_leads(records, base, evidence, say, found=model)
     return replace(evidence, hold_out=records)

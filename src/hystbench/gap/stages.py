@@ -15,7 +15,7 @@ from hystbench.files import read_json, whole_folder, write_json
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.gpi import IdentifiedGpi
 from hystbench.gap.bases.lead import begun_beside
-from hystbench.gap.bases.linear import IdentifiedModel
+from hystbench.gap.bases.linear import IdentifiedModel, how_found
 from hystbench.gap.fitting.on_records import compared_records, start_state
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import state_mapping, state_of
@@ -74,6 +74,7 @@ def _kept(to_show: ToShow) -> dict[str, Any]:
             key: to_show.first.to_mapping() if isinstance(to_show.first, kind) else None
             for key, kind in KEPT_BASES.items()
         },
+        "how_found": how_found(to_show.first),
         "without": list(to_show.vocabulary.without),
         "with": list(to_show.vocabulary.put_in),
         "put_in": None if put_in is None else put_in.mapping(),
@@ -119,6 +120,7 @@ def _made_again(
     for key, kind in KEPT_BASES.items():
         if kept[key]:
             first = kind.from_mapping(kept[key], f"{place}: {key}")
+    first = replace(first, **kept["how_found"])
     leads = zip(begun_beside(first, evidence.fit), kept["leads"], strict=True)
     fit = tuple(replace(record, lead=lead) for record, lead in leads)
     fit = own.taken_off(fit, evidence.input_hold)

@@ -16,7 +16,12 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.store import Store
 from hystbench.blocks.structure import Structure
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.bases.linear import IdentifiedModel, is_identified_linear
+from hystbench.gap.bases.free_starts import begun_freely
+from hystbench.gap.bases.linear import (
+    IdentifiedModel,
+    has_free_starts,
+    is_identified_linear,
+)
 from hystbench.gap.bases.orders import LEAD
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
@@ -41,9 +46,12 @@ level that is off by so much takes a hundredth of the power, and dies out."""
 def begun_beside(base: Model, records: tuple[Record, ...]) -> tuple[Record, ...]:
     """Give records with the periods before those that begin in a steady motion.
 
-    A linear base that was identified needs none, as it has a start of its own. A column
-    of a simulator that ran elsewhere begins where the record does.
+    A linear base that was identified needs none, as it has a start of its own, or lets
+    each record have one. A column of a simulator that ran elsewhere begins where the
+    record does.
     """
+    if has_free_starts(base):
+        return begun_freely(records, base)
     own = isinstance(base, IdentifiedModel)
     reruns = all(block.reruns for block in base.chain)
     return records if own or not reruns else with_pasts(records)
@@ -106,16 +114,23 @@ def without_leads(
 
 def lead_warnings(records: Sequence[Record]) -> list[str]:
     """Tell of which records a lead is not scored: a sentence, or none."""
-    told = [
+    cut = [
         f"{item.name} ({sized(item.lead * item.dt, 's')})"
         for item in records
         if item.lead > item.past
     ]
-    if not told:
-        return []
+    free = [item.name for item in records if item.start_poles]
+    told = (
+        ("not scored is the beginning of records that", cut),
+        (
+            "not scored is what another first state does in records that",
+            free,
+        ),
+    )
     return [
-        "not scored is the beginning of records that start in the middle of a motion: "
-        + listed(told)
+        f"{what} start in the middle of a motion: {listed(names)}"
+        for what, names in told
+        if names
     ]
 
 
@@ -126,8 +141,8 @@ def begin_alike(records: Sequence[Record]) -> bool:
 
 
 def _without(record: Record, base: Model, asked: Model, most: float) -> Record:
-    if record.decay_s is not None:
-        return record  # what its start does is a number of its own
+    if record.of_start.shape[1]:
+        return record  # what its start does are numbers of its own
     free = _free_motion(asked, record, most)
     if len(free) == 0 and asked is not base:  # it may hold no linear part
         free = _free_motion(base, record, most)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.bases.dead_time import behind_a_dead_time
+from hystbench.gap.bases.free_starts import start_fades, with_free_starts
 from hystbench.gap.bases.orders import (
     HIGHEST,
     MANY,
@@ -50,6 +51,8 @@ class IdentifiedModel(Model):
 
     found_with: str = ""
     """What it was found together with, which is no part of it."""
+    free_starts: bool = False
+    """Whether records that do not repeat may begin in any of its states."""
 
 
 def is_identified_linear(base: Model) -> bool:
@@ -60,6 +63,18 @@ def is_identified_linear(base: Model) -> bool:
 def found_with(base: Model) -> str:
     """Say what a base was found together with; nothing for most."""
     return base.found_with if isinstance(base, IdentifiedModel) else ""
+
+
+def has_free_starts(base: Model) -> bool:
+    """Tell whether records may begin in any state of a base."""
+    return isinstance(base, IdentifiedModel) and base.free_starts
+
+
+def how_found(base: Model) -> dict[str, Any]:
+    """Give what of an identified linear base no model file holds; else nothing."""
+    if not isinstance(base, IdentifiedModel):
+        return {}
+    return {"found_with": base.found_with, "free_starts": base.free_starts}
 
 
 def with_its_numbers_free(base: Model) -> Model:
@@ -123,6 +138,8 @@ def identified_linear(evidence: Evidence) -> Linear:
     for effect, words, without, other in _found_beside(evidence, plain):
         found = linear_of(other)
         between = plain.split_rms**2 < LOOSE * found.fit_rms**2
+        if found.model.free_starts and not start_fades(found.model, evidence):
+            continue
         spared = max(_poles(best.model) - _poles(found.model), 0)
         most = math.sqrt(LOOSE) * best.fold_rms
         if effect == LATE and best is plain and spared:
@@ -169,9 +186,12 @@ def _found_beside(
 ) -> Iterator[tuple[str, str, str, Evidence]]:
     """Give what no linear model shows, with records that are freed of each.
 
-    Beside the name stand words for a base of these records, and for one of the records
-    as they were measured.
+    Beside the name, if it has one, stand words for a base of these records, and for one
+    of the records as they were measured.
     """
+    free = with_free_starts(evidence, plain.fit_rms)
+    if free is not None:
+        yield "", "begun anyhow, as it remembers for long", "begun alike", free
     signed = with_signs(evidence)
     if signed is not None:
         words = "of an output with a sign that the sensor may not show"
@@ -224,7 +244,8 @@ def linear_of(evidence: Evidence) -> Linear:
         f"{best.folds:.4g} {unit} on folds of them"
     )
     # A free mass adds up what drives it: it is no filter with a curve in the middle.
-    split = not evidence.in_windows and not isinstance(chain[0], Impedance)
+    one_filter = evidence.in_windows or evidence.free_starts
+    split = not one_filter and not isinstance(chain[0], Impedance)
     if split and is_bent(_errors(orders, found), [item.ratio for item in found]):
         halves = _halves(everything, found)
         if halves is not None:
@@ -236,7 +257,13 @@ def linear_of(evidence: Evidence) -> Linear:
         note += f"; its input is taken {half}a sample {when}"
         delay = InputDelay.by(orders.late * evidence.fit[0].dt, evidence.input_hold)
         chain = (delay, *chain)
-    model = IdentifiedModel(LINEAR, evidence.input, evidence.output, chain)
+    model = IdentifiedModel(
+        LINEAR,
+        evidence.input,
+        evidence.output,
+        chain,
+        free_starts=evidence.free_starts,
+    )
     return Linear(model, note, fit, best.folds, best.constant, between)
 
 

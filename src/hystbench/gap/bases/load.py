@@ -24,7 +24,7 @@ from hystbench.gap.bases.kinds import COMMAND, IDENTIFIED, kind_of_base
 from hystbench.gap.bases.linear import (
     NO_SIGN,
     IdentifiedModel,
-    found_with,
+    how_found,
     identified_linear,
     with_its_numbers_free,
 )
@@ -90,17 +90,14 @@ def _kept(
             evidence.identification,
         ],
         compute,
-        lambda found: [found[0].to_mapping(), found[1], found_with(found[0])],
+        lambda found: [found[0].to_mapping(), found[1], how_found(found[0])],
         lambda kept: (_given_back(of, kept[0], kept[2]), kept[1]),
     )
 
 
-def _given_back(of: type[Model], content: Any, beside: str) -> Model:
-    """Give a base that was kept, and what it was found together with."""
-    model = of.from_mapping(content, "a base that was kept")
-    if isinstance(model, IdentifiedModel):
-        return replace(model, found_with=beside)
-    return model
+def _given_back(of: type[Model], content: Any, how: dict[str, Any]) -> Model:
+    """Give a base that was kept, and how it was found."""
+    return replace(of.from_mapping(content, "a base that was kept"), **how)
 
 
 def _identified(word: str, evidence: Evidence) -> tuple[Model, str]:

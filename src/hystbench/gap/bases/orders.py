@@ -11,7 +11,7 @@ import numpy as np
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.starts import plainest_start, possible_starts
 from hystbench.cores import each
-from hystbench.gap.bases.output_error import OutputError, own_columns, without_own
+from hystbench.gap.bases.output_error import OutputError, own_columns
 from hystbench.gap.bases.spectral import (
     Ratio,
     Spectra,
@@ -21,6 +21,7 @@ from hystbench.gap.bases.spectral import (
 )
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.folds import Fold, make_folds
+from hystbench.gap.records.scored_samples import without
 from hystbench.gap.thresholds import ANOTHER_MODE, NUMBER_PAYS, TIMING_PAYS
 from hystbench.record import FloatArray, Mask
 
@@ -122,7 +123,7 @@ class Orders:
             judged = _taken(ys, fold.validation)
             beside = _taken(own, fold.validation)
             for taken, of in zip(judged, beside, strict=True):
-                squares += float(np.sum(without_own(taken - mean, of) ** 2))
+                squares += float(np.sum(without(taken - mean, of) ** 2))
                 count += len(taken)
         return float(np.sqrt(squares / count))
 
@@ -167,6 +168,7 @@ class Orders:
             evidence.input_hold,
             self.spectra.scale,
             own_offsets=evidence.own_offsets,
+            free_starts=evidence.free_starts,
             held=int(self.decay_s is not None),
         )
         return self.judged(with_plainest_start(task, first), first)

@@ -16,6 +16,8 @@ from hystbench.blocks.state_space import StateSpace
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.bases.spectral import Ratio, stable, triangle_of
+from hystbench.gap.records.first_state import with_free_start
+from hystbench.gap.records.scored_samples import without
 from hystbench.record import FloatArray, Mask, Record
 
 #: Share of the sum that a step must win for another to follow.
@@ -90,6 +92,8 @@ class OutputError:
     own_offsets: bool = False
     """Whether each record has a constant of its own, as where a sensor's zero is
     another one every time; a ratio has their mean."""
+    free_starts: bool = False
+    """Whether records may begin in any state of the ratio."""
     held: int = 0
     """Count of the lowest coefficients of the denominator that stay as they are."""
 
@@ -139,25 +143,36 @@ class OutputError:
                 left = self.left(ratio)
             except InputError:
                 return np.inf
-            squares = float(sum(np.sum(part**2) for part in self._masked(left, masks)))
+            left = self._masked(left, masks, self._own(ratio))
+            squares = float(sum(np.sum(part**2) for part in left))
             return squares if np.isfinite(squares) else np.inf
 
     def _swings_unseen(self, ratio: Ratio) -> bool:
         """Tell whether poles swing above half of the sampling frequency."""
-        poles = self.scale * np.roots(np.append(ratio.a, 1.0)[::-1])
         fastest = np.pi / min(record.dt for record in self.records)
-        return bool(np.any(np.abs(poles.imag) > fastest))
+        return bool(np.any(np.abs(ratio.poles(self.scale).imag) > fastest))
 
     def _masked(
-        self, columns: Sequence[FloatArray], masks: Sequence[Mask]
+        self,
+        columns: Sequence[FloatArray],
+        masks: Sequence[Mask],
+        own: Sequence[FloatArray],
     ) -> list[FloatArray]:
         """Give the masked samples, without what each record has of its own."""
         parts = [x[mask] for x, mask in zip(columns, masks, strict=True)]
-        own = [x[mask] for x, mask in zip(self._own, masks, strict=True)]
-        return [without_own(x, of) for x, of in zip(parts, own, strict=True)]
+        beside = [x[mask] for x, mask in zip(own, masks, strict=True)]
+        return [without(x, of) for x, of in zip(parts, beside, strict=True)]
+
+    def _own(self, ratio: Ratio) -> tuple[FloatArray, ...]:
+        """Give what each record may have of its own beside a ratio."""
+        if not self.free_starts:
+            return self._of_records
+        poles = ratio.poles(self.scale)
+        freed = [with_free_start(record, poles) for record in self.records]
+        return own_columns(freed, self.own_offsets)
 
     @cached_property
-    def _own(self) -> tuple[FloatArray, ...]:
+    def _of_records(self) -> tuple[FloatArray, ...]:
         return own_columns(self.records, self.own_offsets)
 
     def refined(self, ratio: Ratio, masks: Sequence[Mask], rounds: int) -> Ratio:
@@ -202,12 +217,12 @@ class OutputError:
                 np.column_stack([self._derivatives(ratio, record), rest])
                 for record, rest in zip(self.records, self.left(ratio), strict=True)
             ]
-        for part, own in zip(columns, self._own, strict=True):
+        for part, record in zip(columns, self.records, strict=True):
             part[:, : self.held] = 0.0
-            if own.shape[1]:  # the ratio's constant is one of the record's own
+            if has_constant(record, self.own_offsets):  # the ratio's is one of these
                 part[:, -2] = 0.0
-        of_each = [triangle_of(part) for part in self._masked(columns, masks)]
-        return triangle_of(np.vstack(of_each))
+        masked = self._masked(columns, masks, self._own(ratio))
+        return triangle_of(np.vstack([triangle_of(part) for part in masked]))
 
     def _derivatives(self, ratio: Ratio, record: Record) -> FloatArray:
         """Change of the output with each a, each b and the constant, column by column.
@@ -252,27 +267,19 @@ def own_columns(records: Sequence[Record], own_offsets: bool) -> tuple[FloatArra
     """Give what each record may have of its own, shape (n, k) each.
 
     A constant where records have offsets. In a window, which begins at zero, the noise
-    of its first sample and what its velocity there does.
+    of its first sample and what its velocity there does. Where a record begins in the
+    middle of a motion, what any first state does.
     """
     found = []
     for record in records:
-        constants = int(own_offsets or record.decay_s is not None)
+        constants = int(has_constant(record, own_offsets))
         found.append(np.hstack([np.ones((len(record), constants)), record.of_start]))
     return tuple(found)
 
 
-def without_own(x: FloatArray, own: FloatArray) -> FloatArray:
-    """Take off each column of x the sum of the columns ``own`` that is nearest to it.
-
-    Parameters
-    ----------
-    x : ndarray, shape (n,) or (n, m)
-    own : ndarray, shape (n, k)
-    """
-    if not own.shape[1] or not len(x):
-        return x
-    basis = np.linalg.qr(own)[0]
-    return np.asarray(x - basis @ (basis.T @ x))
+def has_constant(record: Record, own_offsets: bool) -> bool:
+    """Tell whether a record has a constant of its own."""
+    return own_offsets or record.decay_s is not None
 
 
 def _step(triangle: FloatArray, damping: float) -> FloatArray:

@@ -102,6 +102,10 @@ class Rational:
     a: FloatArray
     b: FloatArray
 
+    def poles(self, scale: float) -> ComplexArray:
+        """Give the poles in 1/s, for a scale in rad/s."""
+        return np.asarray(scale * np.roots(np.append(self.a, 1.0)[::-1]), complex)
+
     @property
     def static(self) -> float:
         """Give the value at s = 0."""

@@ -12,7 +12,8 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.impedance import INPUTS, NUMBERS, Impedance
 from hystbench.gap.bases.orders import Judged, Orders
-from hystbench.gap.bases.output_error import own_columns, without_own
+from hystbench.gap.bases.output_error import own_columns
+from hystbench.gap.records.scored_samples import without
 from hystbench.record import FloatArray, Mask
 
 
@@ -52,7 +53,7 @@ def summed(
 
     def masked(parts: Sequence[FloatArray], masks: tuple[Mask, ...]) -> FloatArray:
         each = zip(parts, own, masks, strict=True)
-        return np.concatenate([without_own(x[m], of[m]) for x, of, m in each])
+        return np.concatenate([without(x[m], of[m]) for x, of, m in each])
 
     def solved(masks: tuple[Mask, ...]) -> FloatArray:
         left, right = masked(scaled, masks), masked(outputs, masks)

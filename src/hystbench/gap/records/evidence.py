@@ -46,6 +46,8 @@ class Evidence:
     """What the device takes and gives."""
     device_kind: DeviceKind | None = None
     """Kind of the device, where dataset.yaml tells it."""
+    free_starts: bool = False
+    """Whether records may begin in any state of a linear base."""
 
     @property
     def deciding(self) -> Evidence:

@@ -60,9 +60,9 @@ def left_over(
 ) -> tuple[FloatArray, Mask]:
     """Residual without what is new in the record, and the samples that are scored.
 
-    Samples that were not measured neither estimate nor are scored. An unknown velocity
-    at the first sample is estimated on the whole record, as is usual where a window
-    begins in the middle of a motion.
+    Samples that were not measured neither estimate nor are scored. What is not known of
+    the first sample is estimated on the whole record, as is usual where a window begins
+    in the middle of a motion.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def left_over(
     scored : ndarray of bool, shape (n,)
     """
     residual = record.y - simulated
-    if record.decay_s is not None:
+    if record.of_start.shape[1]:
         everything = record.counted
         residual = without_nuisance(residual, record.of_start, everything)
     if nuisance is None:

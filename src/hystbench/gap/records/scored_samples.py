@@ -32,9 +32,8 @@ class ScoredSamples:
     positions: tuple[NDArray[np.intp], ...]
     """Positions of the scored samples in each record, increasing."""
     of_start: tuple[FloatArray, ...] = ()
-    """Shape (samples, 0 or 1) each. What an unknown velocity at the first sample of
-    each record does there; it is taken off every signal. By default no record has
-    one."""
+    """Shape (samples, columns) each. What is not known of the first sample of each
+    record does there; it is taken off every signal. By default all is known."""
     apart: tuple[int, ...] = ()
     """Samples from one to the next at which signals are given, by record; they are
     straight lines in between. By default they are given at all samples."""
@@ -51,7 +50,7 @@ class ScoredSamples:
             place = rng.random(len(edges) - 1)
             chosen = edges[:-1] + (place * np.diff(edges)).astype(np.intp)
             positions.append(measured[chosen])
-        if all(record.decay_s is None for record in records):
+        if not any(record.of_start.shape[1] for record in records):
             return cls(tuple(positions))
         of_start = [
             record.of_start[own] for record, own in zip(records, positions, strict=True)
@@ -98,29 +97,27 @@ class ScoredSamples:
 
     def _without_starts(self, signal: FloatArray) -> FloatArray:
         """Do as :func:`without` with the scored samples of all records at once."""
-        column, squares, begins, counts = self._starts
+        bases, begins, counts = self._starts
         rows = signal.reshape(len(signal), -1)
-        with np.errstate(invalid="ignore", over="ignore"):  # a signal may run away
-            shares = np.add.reduceat(column * rows, begins) / squares
-        shares[~np.isfinite(shares).all(axis=1)] = 0.0
-        return signal - (column * np.repeat(shares, counts, axis=0)).reshape(
-            signal.shape
-        )
+        for column in bases.T[:, :, None]:
+            with np.errstate(invalid="ignore", over="ignore"):  # it may run away
+                shares = np.add.reduceat(column * rows, begins)
+            shares[~np.isfinite(shares).all(axis=1)] = 0.0
+            rows = rows - column * np.repeat(shares, counts, axis=0)
+        return rows.reshape(signal.shape)
 
     @cached_property
-    def _starts(
-        self,
-    ) -> tuple[FloatArray, FloatArray, NDArray[np.intp], NDArray[np.intp]]:
-        """Column of all records, its squares in each, where each begins and its size.
+    def _starts(self) -> tuple[FloatArray, NDArray[np.intp], NDArray[np.intp]]:
+        """Orthonormal columns of each record, where each begins, and its size.
 
-        The squares are infinite where nothing is taken off; empty records are left out.
+        Columns of nothing fill up those of records that have fewer; empty records are
+        left out.
         """
-        own = [x[:, 0] if x.shape[1] else np.zeros(len(x)) for x in self.of_start]
-        squares = np.array([float(np.vdot(x, x)) for x in own if len(x)])
-        counts = np.array([len(x) for x in own if len(x)], dtype=np.intp)
-        column = np.concatenate(own)[:, None]
-        squares[squares == 0.0] = np.inf
-        return column, squares[:, None], np.cumsum(counts) - counts, counts
+        own = [orthonormal_of(x) for x in self.of_start if len(x)]
+        counts = np.array([len(x) for x in own], dtype=np.intp)
+        most = max(x.shape[1] for x in own)
+        full = [np.pad(x, ((0, 0), (0, most - x.shape[1]))) for x in own]
+        return np.concatenate(full), np.cumsum(counts) - counts, counts
 
     def about_means(self, values: FloatArray) -> FloatArray:
         """Take the mean of each record off, shape (scored samples,)."""
@@ -159,22 +156,30 @@ def _between(
     return np.asarray(start + part * (signal[left + 1] - start))
 
 
-def without(signal: FloatArray, column: FloatArray) -> FloatArray:
-    """Take off a signal what a column explains of it, by least squares.
+def orthonormal_of(columns: FloatArray) -> FloatArray:
+    """Give orthonormal columns that span others; what is zero everywhere spans nothing.
+
+    Parameters
+    ----------
+    columns : ndarray, shape (n, k)
+    """
+    return np.linalg.qr(columns[:, np.any(columns != 0.0, axis=0)])[0]
+
+
+def without(signal: FloatArray, columns: FloatArray) -> FloatArray:
+    """Take off a signal what columns explain of it, by least squares.
 
     Parameters
     ----------
     signal : ndarray, shape (n,) or (n, k)
-    column : ndarray, shape (n, 0 or 1)
+    columns : ndarray, shape (n, columns)
     """
-    square = float(np.vdot(column, column))
-    if square == 0.0:
+    if not columns.shape[1] or not len(signal):
         return signal
+    basis = orthonormal_of(columns)
     with np.errstate(invalid="ignore", over="ignore"):  # a signal may run away
-        share = column.T @ signal.reshape(len(signal), -1) / square
-    if not np.all(np.isfinite(share)):
-        return signal
-    return signal - (column @ share).reshape(signal.shape)
+        share = basis.T @ signal
+    return signal - basis @ share if np.all(np.isfinite(share)) else signal
 
 
 @dataclass(frozen=True)
@@ -189,7 +194,7 @@ class Compared:
     def residual(self) -> FloatArray:
         """Measured minus simulated, shape (n,).
 
-        Without what an unknown velocity at the first sample does.
+        Without what is not known of the first sample does.
         """
         return without(self.record.y - self.simulated, self.record.of_start)
 
