@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.bases.linear import linear_of
 from hystbench.gap.bases.orders import Judged, Orders, none_lowers_both
 from hystbench.gap.records.evidence import Evidence
 from hystbench.quantities import Quantities
@@ -46,3 +48,38 @@ def test_a_constant_is_judged_on_folds_as_models_are(gives, squares):
     about = Quantities("voltage", gives)
     found = Orders(Evidence("made", records, (), "linear", quantities=about))
     assert found.constant == pytest.approx(np.sqrt(np.mean(squares)))
+
+
+def filtered(u, dt, up, down):
+    block = TransferFunction(numerator=up, denominator=down, hold="linear")
+    return block.simulate(u, u, dt)
+
+
+def lagging(disturbed=0.0, tau_s=None):
+    """A lag, disturbed by a sine that no input causes, or beside a mode that swings."""
+    dt, n = 0.01, 1200
+    rng = np.random.default_rng(3)
+    u = np.convolve(rng.standard_normal(n), np.ones(20) / 20, "same")
+    y = filtered(u, dt, (1.0,), (0.3, 1.0))
+    y += disturbed * np.std(y) * np.sin(2 * np.pi * 0.4 * dt * np.arange(n))
+    if tau_s:
+        mode = (1.0, 2 / tau_s, (2 * np.pi * 2.0) ** 2)
+        y += filtered(u, dt, (30.0,), mode)
+    y += 0.01 * np.std(y) * rng.standard_normal(n)
+    return Evidence("made", (record(u, y, dt=dt),), (), "linear")
+
+
+def swings(found):
+    poles = np.roots(found.model.chain[0].denominator)
+    return poles[poles.imag > 0]
+
+
+def test_a_disturbance_is_no_swing_of_the_base():
+    """A pole that hardly fades goes on as the sine does, on folds as well."""
+    assert all(-1 / swings(linear_of(lagging(0.3))).real < 12.0)  # the record has 12 s
+
+
+def test_a_device_that_swings_for_longer_than_its_record_keeps_its_mode():
+    (pole,) = swings(linear_of(lagging(tau_s=60.0)))
+    assert pole.imag == pytest.approx(2 * np.pi * 2.0, rel=1e-3)
+    assert -1 / pole.real > 30.0

@@ -396,8 +396,9 @@ def test_where_one_record_shows_a_force_both_answers_are_judged_on_blocks(monkey
     [
         ((1, 1), 0, (1, 16), 0.104, True),  # a few thousandths of the gap of 1 more
         ((1, 1), 0, (1, 16), 0.2, False),  # a tenth
-        ((1, 1, 1), 0, (1, 16), 0.1, False),  # by more effects
-        ((1, 1), 1, (1, 16), 0.1, False),  # and numbers of a host that nobody set free
+        ((1, 1, 1), 0, (1, 16), 0.1, True),  # many numbers are those of two effects
+        ((1, 1), 1, (1, 16), 0.1, True),  # and numbers of a host that nobody set free
+        ((1, 1, 1), 1, (1, 16), 0.1, False),  # by more effects
         ((1, 1), 0, (1, 2), 0.1, False),  # of no fewer numbers
         ((1, 16), 0, (1, 16), 0.1, False),
         ((1, "path"), 0, (1, 16), 0.1, False),

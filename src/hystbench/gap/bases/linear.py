@@ -23,9 +23,10 @@ from hystbench.gap.bases.orders import (
     ROUNDS,
     Found,
     Orders,
-    none_lowers_both,
+    first_none_lowers,
     simplest_as_good,
     with_plainest_start,
+    without_lasting_swings,
 )
 from hystbench.gap.bases.slow_drive import behind_a_slow_drive
 from hystbench.gap.bases.split_linear import ENOUGH, best_split, chain_of, is_bent
@@ -286,8 +287,9 @@ def _chosen(evidence: Evidence) -> Chosen:
     orders = everything if coarse is evidence else Orders(coarse)
     gain, moved = static(orders), impedance(orders)
     found = orders.searched(gain)
-    tried: list[Sum | Found] = [gain, *([] if moved is None else [moved]), *found]
-    best = next(item for item in tried if none_lowers_both(item, tried))
+    every: list[Sum | Found] = [gain, *([] if moved is None else [moved]), *found]
+    tried = without_lasting_swings(every)
+    best = first_none_lowers(tried)
     if isinstance(best, Sum):
         # An impedance was fitted to all samples, as its records are never coarse.
         best = static(everything) if best is gain else best

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from typing import TypeVar
 
 import numpy as np
 
@@ -22,7 +23,13 @@ from hystbench.gap.bases.spectral import (
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.folds import Fold, make_folds
 from hystbench.gap.records.scored_samples import without
-from hystbench.gap.thresholds import ANOTHER_MODE, NUMBER_PAYS, TIMING_PAYS
+from hystbench.gap.thresholds import (
+    ANOTHER_MODE,
+    LOOSE,
+    MOST,
+    NUMBER_PAYS,
+    TIMING_PAYS,
+)
 from hystbench.record import FloatArray, Mask
 
 #: Highest order that is tried, of all poles at once, and with modes added one by one.
@@ -44,6 +51,9 @@ FOLD_ROUNDS = 4
 ROUGH, ROUGH_ROUNDS = 3, 3
 
 
+Model = TypeVar("Model", bound="Judged")
+
+
 @dataclass(frozen=True)
 class Judged:
     """A model with its errors."""
@@ -59,6 +69,11 @@ class Judged:
     def holds(self) -> bool:
         """Whether it does better than a constant on folds that did not fit it."""
         return self.folds < (1 - NUMBER_PAYS) * self.constant
+
+    @property
+    def fades(self) -> bool:
+        """Whether every swing that it begins fades within the records."""
+        return True
 
 
 def lowers(better: Judged, item: Judged, share: float = NUMBER_PAYS) -> bool:
@@ -80,6 +95,23 @@ def none_lowers_both(item: Judged, others: Sequence[Judged]) -> bool:
     return not any(lowers(other, item) for other in others)
 
 
+def first_none_lowers(tried: Sequence[Model]) -> Model:
+    """Give the first model of which no other one lowers both errors."""
+    return next(item for item in tried if none_lowers_both(item, tried))
+
+
+def without_lasting_swings(tried: Sequence[Model]) -> Sequence[Model]:
+    """Leave out models with a swing that hardly fades, if they are little better.
+
+    Such a swing goes on by itself and imitates what no input causes, on folds of the
+    same record too. Without that of a device much more is left: four times the power.
+    """
+    fading = [item for item in tried if item.fades]
+    best, other = first_none_lowers(tried), first_none_lowers(fading)
+    much = best.folds**2 < LOOSE * other.folds**2
+    return tried if best.fades or much else fading
+
+
 @dataclass(frozen=True)
 class Found(Judged):
     """A ratio that was fitted, and the records that it was fitted to."""
@@ -87,6 +119,19 @@ class Found(Judged):
     orders: Orders
     task: OutputError
     ratio: Ratio
+
+    @property
+    def fades(self) -> bool:
+        """Whether a swing has less than half of its power in a record's second half.
+
+        One that repeats never ends, and no swing is begun in it.
+        """
+        records = self.task.records
+        poles = self.ratio.poles(self.task.scale)
+        seconds = max(len(record) * record.dt for record in records)
+        lasts = np.exp(poles.real * seconds) > MOST
+        repeat = any(record.repeats for record in records)
+        return repeat or not np.any(lasts & (poles.imag > 0))
 
 
 @dataclass(frozen=True)

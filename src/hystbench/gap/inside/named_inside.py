@@ -317,11 +317,19 @@ def beats_chain(inside: Inside, named: Named, floor: Floor, say: Say = silent) -
 
 
 def _in_fewer_numbers(inside: Inside, named: Named, square: float) -> bool:
-    """Tell whether as few effects, none of many numbers, leave as little of the gap."""
+    """Tell whether as few effects, none of many numbers, leave as little of the gap.
+
+    One of many numbers counts as two: it has the numbers of several.
+    """
     state, chain = inside.named.state, named.state
-    many = any(x.is_of_many_numbers for x in chain.added)
-    few = len(state.added) + inside.counts <= len(chain.added)
-    return many and few and not bends(state) and _no_better(chain, state, named, square)
+    many = sum(x.is_of_many_numbers for x in chain.added)
+    few = len(state.added) + inside.counts <= len(chain.added) + many
+    return (
+        bool(many)
+        and few
+        and not bends(state)
+        and _no_better(chain, state, named, square)
+    )
 
 
 def _in_fewer_effects(inside: Inside, named: Named, square: float) -> bool:
