@@ -201,6 +201,31 @@ def test_rounded_times_pass_and_a_stated_tolerance_counts(write_dataset):
     assert load_dataset(path).read("r").dt == pytest.approx(0.001, rel=1e-3)
 
 
+def test_samples_at_uneven_times_are_interpolated_where_that_is_asked_for(
+    write_dataset,
+):
+    rng = np.random.default_rng(2)
+    steps = 0.001 * rng.choice([1.0, 1.0, 0.7, 1.4], 400)
+    time = np.cumsum(steps)
+    u, y = np.sin(40 * time), np.cos(40 * time)
+    parts = (
+        "{file: r.csv, rows: [1, 200]}",
+        "{file: r.csv, name: b, rows: [201, 400]}",
+    )
+    records = f"records: [{', '.join(parts)}]\n"
+    path = write_dataset({"r.csv": csv_text(time, u, y)}, HEADER + records)
+    assert "'uneven: interpolate'" in message(lambda: load_dataset(path).read("r"))
+    even = HEADER.replace("unit: s}", "unit: s, uneven: interpolate}")
+    path.write_text(even + records)
+    first, second = (load_dataset(path).read(name) for name in ("r", "b"))
+    assert first.dt == second.dt == pytest.approx(0.001, rel=1e-6)
+    assert first.interpolated is None
+    np.testing.assert_allclose(first.u, np.sin(40 * (time[0] + first.time)), atol=4e-4)
+    np.testing.assert_allclose(
+        second.y, np.cos(40 * (time[200] + second.time)), atol=4e-4
+    )
+
+
 def test_text_that_is_not_utf_8_is_told(write_dataset):
     path = write_dataset({"r.csv": csv_text(TIME, U, Y)})
     path.write_bytes("name: prüf\n".encode("latin-1"))

@@ -13,11 +13,13 @@ import numpy as np
 from hystbench.command_files import reads
 from hystbench.device_kinds import DEVICE_KINDS, DeviceKind
 from hystbench.errors import InputError, nearest, short
+from hystbench.even_times import on_even_times, usual_step
 from hystbench.formats import SUFFIXES, Column, Table, read_table
 from hystbench.quantities import QUANTITIES, Quantities, Quantity, quantity_of
 from hystbench.record import Channel, Hold, Record, Use
 from hystbench.samples import (
     UNIFORM_TOLERANCE,
+    check_increases,
     check_moves,
     check_period,
     check_unit,
@@ -98,14 +100,6 @@ class Dataset:
             key: whole(table, column, rows, entry.get("missing"))
             for key, column in columns.items()
         }
-        if "time" in signals:
-            about = self.about["time"]
-            unit = seconds(f"{self.path}: time: unit", about["unit"])
-            tolerance = about.get("tolerance", UNIFORM_TOLERANCE)
-            time = signals["time"] * unit
-            dt = sampling_interval(table, time, tolerance, rows.start)
-        else:
-            dt = 1.0 / self._sampling_frequency(table, columns.values(), entry)
         # Time alone may be interpolated without a loss: it is uniform anyway.
         there = [
             np.isfinite(column.values[rows])
@@ -113,6 +107,22 @@ class Dataset:
             if key != "time"
         ]
         lost = ~np.all(there, 0)
+        if "time" in signals:
+            about = self.about["time"]
+            unit = seconds(f"{self.path}: time: unit", about["unit"])
+            time = signals.pop("time") * unit
+            if "uneven" in about:
+                check_increases(table, time, rows.start)
+                # One step for all parts of a file, so that one goes on with another.
+                dt = usual_step(columns["time"].values * unit)
+                signals, lost = on_even_times(
+                    f"{file}: {name}", time, dt, signals, lost, self.input_hold
+                )
+            else:
+                tolerance = about.get("tolerance", UNIFORM_TOLERANCE)
+                dt = sampling_interval(table, time, tolerance, rows.start)
+        else:
+            dt = 1.0 / self._sampling_frequency(table, columns.values(), entry)
         u, y = signals["input"], signals["output"]
         channels = [self.about["input"], self.about["output"]]
         for item, values in zip(channels, (u, y), strict=True):

@@ -158,6 +158,17 @@ def check_period(place: str, period: int, u: FloatArray) -> None:
         )
 
 
+def check_increases(table: Table, time: FloatArray, first: int) -> None:
+    """Refuse a column of time that does not increase from row to row."""
+    backward = np.flatnonzero(np.diff(time) <= 0)
+    if len(backward):
+        row = int(backward[0])
+        raise InputError(
+            f"{table.path}: {table.place(first + row + 1)}: time goes from "
+            f"{time[row]:g} s to {time[row + 1]:g} s; expected it to increase"
+        )
+
+
 def sampling_interval(
     table: Table,
     time: FloatArray,
@@ -169,21 +180,15 @@ def sampling_interval(
 
     Of a record that no dataset.yaml describes, none is named to the user.
     """
+    check_increases(table, time, first)
     steps = np.diff(time)
-    backward = np.flatnonzero(steps <= 0)
-    if len(backward):
-        row = int(backward[0])
-        raise InputError(
-            f"{table.path}: {table.place(first + row + 1)}: time goes from "
-            f"{time[row]:g} s to {time[row + 1]:g} s; expected it to increase"
-        )
     dt = float(time[-1] - time[0]) / len(steps)
     # Printed times are rounded: what counts is the distance from the uniform grid.
     away = np.abs(time - time[0] - dt * np.arange(len(time)))
     step_error = np.abs(steps - dt)
     row = int(np.argmax(step_error))
     if step_error[row] > tolerance * dt or away.max() > max(tolerance, 0.5) * dt:
-        hint = " (time: tolerance)" if described else ""
+        hint = " (time: tolerance, or 'uneven: interpolate')" if described else ""
         raise InputError(
             f"{table.path}: {table.place(first + row + 1)}: a step of {steps[row]:g} s "
             f"where the mean is {dt:g} s; expected uniform sampling within "

@@ -209,6 +209,25 @@ def test_of_a_clock_that_jitters_the_tolerance_is_written(run, tmp_path, share):
     load_dataset(tmp_path / "dataset.yaml").read("run-5")
 
 
+def test_samples_at_uneven_times_are_interpolated_on_demand(run, tmp_path):
+    rng = np.random.default_rng(1)
+    time = np.cumsum(DT * rng.choice([1.0, 1.0, 1.0, 2.4], 1800))
+    u = np.sin(2 * np.pi * 5 * time)
+    rows = (f"{t:.9g},{a:.9g},{2 * a:.9g}" for t, a in zip(time, u, strict=True))
+    file = tmp_path / "run.csv"
+    file.write_text("\n".join([HEADER, *rows]) + "\n")
+    status, _, error = run("init", file)
+    assert status != 0
+    assert "--uneven" in error
+    status, said, error = run("init", file, "--uneven", "interpolate")
+    assert (status, error) == (0, "")
+    assert "interpolated to even times" in said
+    assert written()["time"]["uneven"] == "interpolate"
+    record = load_dataset(tmp_path / "dataset.yaml").read("run-1")
+    assert record.dt == pytest.approx(DT)
+    np.testing.assert_allclose(record.y, 2 * record.u, atol=1e-6)
+
+
 def with_rows_lost(folder, lost, more=""):
     """Write two records, of the first of which stretches of rows are lost."""
     for hz in (5, 10):

@@ -89,6 +89,8 @@ class Ticks:
     step: float
     tolerance: float
     rounded: bool
+    uneven: bool = False
+    """Whether samples are to be interpolated to even times."""
 
 
 def jumps_of(time: FloatArray) -> list[int]:
@@ -136,9 +138,10 @@ def ticks_of(time: FloatArray, where: str, table: Table, first: int = 0) -> Tick
     raise InputError(
         f"{where}: {table.place(first + int(places[row + 1]))}: a step in time of "
         f"{steps[row]:g} s where the mean is {mean:g} s; expected uniform sampling: "
-        "give the parts between such steps as files of their own; or, if only the "
-        f"clock is uneven, give 'sampling_frequency_hz: {1 / mean:.4g}' in place of "
-        "'time' (init: --sampling-frequency)"
+        "give the parts between such steps as files of their own; if samples are even "
+        f"and only their times are not, give 'sampling_frequency_hz: {1 / mean:.4g}' "
+        "in place of 'time' (init: --sampling-frequency); if they were taken at these "
+        "times, give 'uneven: interpolate' in 'time' (init: --uneven)"
     )
 
 

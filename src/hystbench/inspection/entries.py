@@ -57,7 +57,7 @@ def content_of(
         about["device"] = {"kind": user.given.device}
     clocks: list[tuple[Ticks | None, list[int]]] = [(None, [])] * len(parts)
     if signals.time is not None:
-        clocks = [clock_of_part(part, signals) for part in parts]
+        clocks = [clock_of_part(part, signals, user) for part in parts]
     all_ticks = [ticks for ticks, _ in clocks if ticks is not None]
     rounded = any(ticks.rounded for ticks in all_ticks)
     entries: list[Entry] = []
@@ -76,7 +76,10 @@ def content_of(
     elif all_ticks:
         about["time"] = {"column": signals.time, "unit": signals.time_unit}
         tolerance = max(ticks.tolerance for ticks in all_ticks)
-        if tolerance > UNIFORM_TOLERANCE:
+        if any(ticks.uneven for ticks in all_ticks):
+            about["time"]["uneven"] = "interpolate"
+            user.note("uneven", time=signals.time)
+        elif tolerance > UNIFORM_TOLERANCE:
             about["time"]["tolerance"] = round(tolerance, 3)
             user.note("tolerance", percent=100 * tolerance)
     elif (frequency := _frequency(parts, signals, user)) is not None:
@@ -191,10 +194,11 @@ def cut_in_two(entry: Entry, record: Record, missing: Mask) -> list[Entry]:
 
     Samples that are missing at the cut belong to neither.
     """
-    first, last = entry.get("rows", (1, len(record)))
+    first, last = entry.get("rows", (1, len(missing)))
     samples = last - first + 1
     part = samples - samples // HELD_OUT_PART
-    period = find_period(record.u)
+    # Of an uneven clock the rows are not the samples.
+    period = find_period(record.u) if samples == len(record) else None
     if period is not None and samples >= 3 * period:
         part = max(round(part / period), 2) * period
         if samples - part < period:

@@ -7,11 +7,13 @@ from typing import Any
 import numpy as np
 
 from hystbench.errors import InputError
+from hystbench.even_times import usual_step
 from hystbench.inspection.clocks import Ticks, jumps_of, ticks_of
 from hystbench.inspection.columns import SHORTEST, ChosenColumns, RecordColumns
 from hystbench.inspection.input_summary import cannot_be_bridged, runs
 from hystbench.inspection.user import User, words
 from hystbench.record import Mask
+from hystbench.samples import UNIFORM_TOLERANCE
 from hystbench.units import seconds
 
 MOST_LOST = 0.5
@@ -20,7 +22,7 @@ is no clock."""
 
 
 def clock_of_part(
-    part: RecordColumns, signals: ChosenColumns
+    part: RecordColumns, signals: ChosenColumns, user: User
 ) -> tuple[Ticks, list[int]]:
     """Look at the clock of a part.
 
@@ -35,13 +37,19 @@ def clock_of_part(
     ------
     InputError
         If it is uneven all over, or samples enough for a record come in other steps
-        one after the other: another sampling rate is no lost row.
+        one after the other, as another sampling rate is no lost row; but not where
+        ``--uneven`` says that samples are to be interpolated.
     """
     unit = seconds("--time-unit", signals.time_unit)
     time = part.columns[signals.time or ""].values * unit
+    even = Ticks(usual_step(time), UNIFORM_TOLERANCE, False, uneven=True)
     try:
-        return ticks_of(time, part.where, part.table), []
+        ticks = ticks_of(time, part.where, part.table)
+        as_it_is = user.given.uneven is None or ticks.tolerance <= UNIFORM_TOLERANCE
+        return ticks if as_it_is else even, []
     except InputError:
+        if user.given.uneven is not None:
+            return even, []
         jumps = jumps_of(time)
         parts = list(pairwise([0, *jumps, len(time)]))
         there = np.isfinite(time)

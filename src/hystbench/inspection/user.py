@@ -33,6 +33,10 @@ class Flags:
         Literal["interpolate", "split"] | None,
         "What to do where samples are missing.",
     ] = None
+    uneven: Annotated[
+        Literal["interpolate"] | None,
+        "What to do where samples were taken at uneven times.",
+    ] = None
     device: Annotated[
         DeviceKind | None,
         ChoiceOrNone(DEVICE_KINDS),
