@@ -87,6 +87,16 @@ static double hb_rounded_dead_zone(double half_width, double rounding, double z)
     return z - half_width * tanh(z / rounding);
 }
 
+static double hb_between(double upper, double lower, double z)
+{
+    return hb_most(lower, hb_least(upper, z));
+}
+
+static double hb_dead_band(double upper, double lower, double z)
+{
+    return z - hb_between(upper, lower, z);
+}
+
 static double hb_backlash(double half_width, double *started, double *w, double z)
 {
     if (*started == 0) *w = z;

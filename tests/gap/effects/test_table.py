@@ -20,11 +20,11 @@ CURVES = {
     "exponential": ("exponential-curve", "exponential-stiffness"),
     "two slopes": ("two-slopes",),
     "limit, or levels off": (
-        *("drive-saturation", "saturation"),
+        *("drive-saturation", "drive-limits", "saturation"),
         *("saturating-stiffness", "transverse-springs"),
     ),
     "magnitude": ("unsigned-sensor",),
-    "dead zone, or contact": ("dead-zone", "stop"),
+    "dead zone, or contact": ("dead-zone", "dead-band", "stop"),
     "play, or friction behind a clearance": ("backlash", "slider-with-gap"),
     "dry friction": ("friction",),
     "drag": ("drag",),

@@ -19,7 +19,7 @@ from hystbench.gap.effects.places import (
     places_between_halves,
     places_in_drive,
 )
-from hystbench.gap.effects.variant import Values, Variant, logarithmic
+from hystbench.gap.effects.variant import Refused, Values, Variant, logarithmic
 from hystbench.gap.simulation.simulation import Simulation
 
 
@@ -180,11 +180,12 @@ def _fastest(simulation: Simulation, place: int) -> float:
 
 
 class DeadZone(Effect):
-    """A dead zone of up to half of the largest input, with corners or rounded."""
+    """A dead zone of up to half of the input: with corners, rounded, of two edges."""
 
     name = "dead-zone"
     shows = "amplitude"
     place = "drive"
+    laws = ("dead-band",)
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the dead zone in the drive, and inside a linear base."""
@@ -204,6 +205,15 @@ class DeadZone(Effect):
                 unit={"half_width": 1e-3 * widths[0]},
                 positive=("half_width",),
             )
+            lowest, highest = _ends(simulation, place)
+            if lowest < 0.0 < highest:
+                yield self.inserted(
+                    simulation,
+                    place,
+                    law="dead-band",
+                    form="of two edges",
+                    grids={"upper": EDGES * highest, "lower": EDGES[::-1] * lowest},
+                )
 
     def around(self, passed: Passed) -> Iterator[Law]:
         """Offer narrow and wide ones before the host."""
@@ -213,6 +223,22 @@ class DeadZone(Effect):
             yield self.curve("before", "rounded", half_width=width, rounding=2 * width)
 
 
+EDGES = np.array([0.01, 0.03, 0.08, 0.2, 0.5])
+"""Edges of a dead zone over the largest input on their side."""
+LIMITS = np.array([0.02, 0.1, 0.3, 0.55, 0.75, 0.9, 0.98])
+"""Limits of a drive over the largest input on their side."""
+MIDDLE = 0.5
+"""Share of it from which a fit of one limit goes either way."""
+NOTHING = 1e-6
+"""Share of it that is none."""
+
+
+def _ends(simulation: Simulation, place: int) -> tuple[float, float]:
+    """Give the lowest and the highest value of a signal."""
+    signals = simulation.at(place)
+    return min(float(z.min()) for z in signals), max(float(z.max()) for z in signals)
+
+
 SOFT = {"sharpness": (SOFTEST, SHARPEST)}
 """Sharpness of a soft limit: a sharper one is the hard one."""
 ROUND = np.array([5.0, 8.0, 14.0])
@@ -220,12 +246,12 @@ ROUND = np.array([5.0, 8.0, 14.0])
 
 
 class DriveSaturation(Effect):
-    """A limit of the input: hard, rounded, or soft before a mass or a store."""
+    """A limit of the input, or one each way: hard; alike, it may be rounded or soft."""
 
     name = "drive-saturation"
     shows = "amplitude"
     place = "drive"
-    laws = ("saturation",)
+    laws = ("drive-limits", "saturation")
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer limits from 30 to 99.5 % of the largest signal there.
@@ -238,6 +264,7 @@ class DriveSaturation(Effect):
         for place in places_in_drive(simulation):
             largest = simulation.largest(place)
             yield self.inserted(simulation, place, grids={"limit": largest * share})
+            yield from self._apart(simulation, place)
             if soft:
                 levels = logarithmic(0.3 * largest, 30 * largest, 5)
                 yield self.inserted(
@@ -261,8 +288,39 @@ class DriveSaturation(Effect):
                 refused={"sharpness": "either"},
             )
 
+    def _apart(self, simulation: Simulation, place: int) -> Iterator[Variant]:
+        """Offer a limit on one side, and one on each."""
+        lowest, highest = _ends(simulation, place)
+        sides = {}
+        if highest > 0.0:
+            sides["upper"] = LIMITS * highest
+        if lowest < 0.0:
+            sides["lower"] = LIMITS[::-1] * lowest
+        # A drive of one sign ends at zero.
+        limits = {
+            side: (min(x[0], NOTHING * x[0]), max(x[-1], NOTHING * x[-1]))
+            for side, x in sides.items()
+        }
+        of_law = partial(
+            self.inserted, simulation, place, law="drive-limits", limits=limits
+        )
+        for side, levels in sides.items():
+            yield of_law(form=f"{side} alone", grids={side: levels})
+        if len(sides) == 2:
+            # At the outer end of its range a limit is none.
+            outer: dict[str, Refused] = {"upper": "upper", "lower": "lower"}
+            yield of_law(form="of two levels", grids=sides, refused=outer)
+
     def around(self, passed: Passed) -> Iterator[Law]:
-        """Offer limits before the host, met seldom and often, hard and soft."""
+        """Offer limits before the host, met seldom and often, hard and soft.
+
+        One on one side alone too, where the input goes to both.
+        """
+        if passed.both_ways:
+            level = MIDDLE * passed.given
+            one = partial(self.curve, "before", law="drive-limits")
+            yield one("upper alone", ranges={"upper": (0.0, np.inf)}, upper=level)
+            yield one("lower alone", ranges={"lower": (-np.inf, 0.0)}, lower=-level)
         for share in (0.9, 0.6):
             level = share * passed.given
             yield self.curve("before", limit=level)

@@ -148,6 +148,8 @@ def _is_static(simulation: Simulation) -> bool:
     return all(isinstance(block, Gain) for block in simulation.chain)
 
 
+ONE_WAY = 0.98
+"""Largest difference of two slopes: beyond it, hardly anything goes the other way."""
 EXPONENTIAL, SLOPES = "exponential-curve", "two-slopes"
 
 
@@ -197,7 +199,12 @@ class Asymmetry(Effect):
                 "before", "exponential", law=EXPONENTIAL, curvature=curvature
             )
         for size in (0.1, -0.1) if passed.both_ways else ():
-            yield self.curve("before", "two slopes", law=SLOPES, difference=size)
+            yield self.curve(
+                *("before", "two slopes"),
+                law=SLOPES,
+                ranges={"difference": (-ONE_WAY, ONE_WAY)},
+                difference=size,
+            )
 
     def without_itself(self, blocks: Sequence[Block]) -> tuple[Block, ...] | None:
         """Leave a sensor's zero alone, without a bias of the field."""
@@ -208,14 +215,18 @@ class Asymmetry(Effect):
         return replace(bias, **nothing), zero
 
     def _slopes(self, simulation: Simulation) -> Variant:
-        """Offer two slopes, which are a gain where the input goes one way alone."""
+        """Offer two slopes, which are a gain where the input goes one way alone.
+
+        Where nothing goes one way it is a limit of the drive.
+        """
         return self.inserted(
             simulation,
             0,
             law=SLOPES,
             form="two slopes",
             unit={"difference": 1e-3},
-            limits={"difference": (-1.0, 1.0)},
+            limits={"difference": (-ONE_WAY, ONE_WAY)},
+            refused={"difference": "either"},
         )
 
     def _squares(

@@ -65,12 +65,12 @@ class Variant:
     charge: float | None = None
     """Parameters to be charged, where it is not the number of those searched."""
     refused: dict[str, Refused] = field(default_factory=dict)
-    """Searched parameters that at an end of their range make another thing of the
-    effect: there it is not accepted."""
+    """Parameters that at an end of their range make another thing of the effect: there
+    it is not accepted."""
     replaces: bool = False
     """Whether the effect's block takes the place of the chain's at ``start``."""
     limits: dict[str, tuple[float, float]] = field(default_factory=dict)
-    """Ends of the range of searched parameters, where they are not the grid's."""
+    """Ends of the range of parameters, where they are not the grid's or the block's."""
     neutral: bool = True
     """Whether the chain is as before where all parameters solved for are zero."""
     zero: dict[str, float] | None = None
@@ -86,8 +86,10 @@ class Variant:
 
     def ends(self, name: str) -> tuple[float, float]:
         """Give the ends of a searched parameter's range."""
+        if name in self.limits:
+            return self.limits[name]
         axis = self.grids[name]
-        return self.limits.get(name, (float(axis.min()), float(axis.max())))
+        return float(axis.min()), float(axis.max())
 
     @property
     def freedom(self) -> float:

@@ -17,7 +17,7 @@ from hystbench.gap.effects.variant import Values, Variant
 from hystbench.gap.fitting.state import Added, Free, ModelState
 
 AT_END = 0.02
-"""Share of a range, of its logarithm, that is an end of it."""
+"""Share of a range that is an end of it; of its logarithm, if it has one sign."""
 
 
 def numbers_of(block: Block, position: int, variant: Variant) -> Iterator[Free]:
@@ -29,7 +29,7 @@ def numbers_of(block: Block, position: int, variant: Variant) -> Iterator[Free]:
         if isinstance(value, tuple):
             for element in range(len(value)):
                 yield Free(position, name, element)
-        elif name in variant.grids:
+        elif name in variant.grids or name in variant.limits:
             refused = variant.refused.get(name, "")
             yield Free(position, name, None, None, *variant.ends(name), refused)
         else:
@@ -186,7 +186,10 @@ def at_end(state: ModelState) -> str:
         if free.block not in state.added[-1].blocks or not free.refused:
             continue
         value = state.value(free)
-        place = np.log(value / free.low) / np.log(free.high / free.low)
+        if free.low < 0.0 < free.high:
+            place = (value - free.low) / (free.high - free.low)
+        else:
+            place = np.log(value / free.low) / np.log(free.high / free.low)
         upper = free.refused != "lower" and place > 1 - AT_END
         if upper or (free.refused != "upper" and place < AT_END):
             return f"{free.parameter} = {value:.3g}"

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
 
 from hystbench.blocks.calls import USED_UP
 from hystbench.blocks.external import External
+from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.fitting.parameters import parameters_of
 from hystbench.gap.fitting.state import Added, ModelState
@@ -53,7 +55,15 @@ def effect_mapping(
     shape = any(state.chain[k].hysteretic for k in item.blocks)
     path = any(x.effect == item.effect and not given for x, given in state.beside)
     of_size = size_error if np.isfinite(size_error) else None
-    error = error_of(of_size, {} if shape or path else parameters)
+    # A level that may be infinite means nothing at zero: there it is not missing.
+    levels = {
+        field.name
+        for k in item.blocks
+        for field in fields(state.chain[k])
+        if field.default in (HUGE, -HUGE)
+    }
+    known = {key: x for key, x in parameters.items() if key not in levels}
+    error = error_of(of_size, {} if shape or path else known)
     sure = 0.0 if own is None else confidence(own, ranking, left, error)
     return {
         "name": item.effect,
