@@ -1,7 +1,7 @@
 """What a case is to be: its effects, its family, its noise; drawn from a seed.
 
 Groups of families, forms and kinds of physics are left out in turn; they stand in
-``kept.yaml``. One of them is in no set but those of the score of what was left out, so
+``left_out.yaml``. One of them is in no set but those of the score of what was left out, so
 that no solver is improved on it.
 """
 
@@ -85,12 +85,12 @@ class LeftOutGroup:
         return tuple(form for form in effect.forms if form not in own)
 
 
-_TABLE: Mapping[str, Any] = load_yaml(Path(__file__).with_name("kept.yaml"))
+_TABLE: Mapping[str, Any] = load_yaml(Path(__file__).with_name("left_out.yaml"))
 GROUPS = {
     number: LeftOutGroup(**{key: tuple(names) for key, names in about.items()})
     for number, about in _TABLE["groups"].items()
 }
-LEFT_OUT_GROUP: int = _TABLE["kept"]
+LEFT_OUT_GROUP: int = _TABLE["left_out"]
 """The group that is left out now."""
 
 
@@ -134,7 +134,7 @@ class CaseSpec:
     campaign: str = "standard"
     """Which laboratory took the records."""
     group: int = LEFT_OUT_GROUP
-    """The group of forms that is left out, as ``kept.yaml`` has it."""
+    """The group of forms that is left out, as ``left_out.yaml`` has it."""
     of_group: bool = False
     """Whether an effect takes the group's own forms instead, where it has any."""
 
