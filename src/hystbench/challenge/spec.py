@@ -1,8 +1,8 @@
 """What a case is to be: its effects, its family, its noise; drawn from a seed.
 
 Groups of families, forms and kinds of physics are left out in turn; they stand in
-``left_out.yaml``. One of them is in no set but those of the score of what was left out, so
-that no solver is improved on it.
+``left_out.yaml``. One of them is in no set but those of the score of what was left out,
+so that no solver is improved on it.
 """
 
 from collections.abc import Mapping

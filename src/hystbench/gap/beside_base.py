@@ -18,7 +18,7 @@ from hystbench.gap.inside.host import Kind
 from hystbench.gap.inside.named_inside import Inside
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.thresholds import FURTHER, LOOSE, PAYS
+from hystbench.gap.thresholds import FURTHER, LOOSE, PAYS, pay_of_further
 from hystbench.model import Model
 
 
@@ -177,4 +177,4 @@ def _by_laws_of_fewer_numbers(found: BesideBase, again: BesideBase) -> bool:
 
 def _pay(effects: int) -> float:
     """Give by how much so many effects are to lower a score."""
-    return PAYS + FURTHER * (effects - 1) if effects > 0 else 0.0
+    return PAYS + pay_of_further(effects) if effects > 0 else 0.0

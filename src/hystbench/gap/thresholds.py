@@ -64,11 +64,23 @@ Odds of e^25. More than `PAYS`, as the first effect is not exactly right, and a 
 one can make up for what it lacks. How much more is a convention.
 """
 CERTAIN = 2 * FURTHER
-"""A gain that is beyond doubt: of a law of many numbers over one of fewer; on folds, of
-an effect whose size is not known; of a further force that takes little.
+"""A gain that is beyond doubt. It is asked of
 
-Of six records half of the power that was left. A convention.
+- a form that bends to much, where a simpler law takes nearly as much;
+- on folds, an effect whose size the records do not know;
+- inside the dynamics, a further force that takes little of the gap, and numbers of a
+  given base that were fitted and moved by more than `ABOUT`.
+
+What is worse by as much is not judged on folds, nor fitted to the end. Of six records
+it is half of the power that was left. A convention.
 """
+
+
+def pay_of_further(effects: int) -> float:
+    """Give what all effects but the first must gain together, of so many."""
+    return FURTHER * max(effects - 1, 0)
+
+
 SCALE = 4.0
 """One name is e times likelier than another: by less they cannot be told apart.
 

@@ -54,7 +54,7 @@ from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.simulation.memory import may_have_hysteresis
-from hystbench.gap.thresholds import AS_GOOD, FURTHER, PAYS
+from hystbench.gap.thresholds import AS_GOOD, FURTHER, PAYS, pay_of_further
 from hystbench.model import Model
 from hystbench.quantities import Quantities, angle_in
 from hystbench.sentences import finely
@@ -311,9 +311,9 @@ def beats_chain(inside: Inside, named: Named, floor: Floor, say: Say = silent) -
     say(f"inside: on folds {abs(gain):.1f} {better} than what a chain has found")
     gain -= state.moved_charge - chain.moved_charge
     ours, theirs = len(state.added) + inside.counts, len(chain.added)
-    # The first effect pays by the gain itself, as it does in a chain.
-    further = ours - theirs if theirs else max(ours - 1, 0)
-    return gain - FURTHER * further >= PAYS
+    # Beside no chain the first effect pays by the gain itself, as it does in a chain.
+    more = FURTHER * (ours - theirs) if theirs else pay_of_further(ours)
+    return gain - more >= PAYS
 
 
 def _in_fewer_numbers(inside: Inside, named: Named, square: float) -> bool:

@@ -40,6 +40,7 @@ from hystbench.gap.thresholds import (
     SCALE,
     SHAPE,
     UNNAMED_SHARE,
+    pay_of_further,
 )
 
 LITTLE = "what the effects leave of a slightly wrong shape is most of it"
@@ -145,7 +146,7 @@ def _of_few_numbers(found: SoFar, start: ModelState, floor: Floor, say: Say) -> 
     other = replace(other, state=replace(other.state, offered=start.offered))
     # They end with numbers that were fitted while other forms were allowed.
     state, value = finished(other.state, score)
-    value += FURTHER * max(len(state.added) - 1, 0)
+    value += pay_of_further(len(state.added))
     if value < finished(found.state, score)[1] - SCALE:
         say(f"they score better: {name} goes")
         rounds = tuple(
