@@ -102,7 +102,7 @@ class BesideBase:
         state, score = self.named.state, self.score_beside(self)
         now = score_of(state, score)
         if self.laws_of_many_numbers and len(self.named.rounds) == 1:
-            return self._few_numbers_may_do(score, now)
+            return self._simple_law_might_suffice(score, now)
         # What is asked below is of one or two effects of few numbers.
         if self.counts > 2 or self.laws_of_many_numbers:
             return True
@@ -123,7 +123,7 @@ class BesideBase:
             re_tuned_score(short, score, most, far) < most for short, most in shorter
         )
 
-    def _few_numbers_may_do(self, score: Score, now: float) -> bool:
+    def _simple_law_might_suffice(self, score: Score, now: float) -> bool:
         """Tell whether a re-tuned base may do with a law of few numbers, or with none.
 
         The laws are those that stood beside the one that was taken; one has to come as
@@ -152,7 +152,7 @@ def stays(found: BesideBase, again: BesideBase, re_tuned: bool = False) -> bool:
     """
     if len(again.start.sample) != len(found.start.sample):
         return True
-    if re_tuned and _by_laws_of_fewer_numbers(found, again):
+    if re_tuned and _needs_fewer_laws_of_many_numbers(found, again):
         return False
     score = found.score_beside(again)
     margin = found.margin if re_tuned else PAYS
@@ -165,7 +165,7 @@ def leaves_much(state: ModelState, start: ModelState, floor: Floor) -> bool:
     return state.power(square) > LOOSE * start.power(square)
 
 
-def _by_laws_of_fewer_numbers(found: BesideBase, again: BesideBase) -> bool:
+def _needs_fewer_laws_of_many_numbers(found: BesideBase, again: BesideBase) -> bool:
     """Tell whether a re-tuned base needs no laws of many numbers for as little left."""
     square = found.floor.square
     return (

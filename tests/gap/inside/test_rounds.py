@@ -426,4 +426,4 @@ def test_a_law_of_many_numbers_is_no_rival_of_few_that_leave_as_little(
     before = SimpleNamespace(before=state((), 1.0))
     named = Named(state(chain, 0.1), (before,))
     there = Inside(None, None, Named(state(inside, left)), "", counts)
-    assert named_inside_module._in_fewer_numbers(there, named, 1e-6) == better
+    assert named_inside_module._inside_is_simpler(there, named, 1e-6) == better

@@ -289,17 +289,17 @@ def beats_base(inside: Inside, start: ModelState, floor: Floor) -> bool:
 def beats_chain(inside: Inside, named: Named, floor: Floor, say: Say = silent) -> bool:
     """Tell whether effects inside do better than those in a chain.
 
-    They have to lower the score on folds by as much as effects do beside a base, or, in
-    place of what a chain has, as its replacement: each effect more than the other has
-    counts. Both models are refitted without
-    those records. Of two that leave as little no folds are asked: fewer effects of few
-    numbers stand, and beside a law of many numbers as many.
+    They must beat the chain on folds by `PAYS`, and by `FURTHER` more for each effect
+    that they have beyond the chain's; for each that they have fewer, by `FURTHER` less.
+    Beside a chain of no effects the first is not counted. For a fold both models are
+    refitted without it. Of two that leave as little no folds are asked: fewer effects
+    of few numbers stand, and beside a law of many numbers as many.
     """
     state, chain = inside.named.state, named.state
-    if _in_fewer_numbers(inside, named, floor.square):
+    if _inside_is_simpler(inside, named, floor.square):
         say("inside: laws of few numbers leave as little as a chain of many")
         return True
-    if _in_fewer_effects(inside, named, floor.square):
+    if _chain_is_simpler(inside, named, floor.square):
         say("inside: a chain of fewer effects leaves as little")
         return False
     score = Score.plain(state.sample, floor.square)
@@ -316,7 +316,7 @@ def beats_chain(inside: Inside, named: Named, floor: Floor, say: Say = silent) -
     return gain - more >= PAYS
 
 
-def _in_fewer_numbers(inside: Inside, named: Named, square: float) -> bool:
+def _inside_is_simpler(inside: Inside, named: Named, square: float) -> bool:
     """Tell whether as few effects, none of many numbers, leave as little of the gap.
 
     One of many numbers counts as two: it has the numbers of several.
@@ -332,7 +332,7 @@ def _in_fewer_numbers(inside: Inside, named: Named, square: float) -> bool:
     )
 
 
-def _in_fewer_effects(inside: Inside, named: Named, square: float) -> bool:
+def _chain_is_simpler(inside: Inside, named: Named, square: float) -> bool:
     """Tell whether a chain of fewer effects of few numbers leaves as little."""
     state, chain = inside.named.state, named.state
     fewer = 0 < len(chain.added) < len(state.added) + inside.counts

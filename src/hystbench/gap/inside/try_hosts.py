@@ -159,7 +159,9 @@ def in_each_host(
             break  # no other host could do better
     if not every:
         return None
-    return every, limit if enough or little else most()
+    if not (enough or little):
+        limit = most()
+    return every, limit
 
 
 def best_with_several(trial: HostTrial, every: Sequence[Tried], limit: float) -> Tried:

@@ -109,7 +109,7 @@ def looked_over(found: SoFar, start: ModelState, floor: Floor, say: Say) -> Name
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
         found = _one_by_one(start, floor, say, found.share, shape_first=True)
     if not cut_short:
-        found = _of_few_numbers(found, start, floor, say)
+        found = _instead_of_many_numbers(found, start, floor, say)
     state, gone = without_what_goes(found.state, floor, found.gap, say)
     rounds = found.rounds
     while not cut_short and len(state.added) > 1:
@@ -128,7 +128,9 @@ def looked_over(found: SoFar, start: ModelState, floor: Floor, say: Say) -> Name
     return Named(state, rounds, gone)
 
 
-def _of_few_numbers(found: SoFar, start: ModelState, floor: Floor, say: Say) -> SoFar:
+def _instead_of_many_numbers(
+    found: SoFar, start: ModelState, floor: Floor, say: Say
+) -> SoFar:
     """Add others one by one where one effect of many numbers leaves more than noise.
 
     So many numbers do much of what several laws of few do together. These are named if
@@ -166,9 +168,10 @@ def names(state: ModelState) -> set[str]:
 def _rivals_of_all(state: ModelState, rounds: Sequence[Round]) -> set[str]:
     """Give effects that are to be tried in the place of each that was added.
 
-    All of them where effects gave way or went: no round has seen just these together.
-    Else those that would pay beside them, though they take too little to be added: an
-    effect that has the place of another leaves what that one would take.
+    All offered effects, if any added effect was replaced or removed: no round has
+    ranked beside exactly this set. Else those that would pay beside them, though they
+    take too little to be added: an effect that has the place of another leaves what
+    that one would take.
     """
     taken = {one.ranking[0].effect for one in rounds if one.taken}
     if names(state) != taken:
