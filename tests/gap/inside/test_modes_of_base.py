@@ -5,7 +5,8 @@ import pytest
 
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.inside.modes_of_base import mode_of, one_by_one, poles_of
+from hystbench.gap.bases.poles import poles_of, residues_of
+from hystbench.gap.inside.modes_of_base import mode_of, one_by_one
 from hystbench.record import Channel
 
 DT = 0.005
@@ -36,7 +37,8 @@ def moves(mode, f):
 def test_both_parts_together_are_the_whole(output, direct):
     up = np.polyadd(direct * BOTH, [2.0, 30.0, 400.0, 9000.0])
     whole = TransferFunction(numerator=tuple(up), denominator=tuple(BOTH))
-    poles, residues = poles_of(whole)
+    poles = poles_of(whole)
+    residues = residues_of(whole, poles)
     places = [k for k in np.argsort(np.abs(poles)) if poles[k].imag > 0]
     split = [mode_of(whole, poles[k], residues[k], output) for k in places]
     rates = [np.sqrt(mode.stiffness / mode.mass) for mode, _ in split]

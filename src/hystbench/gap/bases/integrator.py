@@ -6,6 +6,7 @@ import numpy as np
 
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.linear import is_identified_linear
+from hystbench.gap.bases.poles import poles_of, residues_of
 from hystbench.gap.thresholds import MOST
 from hystbench.model import Model
 
@@ -34,10 +35,10 @@ def integrates(base: Model, span: float) -> bool:
 def _is_slow(block: TransferFunction, span: float) -> bool:
     if block.integrates:
         return True
-    down, up = np.array(block.denominator), np.array(block.numerator)
-    poles = np.roots(down)
-    pole = poles[np.argmin(np.abs(poles))]
+    poles = poles_of(block)
+    slowest = poles[[np.argmin(np.abs(poles))]]
+    (pole,) = slowest
     if abs(pole) * span >= 1.0 or pole.imag != 0.0:
         return False
-    residue = np.polyval(up, pole) / np.polyval(np.polyder(down), pole)
+    (residue,) = residues_of(block, slowest)
     return bool(abs(residue / pole) > MOST * abs(block.static_gain))

@@ -31,10 +31,8 @@ STEPS = 12
 """Rates tried between the neighbours of the best."""
 FURTHER_STEPS = 80
 """Drives that are tried with another rate downwards, or with a lag as well."""
-
-
-LONGEST_LAG = 1e3
-"""Seconds; what a block may have."""
+LONGEST_LAG = SlewLimit.parameters()["time_constant_s"].high
+"""In seconds: the longest that the block may have."""
 
 
 def behind_a_slow_drive(evidence: Evidence) -> tuple[Evidence, SlewLimit] | None:
@@ -92,23 +90,31 @@ def _with_more_numbers(
     """Let a drive fall at another rate, and lag as a servo, where each number pays."""
     from scipy.optimize import minimize
 
-    def servo(logs: Sequence[float]) -> SlewLimit:
+    def drive_of(logs: Sequence[float]) -> SlewLimit:
         rate, falling, *lag = np.exp(logs).tolist()
         tau = min(lag[0], LONGEST_LAG) if lag else 0.0
         return SlewLimit(rate=rate, falling=falling, time_constant_s=tau, form="sharp")
 
-    plain = cost
-    for numbers, start in ((1, [drive.rate] * 2), (2, [drive.rate] * 2 + [3 * dt])):
+    def best_from(*start: float) -> tuple[SlewLimit, float]:
         middle = np.log(start)
         simplex = np.vstack([middle, middle + np.log(1.5) * np.eye(len(start))])
         found = minimize(
-            lambda logs: left(servo(logs)),
+            lambda logs: left(drive_of(logs)),
             middle,
             method="Nelder-Mead",
             options={"maxfev": FURTHER_STEPS, "initial_simplex": simplex},
         )
-        if found.fun < min(cost, (1 - NUMBER_PAYS) ** (2 * numbers) * plain):
-            drive, cost = servo(found.x), float(found.fun)
+        return drive_of(found.x), float(found.fun)
+
+    # One number more, then two; a cost is a power, and so goes with the square.
+    rate = drive.rate
+    one_more, two_more = ((1 - NUMBER_PAYS) ** (2 * k) * cost for k in (1, 2))
+    of_two_rates, its_cost = best_from(rate, rate)
+    if its_cost < one_more:
+        drive, cost = of_two_rates, its_cost
+    with_a_lag, its_cost = best_from(rate, rate, 3 * dt)
+    if its_cost < min(cost, two_more):
+        drive, cost = with_a_lag, its_cost
     return drive, cost
 
 

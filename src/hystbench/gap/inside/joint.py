@@ -20,6 +20,7 @@ from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.structure import SHAPES, Structure
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
+from hystbench.gap.bases.poles import poles_of, residues_of
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.host_places import MODES
 from hystbench.gap.inside.modes_of_base import (
@@ -29,7 +30,6 @@ from hystbench.gap.inside.modes_of_base import (
     direct_of,
     mode_of,
     one_by_one,
-    poles_of,
     sum_of,
 )
 
@@ -62,7 +62,8 @@ def structure(
         return None
     if not all(isinstance(item, Gain) for item in behind):
         return None
-    poles, residues = poles_of(block)
+    poles = poles_of(block)
+    residues = residues_of(block, poles)
     if coincide(poles):
         return None
     peaks = np.abs(residues / np.where(poles.real, poles.real, 1.0))

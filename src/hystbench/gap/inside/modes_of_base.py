@@ -7,6 +7,7 @@ import numpy as np
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.bases.poles import poles_of, residues_of
 from hystbench.gap.fitting.state import Free
 from hystbench.record import ComplexArray
 
@@ -30,17 +31,10 @@ def coefficients_of(block: OtherModes, place: int) -> list[Free]:
     ]
 
 
-def poles_of(block: TransferFunction) -> tuple[ComplexArray, ComplexArray]:
-    """Give simple poles and their residues."""
-    down = np.array(block.denominator)
-    poles = np.asarray(np.roots(down), dtype=np.complex128)
-    residues = np.polyval(block.numerator, poles) / np.polyval(np.polyder(down), poles)
-    return poles, np.asarray(residues, dtype=np.complex128)
-
-
 def one_by_one(others: OtherModes) -> list[OtherModes]:
     """Write a ratio as a sum of ratios of order two, and one of all real poles."""
-    poles, residues = poles_of(others)
+    poles = poles_of(others)
+    residues = residues_of(others, poles)
     direct = direct_of(others)
     pairs = [[poles[k], poles[k].conj()] for k in np.flatnonzero(poles.imag > 0)]
     groups = [np.flatnonzero(np.isin(poles, pair)) for pair in pairs]
