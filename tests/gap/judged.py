@@ -13,8 +13,8 @@ PLAIN = {
 ALL_OWNED = Unowned(0.0)
 
 
-def judge(found, named, box=None, unnamed=ALL_OWNED, **more):
+def judge(found, named, box=None, unowned=ALL_OWNED, **more):
     """Choose the word for what is left where effects were named, or where none was."""
     if named:
-        return judge_names(found, unnamed)
-    return judge_none(found, unnamed, **PLAIN | {"explained_by_box": box} | more)
+        return judge_names(found, unowned)
+    return judge_none(found, unowned, **PLAIN | {"explained_by_box": box} | more)

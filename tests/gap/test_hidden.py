@@ -20,7 +20,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.judging.leftover import what_is_left
-from hystbench.gap.judging.unnamed import what_is_unnamed
+from hystbench.gap.judging.measure_unowned import measure_unowned
 from hystbench.gap.locate import locate
 from hystbench.gap.naming import add_effects as naming
 from hystbench.gap.naming.rank import rank
@@ -99,9 +99,9 @@ def verdict(names, family, offered=None):
     state = naming.add_effects(start, floor, Asked()).state
     left = what_is_left(start, state, floor)
     bound = floor.method == "upper-bound"
-    unnamed = what_is_unnamed(start, state, floor)
+    unowned = measure_unowned(start, state, floor)
     word, _ = judge(
-        left, bool(state.added), floor_is_upper_bound=bound, unnamed=unnamed
+        left, bool(state.added), floor_is_upper_bound=bound, unowned=unowned
     )
     return word, {item.effect for item in state.added}
 
@@ -164,4 +164,4 @@ def test_a_bad_contact_is_what_the_input_does_not_explain():
 
 def test_dropouts_are_seen_as_lone_samples():
     """More than the verdict takes for a gap that effects may explain."""
-    assert lone_share([item.residual for item in gap("dropouts")]) > FOREIGN
+    assert lone_share(gap("dropouts")) > FOREIGN

@@ -33,7 +33,7 @@ from hystbench.gap.judging.effect_rows import (
     simulator_mapping,
 )
 from hystbench.gap.judging.leftover import Leftover, size_follows, what_is_left
-from hystbench.gap.judging.unnamed import what_is_unnamed
+from hystbench.gap.judging.measure_unowned import measure_unowned
 from hystbench.gap.judging.unowned import Unowned
 from hystbench.gap.judging.verdict import (
     Verdict,
@@ -43,10 +43,11 @@ from hystbench.gap.judging.verdict import (
     what_mends,
 )
 from hystbench.gap.locate import curves, locate
-from hystbench.gap.locate.forms import LEAST_SHARE
+from hystbench.gap.locate.forms import LEAST_SHARE, View
 from hystbench.gap.locate.level_classes import beside_level
 from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.ladder import FitResult, contributions, rungs
+from hystbench.gap.progress import Say
 from hystbench.gap.records.black_box import BlackBox, black_box
 from hystbench.gap.records.floor import Floor, unrepeated
 from hystbench.gap.records.lone_samples import lone_share, lone_words
@@ -81,23 +82,19 @@ def judge_and_tell(
     limits : Limits or None
         Of the next experiment; those of the records where none are given.
     """
-    say, share = asked.say, asked.unnamed_share
+    say, allowed = asked.say, asked.unnamed_share
     around = found.inside or found  # what the effects are in
-    base, start, floor, named = around.base, around.start, found.floor, found.named
-    left = what_is_left(start, named.state, floor)
-    if named.state.added and left.little_named:
-        say(f"{LITTLE}: none named")
-        named = named.with_none_named()
-        left = what_is_left(start, named.state, floor)
+    base, start, floor = around.base, around.start, found.floor
+    named, left = _unless_little(found.named, start, floor, say)
     state, model = named.state, augmented(base, named.state)
     before, after = compared_records(start), compared_records(state)
     left = replace(
         left,
-        lone=lone_share([item.residual[item.record.counted] for item in after]),
+        lone=lone_share(after),
         unrepeated=unrepeated(after, floor.rms),
     )
     box = black_box(before, floor.rms)
-    judged = _judged(start, named, left, floor, box, found.own, share)
+    judged = _judged(start, named, left, floor, box, found.own, allowed)
     effects = _effects(named, model, left, floor, judged.trust)
     if judged.verdict == "named" and (doubt := likelier_wrong(effects)):
         judged = judged._replace(verdict="unnamed", reason=f"{doubt}; {judged.reason}")
@@ -106,36 +103,27 @@ def judge_and_tell(
     where = locate(before, floor, contributed)
     if where[0].share_of_gap_power >= LEAST_SHARE:
         say(where[0].sentence)
-    places = [(item.effect, item.place) for item in state.added]
-    moved = beside_level(where, places, little_left=left.share <= share)
-    moved = "" if judged.verdict == "no-gap" else moved
-    reason = "; ".join(part for part in (judged.reason, moved) if part)
+    if judged.verdict != "no-gap":
+        places = [(item.effect, item.place) for item in state.added]
+        moved = beside_level(where, places, little_left=left.share_left <= allowed)
+        reason = "; ".join(part for part in (judged.reason, moved) if part)
+        judged = judged._replace(reason=reason)
     experiment, why_none = tell_apart(base, named, start.records, floor, limits)
-    unit = start.records[0].output.unit
-    content: dict[str, Any] = {
-        "dataset": dataset,
-        "model": base.name,
-        "unit": unit,
-        "verdict": judged.verdict,
-        "reason": reason,
-        "effects": effects,
-        "fit": _fit(start, state, floor, left),
-        "unnamed": judged.unnamed.mapping(),
-        "where": [view.to_mapping() for view in where],
-        "ranking": ranking_rows(named),
-        "record_values": found.own.mapping(unit),
-        "not_tried": not_tried(named),
-        "taken_out": [item._asdict() for item in named.taken_out],
-        "next_experiment": None if experiment is None else experiment.mapping(),
-        "base_parameters": base_parameters(base, state),
-        "simulator": simulator_mapping(model, start.records),
-        "black_box": {"explained_on_folds": box.explained_on_folds},
-        "warnings": [lone_words("fit", after, left.lone)] if left.lone_matters else [],
-    }
-    if why_none:
-        content["no_experiment"] = why_none
-    if used_up := _used_up():
-        content["calls_used_up"] = {"bound": current().bound, "sentence": used_up}
+    lone = [lone_words("fit", after, left.lone)] if left.lone_matters else []
+    content = _content(
+        dataset,
+        found,
+        named,
+        judged,
+        effects,
+        left,
+        model=model,
+        where=where,
+        experiment=experiment,
+        no_experiment=why_none,
+        box=box,
+        warnings=lone,
+    )
     return Decision(
         base,
         state,
@@ -150,13 +138,33 @@ def judge_and_tell(
     )
 
 
+def _unless_little(
+    named: Named, start: ModelState, floor: Floor, say: Say
+) -> tuple[Named, Leftover]:
+    """Drop names that leave most of what may be a slightly wrong shape alone.
+
+    Returns
+    -------
+    Named
+        As it was, or with no effect.
+    Leftover
+        What that leaves.
+    """
+    left = what_is_left(start, named.state, floor)
+    if not (named.state.added and left.little_named):
+        return named, left
+    say(f"{LITTLE}: none named")
+    named = named.with_none_named()
+    return named, what_is_left(start, named.state, floor)
+
+
 class _Judged(NamedTuple):
     """A verdict, and what it is made of."""
 
     verdict: Verdict
     reason: str
     trust: float
-    unnamed: Unowned
+    unowned: Unowned
 
 
 def _judged(
@@ -166,19 +174,19 @@ def _judged(
     floor: Floor,
     box: BlackBox,
     own: OwnValues,
-    share: float,
+    allowed: float,
 ) -> _Judged:
     """Give the verdict on what was named, and say why."""
     state = named.state
-    unnamed = what_is_unnamed(start, state, floor, share)
+    unowned = measure_unowned(start, state, floor, allowed)
     if state.added:
-        verdict, why = judge_names(left, unnamed)
+        verdict, why = judge_names(left, unowned)
     else:
         bound = floor.method == "upper-bound"
-        size_tells = bound or left.is_new or unnamed.follows_nothing
+        size_tells = bound or left.is_new or unowned.follows_nothing
         verdict, why = judge_none(
             left,
-            unnamed,
+            unowned,
             explained_by_box=box.explained_on_folds,
             retuned=bool(start.free),
             floor_is_upper_bound=bound,
@@ -186,7 +194,7 @@ def _judged(
             mends=what_mends(start.records),
         )
     beside = f"beside {own.words} of some records' own" if own.records else ""
-    if verdict == "no-gap" and own.scales and own.share > share:
+    if verdict == "no-gap" and own.scales and own.share > allowed:
         verdict, why, beside = "unnamed", f"{own.reason}; beside that {why}", ""
     parts = (
         why,
@@ -196,9 +204,55 @@ def _judged(
         _predicts_nothing(state),
         _used_up(),
     )
-    trust = unnamed.trust(left.may_be_of_base)
+    trust = unowned.trust(left.may_be_of_base)
     reason = "; ".join(part for part in parts if part)
-    return _Judged(verdict, reason, trust, unnamed)
+    return _Judged(verdict, reason, trust, unowned)
+
+
+def _content(
+    dataset: str,
+    found: BesideBase,
+    named: Named,
+    judged: _Judged,
+    effects: list[dict[str, Any]],
+    left: Leftover,
+    *,
+    model: Model,
+    where: Sequence[View],
+    experiment: Experiment | None,
+    no_experiment: str,
+    box: BlackBox,
+    warnings: Sequence[str],
+) -> dict[str, Any]:
+    """Give what gap.json holds, but for what the hold-out records show."""
+    around = found.inside or found
+    base, start, state = around.base, around.start, named.state
+    unit = start.records[0].output.unit
+    content: dict[str, Any] = {
+        "dataset": dataset,
+        "model": base.name,
+        "unit": unit,
+        "verdict": judged.verdict,
+        "reason": judged.reason,
+        "effects": effects,
+        "fit": _fit(start, state, found.floor, left),
+        "unnamed": judged.unowned.mapping(),
+        "where": [view.to_mapping() for view in where],
+        "ranking": ranking_rows(named),
+        "record_values": found.own.mapping(unit),
+        "not_tried": not_tried(named),
+        "taken_out": [item._asdict() for item in named.taken_out],
+        "next_experiment": None if experiment is None else experiment.mapping(),
+        "base_parameters": base_parameters(base, state),
+        "simulator": simulator_mapping(model, start.records),
+        "black_box": {"explained_on_folds": box.explained_on_folds},
+        "warnings": list(warnings),
+    }
+    if no_experiment:
+        content["no_experiment"] = no_experiment
+    if used_up := _used_up():
+        content["calls_used_up"] = {"bound": current().bound, "sentence": used_up}
+    return content
 
 
 def _effects(
@@ -273,7 +327,7 @@ def _fit(
         "noise": floor.rms,
         "step_error": error,
         "floor": floor_with_steps(floor.rms, error),
-        "left": left.share,
+        "left": left.share_left,
         "lone_share": left.lone,
         "unrepeated": left.unrepeated,
     }

@@ -190,7 +190,7 @@ def histories(draw):
 def test_how_sure_a_name_is_follows_from_the_rows_of_the_ranking(history, loose):
     named, taken = history
     left = Leftover(100.0, 100.0 * loose, 100.0, 100.0)
-    fit = {"left": left.share}
+    fit = {"left": left.share_left}
     content = through_a_file({"ranking": ranking_rows(named), "fit": fit})
     for effect in taken:
         item = Added(effect, "drive", "", (), {}, 1.0)

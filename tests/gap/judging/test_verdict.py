@@ -47,7 +47,7 @@ def test_every_finding_has_a_word_and_a_reason(before, after, one, other, named,
     assert (word == "no-gap") <= (not named)
     assert reason
     assert "\n" not in reason
-    assert 0 <= found.share <= 1
+    assert 0 <= found.share_left <= 1
 
 
 @given(st.floats(-1, ABOVE_NOISE), st.none() | SHARES)
@@ -97,9 +97,9 @@ def test_beside_an_upper_bound_of_the_noise_what_follows_signals_may_be_a_gap(
     """A floor that may hold the whole gap: all else is judged as with a known one."""
     found = Leftover(before, after, one, other, output)
     some = Unowned(1.1 * UNNAMED_SHARE)
-    known = judge(found, False, 0.0, retuned=retuned, unnamed=some)
+    known = judge(found, False, 0.0, retuned=retuned, unowned=some)
     bound = judge(
-        found, False, 0.0, retuned=retuned, unnamed=some, floor_is_upper_bound=True
+        found, False, 0.0, retuned=retuned, unowned=some, floor_is_upper_bound=True
     )
     if known[0] != "no-gap":
         assert bound == known
@@ -119,7 +119,7 @@ def test_noise_whose_size_nobody_told_is_no_gap_if_it_is_little_and_follows_noth
 ):
     """Else white noise would be a gap, and noise of another colour none."""
     found = Leftover(0.0, 0.0, 0.0, 0.0, 1.0 / share**2)
-    given = {"unnamed": Unowned(structured), "floor_is_upper_bound": True}
+    given = {"unowned": Unowned(structured), "floor_is_upper_bound": True}
     assert judge(found, False, **given)[0] == word
     # Noise of a sensor has one size.
     assert judge(found, False, size_follows=True, **given)[0] == "unnamed"
@@ -130,10 +130,10 @@ def test_a_name_that_leaves_more_than_a_quarter_does_not_stand(share, word):
     """Windows of a free mass own paths: nearly all of it counted as owned."""
     some = Unowned(0.001, unrelated=0.001)
     found = Leftover(1000.0, 1000.0 * share, 1000.0, 1000.0 * share, 1e4)
-    assert judge(found, True, unnamed=some)[0] == word
+    assert judge(found, True, unowned=some)[0] == word
     # A wrong base leaves much of the whole; of the part beyond it little stays.
     beyond = Leftover(1000.0, 100.0, 5000.0, 5000.0 * share, 1e4)
-    assert judge(beyond, True, unnamed=some)[0] == "named"
+    assert judge(beyond, True, unowned=some)[0] == "named"
 
 
 def test_a_reason_tells_harm_and_the_unknown_of_the_black_box_as_they_are():
@@ -164,21 +164,21 @@ def test_a_percent_of_the_output_that_reshaping_explains_is_no_gap():
 @given(SHARES, SHARES, SHARES, st.floats(1e-3, 0.5))
 def test_what_stays_unnamed_decides_whether_a_name_holds(follows, changes, rest, share):
     found = Unowned(follows, share, changes, rest)
-    word, reason = judge(left(1.0), True, unnamed=found)
+    word, reason = judge(left(1.0), True, unowned=found)
     known = follows > share
     assert word == ("unnamed" if known or follows + rest > LOOSE else "named")
     assert ("too much stays" in reason) == (not known and follows + rest > LOOSE)
-    assert judge(left(1.0), True, unnamed=Unowned(0.0))[0] == "named"
+    assert judge(left(1.0), True, unowned=Unowned(0.0))[0] == "named"
 
 
 @pytest.mark.parametrize(("stays", "less"), [(0.05, False), (0.3, True)])
 def test_a_withdrawal_is_less_sure_beside_a_base_that_may_be_wrong(stays, less):
     found = Leftover(100.0, 2.0, 100.0, 100.0 * stays, 1e3)
-    word, reason = judge(found, True, unnamed=Unowned(0.02))
+    word, reason = judge(found, True, unowned=Unowned(0.02))
     assert word == "unnamed"
     assert ("less sure" in reason) == less
     # What is structured is none of that.
-    assert "less sure" not in judge(found, True, unnamed=Unowned(0.28))[1]
+    assert "less sure" not in judge(found, True, unowned=Unowned(0.28))[1]
 
 
 def test_what_would_be_no_gap_does_not_speak_against_a_name():
@@ -187,7 +187,7 @@ def test_what_would_be_no_gap_does_not_speak_against_a_name():
     found = Leftover(100.0, 8.0, 100.0, 15.0, output)
     assert judge(replace(found, before=8.0, all_before=15.0), False)[0] == "no-gap"
     structure = Unowned(0.03)
-    word, reason = judge(found, True, unnamed=structure)
+    word, reason = judge(found, True, unowned=structure)
     assert word == "named"
     assert "less sure" in reason
     # more of the output, what no reshaping could do, lone samples, and other periods
@@ -195,12 +195,12 @@ def test_what_would_be_no_gap_does_not_speak_against_a_name():
     alien = replace(found, after=14.0)
     lone, differing = replace(found, lone=0.9), replace(found, unrepeated=10.0)
     for other in (large, alien, lone, differing):
-        assert judge(other, True, unnamed=structure)[0] == "unnamed"
+        assert judge(other, True, unowned=structure)[0] == "unnamed"
     # Nor does a name stand where most of the gap is left.
-    assert judge(found, True, unnamed=Unowned(0.03, unrelated=0.3))[0] == "unnamed"
+    assert judge(found, True, unowned=Unowned(0.03, unrelated=0.3))[0] == "unnamed"
     for much, word in ((0.039, "named"), (0.041, "unnamed")):
-        assert judge(found, True, unnamed=Unowned(much))[0] == word
-    word, reason = judge(found, True, unnamed=Unowned(0.3))
+        assert judge(found, True, unowned=Unowned(much))[0] == word
+    word, reason = judge(found, True, unowned=Unowned(0.3))
     assert word == "unnamed"
     assert "follows known signals" in reason
     assert structure.trust() < structure.trust(of_base=True) < 1
@@ -316,7 +316,7 @@ def test_what_is_left_of_a_gap_is_counted_in_floors():
     assert abs(found.all_after) < 0.2
     assert abs(found.after) < 0.2
     assert found.before <= found.all_before
-    assert found.share < 0.05
+    assert found.share_left < 0.05
 
 
 def test_periods_that_are_found_are_what_mends_an_upper_bound():
@@ -360,23 +360,23 @@ def test_noise_that_follows_nothing_is_no_gap_but_where_the_noise_is_known():
     chance = Unowned(0.0, unrelated=0.3, by_chance=0.3)
     for bound, expected in ((True, "no-gap"), (False, "unnamed")):
         word, reason = judge(
-            found, False, -0.1, unnamed=chance, floor_is_upper_bound=bound
+            found, False, -0.1, unowned=chance, floor_is_upper_bound=bound
         )
         assert word == expected
         assert "moved in time" in reason
     # Nothing that seems to follow a signal needs no surrogate.
     nothing = Unowned(1e-4, unrelated=0.9)
     word, reason = judge(
-        found, False, -1e-5, unnamed=nothing, floor_is_upper_bound=True
+        found, False, -1e-5, unowned=nothing, floor_is_upper_bound=True
     )
     assert word == "no-gap"
     assert "follows no known signal" in reason
     # A black box that explains some of it sees what the surrogates do not.
-    word, reason = judge(found, False, 0.1, unnamed=chance, floor_is_upper_bound=True)
+    word, reason = judge(found, False, 0.1, unowned=chance, floor_is_upper_bound=True)
     assert word == "unnamed"
     # And noise has one size.
     word, reason = judge(
-        found, False, -0.1, size_follows=True, unnamed=chance, floor_is_upper_bound=True
+        found, False, -0.1, size_follows=True, unowned=chance, floor_is_upper_bound=True
     )
     assert word == "unnamed"
     assert "its size follows signals" in reason
@@ -387,5 +387,5 @@ def test_what_follows_nothing_is_noise_only_if_it_is_little(share, word):
     """A torque of cogging follows no known signal either, at a tenth of the output."""
     found = replace(left(2300.0), output=2300.0 / share**2)
     nothing = Unowned(1e-4, unrelated=0.9)
-    given = {"unnamed": nothing, "floor_is_upper_bound": True}
+    given = {"unowned": nothing, "floor_is_upper_bound": True}
     assert judge(found, False, -0.1, **given)[0] == word

@@ -17,7 +17,7 @@ PERIOD, DT = 100, 1e-3
 def test_noise_and_sines_have_no_lone_samples(seed, size):
     noise = np.random.default_rng(seed).normal(size=2000)
     sine = np.sin(np.arange(2000) / 7)
-    assert lone_share([size * noise, size * sine]) == 0.0
+    assert lone_share([compared(size * noise), compared(size * sine)]) == 0.0
 
 
 @given(st.integers(0, 1000), st.integers(1, 20))
@@ -28,11 +28,12 @@ def test_the_power_of_spikes_is_their_share(seed, count):
     spikes[rng.choice(4000, count, replace=False)] = 100.0
     power = count * 100.0**2
     expected = power / (power + noise @ noise)
-    assert lone_share([noise + spikes]) == pytest.approx(expected, rel=0.1)
+    assert lone_share([compared(noise + spikes)]) == pytest.approx(expected, rel=0.1)
 
 
 def test_a_residual_of_one_value_has_none():
-    assert lone_share([np.zeros(10), np.full(10, 3.0)]) == 0.0
+    residuals = np.zeros(10), np.full(10, 3.0)
+    assert lone_share([compared(each, period=None) for each in residuals]) == 0.0
 
 
 def compared(residual, period=PERIOD):

@@ -76,7 +76,7 @@ def show_on_hold_out(decided: ToShow, evidence: Evidence) -> Outcome:
     content = {**decided.content, "withdrawn": None, **shown.content}
     other, least = first if is_another(first, fitted.base) else None, np.inf
     if other is not None:
-        least = _left(other, fitted, evidence)
+        least = _left_by(other, fitted, evidence)
         content["reason"] += (
             f"; as it was first identified it leaves {sized(least, content['unit'])} "
             "rms of the hold-out records"
@@ -93,7 +93,7 @@ def show_on_hold_out(decided: ToShow, evidence: Evidence) -> Outcome:
     content["shortfall"] = shortfall(content)
     content = with_what_was_asked(content, decided.vocabulary)
     if put_in is not None:
-        alone_rms = _left(put_in.alone, fitted, evidence)
+        alone_rms = _left_by(put_in.alone, fitted, evidence)
         content = _with_put_in(content, put_in, alone_rms)
     content = with_device(content, evidence.device_kind, evidence.quantities)
     return replace(shown, content=content)
@@ -121,10 +121,9 @@ def _with_warnings(
     content: Mapping[str, Any], shown: Outcome, decided: ToShow, evidence: Evidence
 ) -> dict[str, Any]:
     """Warn of what hold-out records show; a base that predicts nothing has a gap."""
-    gap, fitted = content["gap"], decided.fitted
-    left = gap["before"] if gap["after"] is None else gap["after"]
+    fitted = decided.fitted
     still = rms_of_a_constant(evidence, fitted.floor.rms)
-    worse = worse_than_a_constant(left, still, content["unit"])
+    worse = worse_than_a_constant(_left_of(content["gap"]), still, content["unit"])
     lone = _lone_samples(shown, evidence, fitted.floor.rms)
     warned = {
         **content,
@@ -149,7 +148,7 @@ def _lone_samples(shown: Outcome, evidence: Evidence, floor: float) -> list[str]
         return []
     pairs = zip(evidence.hold_out, shown.outputs, strict=True)
     compared = [Compared(record.as_measured, after) for record, (_, after) in pairs]
-    lone = lone_share([item.residual[item.record.counted] for item in compared])
+    lone = lone_share(compared)
     before = max(gap["before"] ** 2, floor**2)
     if not much_stands_alone(lone, gap["after"] ** 2, before):
         return []
@@ -181,7 +180,7 @@ def _twice_as_much(content: Mapping[str, Any]) -> list[str]:
     """Say that hold-out records leave twice the rms of fit records, or more."""
     gap, unit = content["gap"], content["unit"]
     of_fit = content["fit"]["before" if content.get("withdrawn") else "after"]
-    left = gap["before"] if gap["after"] is None else gap["after"]
+    left = _left_of(gap)
     if left is None or of_fit is None:
         return []
     if LOOSE * left**2 <= max(gap["noise_floor"], of_fit) ** 2:
@@ -192,6 +191,14 @@ def _twice_as_much(content: Mapping[str, Any]) -> list[str]:
         "range or another state of the device, a second cause that the input does not "
         "tell, or too few fit records for what was fitted"
     ]
+
+
+def _left_of(gap: Mapping[str, Any]) -> Any:
+    """Give the RMS that the model leaves; where it cannot be run, the base's.
+
+    None where there is neither.
+    """
+    return gap["before"] if gap["after"] is None else gap["after"]
 
 
 def rms_of_a_constant(evidence: Evidence, floor: float) -> float:
@@ -231,7 +238,7 @@ def worse_than_a_constant(left: float, still: float, unit: str) -> list[str]:
     ]
 
 
-def _left(base: Model, fitted: FitResult, evidence: Evidence) -> float:
+def _left_by(base: Model, fitted: FitResult, evidence: Evidence) -> float:
     """RMS residual of another base on the hold-out records."""
     records = evidence.hold_out
     outputs = run_base(base, records, evidence.input_hold)

@@ -28,7 +28,7 @@ def beside_a_drift(
     generic: Groups,
     slow_power: Groups,
     structured: float,
-    share: float,
+    allowed: float,
     power: float,
 ) -> tuple[float, dict[str, FloatArray]]:
     """Give the share of the gap that follows known signals, and the signals.
@@ -44,7 +44,7 @@ def beside_a_drift(
         gap, and with random walks all of it likelier than paths do: that is heat.
     structured : float
         The share if what the path leaves were white.
-    share : float
+    allowed : float
         What may stay; less is not looked at again.
     power : float
         Of the gap.
@@ -57,10 +57,10 @@ def beside_a_drift(
     """
     short = without_paths(state, own)
     may_be_heat = _explained(state, short, slow_power) > LOOSE * power
-    if structured <= share and not may_be_heat:
+    if structured <= allowed and not may_be_heat:
         return structured, {**generic}
     explained = partial(explained_beside_walks, state, random_walks(state))
-    if structured > share:
+    if structured > allowed:
         most, _ = explained(own, generic)
         structured = min(structured, most / power)
     if may_be_heat:

@@ -79,10 +79,10 @@ class Leftover:
     @property
     def little_named(self) -> bool:
         """Whether effects leave most of what may be a slightly wrong shape alone."""
-        return self.slight_before and self.share > LOOSE
+        return self.slight_before and self.share_left > LOOSE
 
     @property
-    def share(self) -> float:
+    def share_left(self) -> float:
         """Share of the gap that no effect takes away.
 
         The lesser of two: of the whole residual, which a wrong base fills too, and of
@@ -108,11 +108,11 @@ class Leftover:
             f"on the fit records {finely(self.whole)} of the gap's power above the "
             "noise floor stays"
         )
-        if self.whole - self.share < WORTH_A_WORD:
+        if self.whole - self.share_left < WORTH_A_WORD:
             return told
         return (
             f"{told}; of the part that no wrong shape of the hysteresis could leave, "
-            f"{finely(self.share)}"
+            f"{finely(self.share_left)}"
         )
 
     @property

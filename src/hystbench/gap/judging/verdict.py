@@ -51,7 +51,7 @@ def what_mends(records: Sequence[Record]) -> str:
 
 def judge_none(
     left: Leftover,
-    unnamed: Unowned,
+    unowned: Unowned,
     explained_by_box: float | None,
     retuned: bool,
     floor_is_upper_bound: bool,
@@ -65,7 +65,7 @@ def judge_none(
     Parameters
     ----------
     left : Leftover
-    unnamed : Unowned
+    unowned : Unowned
         What stays, and what of it follows known signals.
     explained_by_box : float or None
         Share of what the base leaves, above the floor, that a black box takes away on
@@ -80,13 +80,13 @@ def judge_none(
     mends : str
         What to write so that the noise is measured.
     """
-    alone = unnamed.follows_nothing and (explained_by_box or 0.0) < AS_GOOD
-    in_no_record = _why_in_no_record(left, unnamed if alone else None, explained_by_box)
+    alone = unowned.follows_nothing and (explained_by_box or 0.0) < AS_GOOD
+    in_no_record = _why_in_no_record(left, unowned if alone else None, explained_by_box)
     # 1a. Little is left; a part of it is nothing that an effect or a hysteresis does.
     if left.slight and left.foreign and not in_no_record:
         return "unnamed", left.foreign
     # 1b. The base only has wrong numbers.
-    if retuned and left.all_before > ABOVE_NOISE and left.share < LOOSE:
+    if retuned and left.all_before > ABOVE_NOISE and left.share_left < LOOSE:
         return "parameters", (
             "re-tuning the base within what is free is enough, and no effect pays "
             f"beside it: {left.sentence}"
@@ -105,7 +105,7 @@ def judge_none(
         )
     # 1d. Little is left beside a noise that may hold the whole gap.
     if left.slight and floor_is_upper_bound:
-        if left.may_be_noise and not (unnamed.too_much or size_follows):
+        if left.may_be_noise and not (unowned.too_much or size_follows):
             rms = finely(float(np.sqrt((1.0 + left.all_after) / left.output)))
             return "no-gap", (
                 f"no effect pays, and what is left, {rms} of the output's rms, "
@@ -140,34 +140,34 @@ def _beyond_shapes(power: float) -> str:
     return f" ({times} are more than a wrong shape of the loop could leave)"
 
 
-def judge_names(left: Leftover, unnamed: Unowned) -> tuple[Verdict, str]:
+def judge_names(left: Leftover, unowned: Unowned) -> tuple[Verdict, str]:
     """Choose the word where effects were added, and say why.
 
     Parameters
     ----------
     left : Leftover
-    unnamed : Unowned
+    unowned : Unowned
         What stays that the named effects cannot own.
     """
-    much = unnamed.too_much
+    much = unowned.too_much
     if much and not left.may_be_of_base:
-        why = unnamed.reason
-        if left.whole - unnamed.structured > WORTH_A_WORD:
+        why = unowned.reason
+        if left.whole - unowned.structured > WORTH_A_WORD:
             why += (
                 "; this is less sure, as a third of the gap's rms or more may be the "
                 "base's own error, which can look like that"
             )
         return "unnamed", why
-    if much and unnamed.trust(of_base=True) < MOST:
-        return "unnamed", unnamed.reason  # likelier wrong than right
+    if much and unowned.trust(of_base=True) < MOST:
+        return "unnamed", unowned.reason  # likelier wrong than right
     too_much = f"too much stays for a name: {left.sentence}"
-    if left.share > LOOSE and not left.slight:
+    if left.share_left > LOOSE and not left.slight:
         return "unnamed", too_much
-    if unnamed.stays > LOOSE:
+    if unowned.stays > LOOSE:
         return "unnamed", f"{too_much}, and most of it follows no known signal"
     if much:
         return "named", (
-            f"{left.sentence}; this is less sure, as {unnamed.reason}, "
+            f"{left.sentence}; this is less sure, as {unowned.reason}, "
             "but so little may as well be the error of a slightly wrong base"
         )
     return "named", left.sentence
@@ -218,7 +218,7 @@ def confidence(
         for item in ranking
         if item.effect != first.effect and item.state is not None
     )
-    explained = 1.0 - left.share
+    explained = 1.0 - left.share_left
     # 2 Phi(1 / e) - 1, Phi the standard normal distribution: the level of the widest
     # interval about the number that does not hold zero.
     is_anything = math.erf(1.0 / (errors * math.sqrt(2.0))) if errors > 0 else 1.0

@@ -51,15 +51,14 @@ def far_off(residual: FloatArray) -> Mask:
     return far
 
 
-def lone_share(residuals: Sequence[FloatArray]) -> float:
+def lone_share(compared: Sequence[Compared]) -> float:
     """Give the share of the power of residuals that stands in lone samples.
 
-    Parameters
-    ----------
-    residuals : sequence of ndarray, shape (n,)
+    Only samples that count are looked at.
     """
     far = whole = 0.0
-    for residual in residuals:
+    for item in compared:
+        residual = item.residual[item.record.counted]
         squares = (residual - np.median(residual)) ** 2
         whole += float(squares.sum())
         far += float(squares[far_off(residual)].sum())

@@ -18,9 +18,9 @@ from hystbench.gap.judging.known_signals import (
     low_pass,
     random_walks,
 )
-from hystbench.gap.judging.unnamed import (
+from hystbench.gap.judging.measure_unowned import (
     means_may_differ_by_chance,
-    what_is_unnamed,
+    measure_unowned,
     winding,
 )
 from hystbench.gap.judging.unowned import SORTS, Unowned
@@ -94,7 +94,7 @@ def lag_of(tau):
 def test_the_right_name_owns_all_that_it_leaves():
     given = measured((GAIN, block("sensor-lag", time_constant_s=4e-3)), NOISE)
     for tau in (4e-3, 4.2e-3):  # a number a little off is its own
-        found = what_is_unnamed(*lagging(given, tau), FLOOR)
+        found = measure_unowned(*lagging(given, tau), FLOOR)
         assert not found.too_much
         assert found.structured < 1e-3
         assert found.changing is not None
@@ -117,7 +117,7 @@ def test_other_forms_of_a_name_own_nothing_in_sums_of_tens_of_times_each():
     lags = [lagging(given, tau) for tau in np.geomspace(1e-3, 1e-2, 30)]
     start, best = min(lags, key=lambda item: item[1].power(NOISE**2))
     stays = best.power(NOISE**2) / start.power(NOISE**2)
-    assert what_is_unnamed(start, best, FLOOR).structured > stays / 2
+    assert measure_unowned(start, best, FLOOR).structured > stays / 2
 
 
 @pytest.mark.parametrize("spread", [0.3, -0.3])
@@ -129,7 +129,7 @@ def test_a_strength_that_differs_between_records_is_found_with_its_factors(sprea
     named = block("calibration-error", gain=1.1, offset=0.0)
     added = Added("calibration-error", "sensor", "", (1,), {}, 1)
     state = state_of((GAIN, named), given, count=800, added=(added,))
-    found = what_is_unnamed(start, state, FLOOR)
+    found = measure_unowned(start, state, FLOOR)
     assert found.too_much
     # A gain is named, so its strength and the gain of the whole change alike.
     assert found.sort in ("strength", "gain")
@@ -157,7 +157,7 @@ SHAPES = {
 def test_with_no_name_the_sort_of_the_gap_is_told(sort):
     given = with_output(SHAPES[sort])
     start = state_of((GAIN,), given, count=800)
-    found = what_is_unnamed(start, start, FLOOR)
+    found = measure_unowned(start, start, FLOOR)
     assert found.sort == sort
     assert found.changing is None
     assert found.factors == ()
@@ -169,7 +169,7 @@ def test_with_no_name_the_sort_of_the_gap_is_told(sort):
 def test_noise_alone_has_no_structure():
     given = with_output(lambda k, one: 0.0)
     start = state_of((GAIN,), given, count=800)
-    found = what_is_unnamed(start, start, FLOOR)
+    found = measure_unowned(start, start, FLOOR)
     # Of less gap than noise the noise's power counts: shares are of that.
     assert found.structured < 0.02
     assert found.unrelated < 0.1
@@ -179,7 +179,7 @@ def test_another_effect_than_the_hidden_one_is_withdrawn():
     # A cube beside a lag: a lag alone cannot own it.
     given = with_output(lambda k, one: lag_of(4e-3)(k, one) + 6.0 * one.u**3)
     start, state = lagging(given, 4e-3)
-    found = what_is_unnamed(start, state, FLOOR)
+    found = measure_unowned(start, state, FLOOR)
     assert found.too_much
     assert found.sort == "curve"
     assert SORTS["curve"] in found.reason
@@ -200,11 +200,11 @@ def test_a_path_that_is_named_owns_slow_paths():
     )
     added = Added("drift", "sensor", "", (), {}, 1)
     state = state_of((GAIN,), given, count=800, added=(added,), beside=((beside, {}),))
-    assert what_is_unnamed(start, start, FLOOR).structured > 0.5
-    assert not what_is_unnamed(start, state, FLOOR).too_much
+    assert measure_unowned(start, start, FLOOR).structured > 0.5
+    assert not measure_unowned(start, state, FLOOR).too_much
     # In windows of a free mass any small error of a force makes such a path.
     cut = state_of((GAIN,), [replace(one, decay_s=1.0) for one in given], count=800)
-    assert what_is_unnamed(cut, cut, FLOOR).structured < 0.1
+    assert measure_unowned(cut, cut, FLOOR).structured < 0.1
 
 
 def test_a_path_that_is_named_owns_what_its_most_winding_form_could_do():
@@ -217,11 +217,11 @@ def test_a_path_that_is_named_owns_what_its_most_winding_form_could_do():
     plain = next(x.beside for x in variants if x.form == "path")
     added = Added("drift", "sensor", "path", (), {}, 1)
     state = state_of((GAIN,), given, count=800, added=(added,), beside=((plain, {}),))
-    found = what_is_unnamed(start, state, FLOOR)
+    found = measure_unowned(start, state, FLOOR)
     assert not found.too_much
     assert found.stays < 0.05
     # Without its name such a path stays what follows no known signal.
-    assert what_is_unnamed(start, start, FLOOR).stays > 0.5
+    assert measure_unowned(start, start, FLOOR).stays > 0.5
 
 
 def test_one_number_sets_both_limits():
@@ -347,7 +347,7 @@ def named_drift(change, seed=0, sizes=(0.5, 0.5, 0.5, 0.5)):
     path = next(x.beside for x in variants if x.form == "path")
     added = Added("drift", "sensor", "path", (), {}, 1)
     state = state_of((GAIN,), given, count=800, added=(added,), beside=((path, {}),))
-    return what_is_unnamed(start, state, FLOOR)
+    return measure_unowned(start, state, FLOOR)
 
 
 def walk(rng, u):
@@ -418,7 +418,7 @@ def test_coloured_noise_follows_known_signals_only_by_chance():
     for seed in range(8):
         given = broad(lambda k, one, s=seed: coloured(50 + 10 * s + k, len(one)), seed)
         start = state_of((GAIN,), given, count=800)
-        found = what_is_unnamed(start, start, FLOOR)
+        found = measure_unowned(start, start, FLOOR)
         told.append(found.by_chance > 0.0)
         if found.by_chance:
             # Some is the mean of a record, which noise of a long memory has too.
@@ -434,7 +434,7 @@ def test_a_strength_that_changes_in_time_is_more_than_chance(inputs_of):
         return 2.0 * one.u * np.cos(np.pi * one.time / one.time[-1])
 
     start = state_of((GAIN,), inputs_of(fading, 0), count=800)
-    found = what_is_unnamed(start, start, FLOOR)
+    found = measure_unowned(start, start, FLOOR)
     assert found.by_chance == 0.0
     assert found.structured > 0.5
 
@@ -443,7 +443,7 @@ def test_a_zero_of_each_record_is_no_chance():
     zeros = (0.5, -0.4, 0.3, -0.6)
     given = broad(lambda k, one: np.full(len(one), zeros[k]), 3)
     start = state_of((GAIN,), given, count=800)
-    found = what_is_unnamed(start, start, FLOOR)
+    found = measure_unowned(start, start, FLOOR)
     assert found.too_much
     assert found.structured > 0.5
 

@@ -42,11 +42,11 @@ STRETCHES = 10
 chance. They are as few as a variance needs, so that each is as long as it may be."""
 
 
-def what_is_unnamed(
+def measure_unowned(
     base: ModelState,
     state: ModelState,
     floor: Floor,
-    share: float = UNNAMED_SHARE,
+    allowed: float = UNNAMED_SHARE,
 ) -> Unowned:
     """Measure what the effects of a model cannot own of what they leave.
 
@@ -62,8 +62,8 @@ def what_is_unnamed(
         Without and with the effects.
     floor : Floor
         RMS of the noise. A gap of less power than the noise counts as one of as much.
-    share : float
-        What may stay: of what sort it is, is looked for where more does.
+    allowed : float
+        Share that may stay: of what sort it is, is looked for where more does.
     """
     square = floor.square
     power = base.gap(square)
@@ -89,11 +89,11 @@ def what_is_unnamed(
     structured = max(alone.noise - with_generic.noise, 0.0) / power
     if drifts:
         structured, generic = beside_a_drift(
-            state, own, generic, slow_power, structured, share, power
+            state, own, generic, slow_power, structured, allowed, power
         )
     found = Unowned(
         structured,
-        share,
+        allowed,
         max(alone.noise - with_changing.noise, 0.0) / power if changing else None,
         max(with_generic.noise - square, 0.0) / power,
         factors=_factors(state, increment) if changing else (),
