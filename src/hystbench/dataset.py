@@ -4,7 +4,7 @@ import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, Literal
 
@@ -217,12 +217,12 @@ class Dataset:
         kind: DeviceKind | None = self.about.get("device", {}).get("kind")
         return kind
 
-    @property
+    @cached_property
     def identification(self) -> str:
         """Name of the record for identification: the one named, or the slowest.
 
         The slowest has the least rms(du/dt) / rms(u); only records with
-        ``use: fit`` are looked at.
+        ``use: fit`` are looked at. To find it their files are read, once.
         """
         named = self.about.get("identification")
         if named is not None:

@@ -113,7 +113,7 @@ def search_and_judge(
     told = judge_and_tell(evidence.name, found, asked, limits)
     more = [told.content["reason"]]
     if is_another(base, found.base):
-        more.append(again_words(evidence.slowest.name))
+        more.append(again_words(evidence.to_identify_from.name))
     if found.inside is not None:
         more.append(found.inside.sentence)
     if identified and (late := in_time_words(found.named.state)):

@@ -209,9 +209,9 @@ def test_creep_that_hides_all_laws_is_named(monkeypatch):
 def test_a_record_is_freed_of_its_creep(ends):
     evidence, loop, base = crept_loop(ends)
     freed = freed_of_slow_law(base, evidence, FLOOR, ("creep",))
-    slow = evidence.slowest
+    slow = evidence.to_identify_from
     without = loop.simulate(slow.u, DT)
-    left = np.std(freed.slowest.y - without)
+    left = np.std(freed.to_identify_from.y - without)
     assert left < 0.4 * np.std(slow.y - without)
     assert [x.name for x in freed.fit] == [x.name for x in evidence.fit]
     assert freed.fit[1:] == evidence.fit[1:]
@@ -229,9 +229,9 @@ def test_samples_that_were_not_measured_hide_no_creep():
         base, replace(evidence, fit=(*others, quick)), FLOOR, LAWS.offered
     )
     assert freed is not None
-    slow = evidence.slowest
+    slow = evidence.to_identify_from
     without = loop.simulate(slow.u, DT)
-    left = np.std(freed.slowest.y - without)
+    left = np.std(freed.to_identify_from.y - without)
     assert left < 0.4 * np.std(slow.y - without)
 
 

@@ -271,9 +271,12 @@ def test_the_slowest_fit_record_is_for_identification_unless_named(tmp_path):
         record(slow, 5 * slow, name="slow"),
         record(slowest, 5 * slowest, name="slowest", use="hold-out"),
     ]
-    assert load_evidence(write_folder(tmp_path / "d", made)).slowest.name == "slow"
+    assert (
+        load_evidence(write_folder(tmp_path / "d", made)).to_identify_from.name
+        == "slow"
+    )
     named = write_folder(tmp_path / "e", made, identification="quick")
-    assert load_evidence(named).slowest.name == "quick"
+    assert load_evidence(named).to_identify_from.name == "quick"
     held = write_folder(tmp_path / "f", made, identification="slowest")
     said = message(lambda: load_evidence(held))
     assert "identification: 'slowest' is held out" in said

@@ -63,7 +63,7 @@ def identified_gpi(evidence: Evidence) -> tuple[IdentifiedGpi, str]:
     """
     from hystbench.identification import identify  # late: scipy
 
-    slow = evidence.slowest
+    slow = evidence.to_identify_from
     back = _way_back(slow.u)
     if ORDER * back < np.ptp(slow.u):  # the least loop that so many operators tell
         raise InputError(

@@ -78,7 +78,7 @@ def freed_of_laws(
     laws = _laws(named) if isinstance(base, IdentifiedGpi) else None
     if laws is None:
         return None
-    slow = evidence.slowest
+    slow = evidence.to_identify_from
     bare = without(laws, {item.effect for item in laws.added})
     with_them, alone = (_simulated(base, own, slow) for own in (laws, bare))
     does = with_them - alone
@@ -112,7 +112,7 @@ def freed_of_slow_law(
         each law as well; or where the best does to the record no more than half of what
         noise does, in power.
     """
-    slow = evidence.slowest
+    slow = evidence.to_identify_from
     if not isinstance(base, IdentifiedGpi) or len(slow) < SLOW_SAMPLES:
         return None
     outputs = run_base(base, evidence.fit, evidence.input_hold)
@@ -195,7 +195,7 @@ def _freed_of(law: Any, record: Record) -> FloatArray:
 
 def _with_record(evidence: Evidence, freed: Record) -> Evidence:
     """Put a record in the place of the one that a loop is identified from."""
-    slow = evidence.slowest
+    slow = evidence.to_identify_from
     fit = tuple(freed if record is slow else record for record in evidence.fit)
     return replace(evidence, fit=fit)
 

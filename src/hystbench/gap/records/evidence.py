@@ -80,8 +80,12 @@ class Evidence:
         return any(record.decay_s is not None for record in self.fit)
 
     @property
-    def slowest(self) -> Record:
-        """The record for identification: the one named, or the slowest to fit."""
+    def to_identify_from(self) -> Record:
+        """The fit record for identification: the one named, or the slowest.
+
+        As :attr:`Dataset.identification` chooses, but among records as they are
+        searched: put together, cut, or with a law taken off.
+        """
         if self.identification is None:
             return min(self.fit, key=lambda record: record.rate)
         return next(item for item in self.fit if item.name == self.identification)
