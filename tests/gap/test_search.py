@@ -8,7 +8,7 @@ import pytest
 from hystbench.blocks.curve import finer
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.errors import InputError
-from hystbench.gap import search as search_module
+from hystbench.gap import gap_search
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.linear import CURVE, IdentifiedModel
 from hystbench.gap.beside_base import BesideBase
@@ -146,7 +146,7 @@ def test_the_next_experiment_keeps_within_the_limits_that_were_asked(alike):
 def test_limits_that_no_input_fits_are_refused_before_the_search(alike, monkeypatch):
     base, start, _, _ = alike
     searched = lambda *given: pytest.fail("searched")  # noqa: E731
-    monkeypatch.setattr(search_module, "add_effects", searched)
+    monkeypatch.setattr(gap_search, "add_effects", searched)
     with pytest.raises(InputError, match="expected low < high"):
         search("made", start.records, base, limits={"low": 1.0, "high": 0.5})
 
@@ -326,7 +326,7 @@ def test_a_path_that_leaves_nothing_is_no_reason_to_try_no_forces(monkeypatch):
     def forces(*args, **more):
         asked.append(args)
 
-    monkeypatch.setattr(search_module, "named_inside", forces)
+    monkeypatch.setattr(gap_search, "named_inside", forces)
     base = IdentifiedModel("base", CURRENT, DISPLACEMENT, gain, found_with=CURVE)
     takes = Quantities("force", "position")
     about = {"quantities": takes, "vocabulary": among(*tried), "declared": 0.02}

@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from hystbench.gap import search as search_module
+from hystbench.gap import gap_search
 from hystbench.gap.bases.linear import found_with
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.bases.slow_drive import behind_a_slow_drive
@@ -94,7 +94,7 @@ def test_the_limit_is_named_and_no_force_looked_for(limited, loaded, monkeypatch
     def look(*_):
         raise AssertionError("forces were looked for")
 
-    monkeypatch.setattr(search_module, "named_inside", look)
+    monkeypatch.setattr(gap_search, "named_inside", look)
     base = loaded[0].with_hold("linear")
     found = search(
         *("made", limited.fit, base, "linear"),

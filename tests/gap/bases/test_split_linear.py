@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench.gap import search as search_module
+from hystbench.gap import gap_search
 from hystbench.gap.bases import split_linear
 from hystbench.gap.bases.load import checked_base, load_base
 from hystbench.gap.bases.output_error import OutputError
@@ -155,14 +155,14 @@ def test_a_gain_that_falls_with_the_level_is_the_curve():
 @pytest.fixture(scope="module")
 def found(split, clipped_records):
     """What is named, and in how many bases forces were looked for."""
-    looked, look = [], search_module.named_inside
+    looked, look = [], gap_search.named_inside
 
     def spied(*given, **more):
         looked.append(given)
         return look(*given, **more)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(search_module, "named_inside", spied)
+        patch.setattr(gap_search, "named_inside", spied)
         answer = search(
             *("made", clipped_records.fit, split[0].with_hold("band-limited")),
             quantities=Quantities("force", "position"),

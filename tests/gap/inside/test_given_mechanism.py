@@ -179,7 +179,7 @@ def test_no_force_is_tried_where_one_effect_of_a_chain_leaves_noise(
         y = lsim(law, u, np.arange(COUNT) * DT)[1]
         late.append((u, np.concatenate([np.zeros(3), y[:-3]])))
     monkeypatch.setattr(
-        "hystbench.gap.search.named_inside", lambda *given: pytest.fail("tried")
+        "hystbench.gap.gap_search.named_inside", lambda *given: pytest.fail("tried")
     )
     likely = Asked(vocabulary=among("stiffness-hardening", "input-delay"))
     content = closed(LINEAR, evidence_of(late, 0.01), tmp_path / "m.yaml", likely)

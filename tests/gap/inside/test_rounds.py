@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from hystbench.gap import gap_search
 from hystbench.gap import search as search_module
 from hystbench.gap.bases.linear import IdentifiedModel
 from hystbench.gap.bases.load import load_base
@@ -201,7 +202,7 @@ def test_where_no_more_is_left_than_may_stay_no_chain_is_tried(
         calls.append(args)
         return add_effects(*args, **kwargs)
 
-    monkeypatch.setattr(search_module, "add_effects", counted)
+    monkeypatch.setattr(gap_search, "add_effects", counted)
     found = search(
         "made",
         evidence.fit,
@@ -250,7 +251,7 @@ def test_forces_are_looked_for_again_without_the_starts_that_they_show(monkeypat
     )
     base = IdentifiedModel("linear", *channels, (host,), ("mechanism.mass",))
     seen, look = spring_found_once(host, spring, "lead")
-    monkeypatch.setattr(search_module, "named_inside", look)
+    monkeypatch.setattr(gap_search, "named_inside", look)
     about = {"declared": 1e-3, "quantities": Quantities("force", "position")}
     with pytest.raises(FarEnoughError):
         search("made", given, base, **about, vocabulary=among("stiffness-hardening"))
@@ -282,9 +283,9 @@ def test_beside_a_path_that_bends_to_all_a_chain_is_tried_too(form, chain, monke
     def stop(*_):
         raise FarEnoughError
 
-    monkeypatch.setattr(search_module, "named_inside", look)
-    monkeypatch.setattr(search_module, "beside_forces", lambda named, *_: named)
-    monkeypatch.setattr(search_module, "add_effects", in_a_chain)
+    monkeypatch.setattr(gap_search, "named_inside", look)
+    monkeypatch.setattr(gap_search, "beside_forces", lambda named, *_: named)
+    monkeypatch.setattr(gap_search, "add_effects", in_a_chain)
     monkeypatch.setattr(search_module, "judge_and_tell", stop)
     about = {"declared": 1e-3, "quantities": Quantities("force", "position")}
     with pytest.raises(FarEnoughError):
@@ -306,7 +307,7 @@ def test_forces_are_looked_for_again_without_the_offsets_of_records(monkeypatch)
         given.append(replace(record, y=y + offset))
     base = Model("made", *channels, (host,))
     seen, look = spring_found_once(host, spring, "y")
-    monkeypatch.setattr(search_module, "named_inside", look)
+    monkeypatch.setattr(gap_search, "named_inside", look)
     about = {"declared": 1e-3, "quantities": Quantities("force", "position")}
     with pytest.raises(FarEnoughError):
         search("made", given, base, **about, vocabulary=among("stiffness-hardening"))
@@ -329,7 +330,7 @@ def test_what_drives_a_free_mass_may_be_bent(linear, monkeypatch):
         seen.extend(offered)
         raise FarEnoughError
 
-    monkeypatch.setattr(search_module, "start_state", start_state)
+    monkeypatch.setattr(gap_search, "start_state", start_state)
     kinds = Quantities("voltage", "position") if linear else None
     with pytest.raises(FarEnoughError):
         search("made", windows(record, 0.2), base, quantities=kinds)

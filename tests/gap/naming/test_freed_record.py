@@ -11,6 +11,7 @@ from hystbench.gap import search as module
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.gpi import is_another
 from hystbench.gap.bases.load import load_base
+from hystbench.gap.gap_search import GapSearch
 from hystbench.gap.naming import freed_record
 from hystbench.gap.naming.freed_record import freed_of_laws, freed_of_slow_law
 from hystbench.gap.records.evidence import Evidence
@@ -92,7 +93,7 @@ def rod(heats):
 
 
 def beside(evidence, base):
-    return module.GapSearch(evidence, Asked(vocabulary=LAWS), None).beside(base)
+    return GapSearch(evidence, Asked(vocabulary=LAWS), None).beside(base)
 
 
 @pytest.fixture(scope="module")
