@@ -15,6 +15,7 @@ from hystbench.command_files import writes
 from hystbench.cores import on_cores
 from hystbench.files import whole_folder, write_columns, write_json
 from hystbench.gap.asked import Asked
+from hystbench.gap.bases.free_starts import begun_at_any_level
 from hystbench.gap.bases.lead import begun_beside, without_leads
 from hystbench.gap.bases.linear import is_identified_linear
 from hystbench.gap.decide_with_observer import model_without_damper, with_observer
@@ -204,6 +205,9 @@ def hold_out_begun_like_fit(
     records = begun_beside(base, evidence.hold_out)
     if not is_identified_linear(base):
         return replace(evidence, hold_out=records)
+    if evidence.quantities.causality != "storage":
+        longest = max(len(record) * record.dt for record in evidence.fit)
+        records = begun_at_any_level(records, base, longest)
     for model in (None, augmented(found.base, found.state)):
         records = without_leads(records, base, evidence, say, found=model)
     return replace(evidence, hold_out=records)

@@ -10,11 +10,16 @@ from hystbench.blocks.dead_zone import DeadZone
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.free_starts import (
+    begun_at_any_level,
     begun_freely,
     start_fades,
     with_free_starts,
 )
-from hystbench.gap.bases.linear import has_free_starts, identified_linear
+from hystbench.gap.bases.linear import (
+    IdentifiedModel,
+    has_free_starts,
+    identified_linear,
+)
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.cache import Remembered, remembering
 from hystbench.gap.records.evidence import Evidence
@@ -142,3 +147,19 @@ def test_the_two_jobs_of_the_workflow_begin_records_alike(known, tmp_path):
     show_in(tmp_path, evidence, load_model(tmp_path / BASE_FILE))
     shown = json.loads((tmp_path / "gap.json").read_text())
     assert shown["gap"] == closed.outcome.content["gap"]
+
+
+def test_where_an_integrator_stands_is_no_number_of_the_device():
+    """A motor's place: each record goes on from where the device was left."""
+    motor = TransferFunction(numerator=(1.0,), denominator=(0.05, 1.0, 1e-7))
+    base = IdentifiedModel("linear", *CHANNELS, (motor,))
+    rng = np.random.default_rng(2)
+    u = np.convolve(rng.standard_normal(900), np.ones(40) / 40, "same")
+    y = motor.simulate(u, u, DT)
+    held = Record("held", DT, u, y + 7.0, *CHANNELS, "measured", "hold-out")
+    (free,) = begun_at_any_level((held,), base, 9.0)
+    assert len(free.start_poles) == 1
+    left = Compared(free, y).residual
+    np.testing.assert_allclose(left, 0.0, atol=1e-4)
+    lag = replace(motor, denominator=(0.05, 1.0))
+    assert begun_at_any_level((held,), replace(base, chain=(lag,)), 9.0) == (held,)

@@ -17,10 +17,14 @@ from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.bases.output_error import has_constant
 from hystbench.gap.bases.spectral import Spectra, fit_ratio
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.records.first_state import begins_alike, with_free_start
+from hystbench.gap.records.first_state import (
+    begins_alike,
+    with_free_start,
+    with_state_of,
+)
 from hystbench.gap.thresholds import LOOSE, MOST
 from hystbench.model import Model
-from hystbench.record import FloatArray, Record
+from hystbench.record import ComplexArray, FloatArray, Record
 
 
 def with_free_starts(evidence: Evidence, rms: float) -> Evidence | None:
@@ -53,11 +57,41 @@ def with_free_starts(evidence: Evidence, rms: float) -> Evidence | None:
 
 def begun_freely(records: tuple[Record, ...], base: Model) -> tuple[Record, ...]:
     """Give records that may begin in any state of a linear base."""
-    blocks = [block for block in base.chain if isinstance(block, TransferFunction)]
-    poles = np.concatenate(
-        [np.zeros(0, complex), *(np.roots(x.denominator) for x in blocks)]
-    )
+    poles = _poles(base)
     return tuple(with_free_start(record, poles) for record in records)
+
+
+def begun_at_any_level(
+    records: tuple[Record, ...], base: Model, seconds: float
+) -> tuple[Record, ...]:
+    """Give records of which no score counts a state that lasts for longer than they do.
+
+    Where an integrator stands is no number of the device: two records of it begin at
+    two levels, also at rest.
+
+    Parameters
+    ----------
+    records : tuple of Record
+        Those that a linear base was not identified from.
+    base : Model
+    seconds : float
+        Length of the longest record that it was identified from: what keeps more than
+        half of its power over that is not known to fade.
+    """
+    poles = _poles(base)
+    lasting = poles[(np.exp(poles.real * seconds) > MOST) & (poles.imag >= 0.0)]
+    if not len(lasting):
+        return records
+    return tuple(
+        record if record.start_poles else with_state_of(record, lasting)
+        for record in records
+    )
+
+
+def _poles(base: Model) -> ComplexArray:
+    blocks = [block for block in base.chain if isinstance(block, TransferFunction)]
+    every = [np.zeros(0, complex), *(np.roots(x.denominator) for x in blocks)]
+    return np.concatenate(every)
 
 
 def start_fades(base: Model, evidence: Evidence) -> bool:

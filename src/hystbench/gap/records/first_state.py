@@ -40,7 +40,20 @@ def with_free_start(record: Record, poles: ComplexArray) -> Record:
         Of the dynamics, in 1/s; of a pair either or both. What has faded when the score
         begins is left out.
     """
-    if begins_alike(record):
+    return record if begins_alike(record) else with_state_of(record, poles)
+
+
+def with_state_of(record: Record, poles: ComplexArray) -> Record:
+    """Give a record of which no score counts a first state, whether it rests or not.
+
+    Parameters
+    ----------
+    record : Record
+        One that repeats, or a window of a free mass, stays as it is.
+    poles : ndarray of complex
+        As for :func:`with_free_start`.
+    """
+    if record.repeats or record.decay_s is not None:
         return record
     until = (record.lead + 1) * record.dt
     lasting = (poles.imag >= 0.0) & (np.exp(poles.real * until) > FADED)
