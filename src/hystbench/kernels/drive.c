@@ -28,35 +28,80 @@ EXPORT void hb_slew_limit(index_t n, double rising, double falling, const double
     }
 }
 
+/* From such an x on its tanh is one, as is a sharp limit's from one on. */
+#define LIMITED(sharp) ((sharp) ? 1 : 20)
+
 /* What is left of x = (z - v) / (R tau) after a time h over tau, while the input rests:
  * dx/dh = -tanh x, so that sinh x fades by exp(-h), or dx/dh = -x up to one and at the
  * full rate beyond.  fade is exp(-h). */
 static double relaxed(double x, double h, double fade, int sharp)
 {
     const double size = fabs(x);
-    if (size >= (sharp ? 1 : 20) + h) return x - copysign(h, x);
+    if (size >= LIMITED(sharp) + h) return x - copysign(h, x);
     if (sharp) return size > 1 ? copysign(exp(size - 1 - h), x) : x * fade;
     /* asinh(fade sinh x), to a rounding of one: in less time than by these functions */
     const double grown = exp(size), s = 0.5 * fade * (grown - 1 / grown);
     return copysign(log(s + sqrt(1 + s * s)), x);
 }
 
+/* What is left of it after all parts of an interval, in each of which the input moves by
+ * half of its way, x relaxes, and the input moves on.  Where it falls R is down times. */
+static double relaxed_in_parts(double x, double move, double h, double fade, int parts,
+                               double down, int sharp)
+{
+    for (int part = 0; part < parts; part++) {
+        const double at = x + 0.5 * move, unit = at < 0 ? down : 1;
+        x = unit * relaxed(at / unit, h, fade, sharp) + 0.5 * move;
+    }
+    return x;
+}
+
+/* The same of a rounded limit, alike both ways, where no x is so large that its sinh is.  With s
+ * for sinh x a part is
+ * s <- fade sinh(x + move) = fade (s cosh(move) + sqrt(1 + s^2) sinh(move)):
+ * no function but a root.  From the middle of a part to the middle of the next. */
+#define LARGE 300
+static double relaxed_often(double x, double move, double fade, int parts)
+{
+    const double moved = sinh(move), across = fade * moved;
+    const double towards = fade * sqrt(1 + moved * moved);
+    double s = fade * sinh(x + 0.5 * move);
+    for (int part = 1; part < parts; part++) s = s * towards + sqrt(1 + s * s) * across;
+    return asinh(s) + 0.5 * move;
+}
+
 /* dv/dt = R tanh((z - v) / (R tau)), or sharp R max(-1, min(1, (z - v) / (R tau))), with
  * rate = R dt and share = dt / tau; where v falls, R is down times that.  Strang's
  * splitting: the input moves by half of its way, x relaxes, and the input moves on.  Of
- * second order in the part of an interval that a step is, at most an eighth of tau. */
+ * second order in the part of an interval that a step is, at most an eighth of tau.
+ *
+ * All parts of an interval are alike.  So x goes one way, and where its first and its
+ * last are in a range all are: at the limit, or where a sharp one only fades, the sum of
+ * so many parts is known. */
+#define MANY 3 /* parts for which that pays */
 EXPORT void hb_slew_with_lag(index_t n, index_t sharp, double rate, double down,
                              double share, const double *z, double *out)
 {
-    const int parts = (int)ceil(8 * share);
-    const double h = share / parts, fade = exp(-h);
+    const int parts = (int)ceil(8 * share), even = down == 1;
+    const double h = share / parts, fade = exp(-h), all_fade = exp(-share);
+    const double rest_of_move = 0.5 * (1 + fade) / (1 - fade);
     double x = 0;
-    for (index_t k = 0; k < n; k++) {
-        const double move = k > 0 ? (z[k] - z[k - 1]) / rate * h : 0;
-        for (int part = 0; k > 0 && part < parts; part++) {
-            const double at = x + 0.5 * move, unit = at < 0 ? down : 1;
-            x = unit * relaxed(at / unit, h, fade, (int)sharp) + 0.5 * move;
-        }
+    if (n > 0) out[0] = z[0];
+    for (index_t k = 1; k < n; k++) {
+        const double move = (z[k] - z[k - 1]) / rate * h, at = x + 0.5 * move;
+        const double way = move - copysign(at < 0 ? down * h : h, at);
+        const double limited = (LIMITED(sharp) + h) * (at < 0 ? -down : 1);
+        const double rest = move * rest_of_move, faded = rest + (x - rest) * all_fade;
+        if (parts < MANY)
+            x = relaxed_in_parts(x, move, h, fade, parts, down, (int)sharp);
+        else if (at / limited >= 1 && (at + (parts - 1) * way) / limited >= 1)
+            x += parts * way;
+        else if (sharp && even && fabs(at) <= 1 && fabs(faded - 0.5 * move) <= fade)
+            x = faded;
+        else if (!sharp && even && fabs(x) + parts * fabs(move) < LARGE && fabs(move) < 1)
+            x = relaxed_often(x, move, fade, parts);
+        else
+            x = relaxed_in_parts(x, move, h, fade, parts, down, (int)sharp);
         out[k] = z[k] - x * rate / share;
     }
 }
