@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from scipy import optimize
 
 from hystbench.gap.fitting import score as scores
-from hystbench.gap.fitting.score import Held, Score
+from hystbench.gap.fitting.held import Held
+from hystbench.gap.fitting.score import Score
 from hystbench.gap.records.scored_samples import ScoredSamples
 from tests.gap.made import record
 

@@ -15,10 +15,11 @@ from hystbench.blocks.resonance import Resonance
 from hystbench.blocks.structure import Structure
 from hystbench.gap.bases.roughly_known import LATE, behind_a_delay, stated
 from hystbench.gap.fitting.edit_chain import rearranged
+from hystbench.gap.fitting.held import Held
 from hystbench.gap.fitting.model_score import beside_of
 from hystbench.gap.fitting.on_records import free_within
 from hystbench.gap.fitting.refit import finished
-from hystbench.gap.fitting.score import Held, Score
+from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.thresholds import ABOUT, PARAMETER
 from hystbench.sentences import finely, shortly

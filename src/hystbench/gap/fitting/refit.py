@@ -11,9 +11,10 @@ from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError
 from hystbench.gap.fitting.added_signals import beside_slope
 from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.held import Held
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import beside_of, make_score, score_of
-from hystbench.gap.fitting.score import Held, Score
+from hystbench.gap.fitting.score import Score, Told
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.variant_search import Trial
@@ -94,8 +95,9 @@ def refit(
             tangents[:, own] = state.tangents_of(own)
         size = sizes(state, tangents)
         begun, before = state, best
+        told = score.told(state.residual, tangents, beside_of(state, score))
         for level in range(least, len(DAMPING)):
-            step = _step_in_range(state, score, tangents, DAMPING[level] / size**2)
+            step = _step_in_range(state, score, told, DAMPING[level] / size**2)
             change = dict(enumerate(step.tolist()))
             try:
                 moved = state.moved(change, reflected=True)
@@ -123,7 +125,7 @@ def refit(
 
 
 def _step_in_range(
-    state: ModelState, score: Score, tangents: FloatArray, damping: FloatArray
+    state: ModelState, score: Score, told: Told, damping: FloatArray
 ) -> FloatArray:
     """Give the step of all free numbers that lowers the score most, as slopes tell.
 
@@ -133,11 +135,9 @@ def _step_in_range(
     ranges = np.array([state.range_of(free) for free in state.free]).reshape(-1, 2)
     values = np.array([state.value(free) for free in state.free])
     low, high = (ranges - values[:, None]).T
-    held, beside = state.held.in_steps(damping), beside_of(state, score)
+    held = state.held.in_steps(damping)
     while True:
-        found = score.amplitudes(
-            state.residual, tangents, state.freedom, held, beside=beside
-        ).values
+        found = score.solved(told, state.freedom, held).values
         ends = np.clip(found, low, high)
         beyond = np.abs(found - ends) > 1e-6 * np.maximum(np.abs(values), np.abs(ends))
         beyond &= held.stiffness < FIXED

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.errors import InputError
+from hystbench.gap.fitting.held import Held
 from hystbench.gap.fitting.normal_equations import joined, solve
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
@@ -42,47 +43,6 @@ class Amplitudes(NamedTuple):
 
     values: FloatArray  # shape (k,)
     score: float
-
-
-class Held(NamedTuple):
-    """What holds amplitudes: how far each is from its place is charged, squared."""
-
-    stiffness: FloatArray
-    """Shape (k,). Charge for the square, a tolerance's inverse square; none for what is
-    not held."""
-    moved: FloatArray
-    """Shape (k,). How far from their places those are whose change is solved for."""
-
-    @classmethod
-    def here(cls, stiffness: FloatArray) -> Held:
-        """Hold amplitudes where they are."""
-        return cls(stiffness, np.zeros(len(stiffness)))
-
-    def padded(self, count: int) -> Held:
-        """Give the same for so many amplitudes, those further ones not held."""
-        more = count - len(self.stiffness)
-        return Held(np.pad(self.stiffness, (0, more)), np.pad(self.moved, (0, more)))
-
-    def in_steps(self, stiffness: FloatArray) -> Held:
-        """Give the same where a step from here is charged as well."""
-        both = self.stiffness + stiffness
-        pull = self.stiffness * self.moved
-        return Held(both, np.divide(pull, both, np.zeros(len(both)), where=both > 0))
-
-    def form(self, turned: FloatArray) -> FloatArray:
-        """Give the charge as a quadratic form of (1, -b), the amplitudes being T b.
-
-        Parameters
-        ----------
-        turned : ndarray, shape (k, m)
-            T.
-
-        Returns
-        -------
-        ndarray, shape (1 + m, 1 + m)
-        """
-        rows = np.column_stack([self.moved, -turned])
-        return np.asarray(rows.T @ (self.stiffness[:, None] * rows))
 
 
 class Products(NamedTuple):
@@ -106,6 +66,20 @@ class Shared(NamedTuple):
     across: FloatArray
     """Shape (parts, d, k). Products of the directions with what is left of the columns
     beyond them."""
+
+
+class Told(NamedTuple):
+    """What the samples tell of amplitudes, whatever holds them."""
+
+    own: int
+    """Amplitudes that are given; those of further columns are not."""
+    scale: FloatArray
+    """Shape (own,). Root mean squares of their columns."""
+    forms: FloatArray | None
+    """Shape (parts + 1, (1 + k)^2). Of each record, and of the directions, a quadratic
+    form of (1, -b); None where a signal is not finite, as of a model that runs away."""
+    charge: FloatArray
+    """Shape (1 + k, 1 + k). What holds the further columns."""
 
 
 def record_weight(records: int) -> float:
@@ -206,28 +180,47 @@ class Score:
             Of further columns, which many calls share: see :meth:`shared`. Their
             amplitudes are not given.
         """
+        told = self.told(residual, columns, beside)
+        return self.solved(told, freedom, held, positive)
+
+    def told(
+        self, residual: FloatArray, columns: FloatArray, beside: Shared | None = None
+    ) -> Told:
+        """Take from the samples all that :meth:`solved` needs of them."""
         own = columns.shape[1]
-        whole = np.column_stack([residual, columns])
-        if not np.isfinite(whole).all():
-            return Amplitudes(np.zeros(own), np.inf)  # a model that runs away
         k = own + (0 if beside is None else len(beside.charge) - 1)
-        if k == 0:
-            return Amplitudes(np.zeros(0), self.of(residual, freedom))
-        scale = _column_rms(columns)
-        whole[:, 1:] /= scale
         charge = np.zeros((k + 1, k + 1))
-        if held is not None:
-            charge[: own + 1, : own + 1] = held.form(np.diag(1 / scale))
         if beside is not None:
             theirs = beside.charge
-            charge[0, 0] += theirs[0, 0]
+            charge[0, 0] = theirs[0, 0]
             charge[0, own + 1 :] = charge[own + 1 :, 0] = theirs[0, 1:]
             charge[own + 1 :, own + 1 :] = theirs[1:, 1:]
+        whole = np.column_stack([residual, columns])
+        if not np.isfinite(whole).all():
+            return Told(own, np.ones(own), None, charge)
+        scale = _column_rms(columns)
+        whole[:, 1:] /= scale
         found = self._products(whole, beside)
-        # Of each record, of the directions and of the charge: one quadratic form each.
         within = found.inside.T @ found.inside
-        forms = np.concatenate([found.grams, [within, charge]])
-        forms = forms.reshape(len(forms), -1)
+        forms = np.concatenate([found.grams, [within]])
+        return Told(own, scale, forms.reshape(len(forms), -1), charge)
+
+    def solved(
+        self,
+        told: Told,
+        freedom: float = 0.0,
+        held: Held | None = None,
+        positive: Sequence[int] = (),
+    ) -> Amplitudes:
+        """Do what :meth:`amplitudes` does, of what the samples tell."""
+        own, scale, forms, charge = told
+        if forms is None:
+            return Amplitudes(np.zeros(own), np.inf)
+        k = len(charge) - 1
+        if held is not None:
+            charge = charge.copy()
+            charge[: own + 1, : own + 1] += held.form(np.diag(1 / scale))
+        forms = np.concatenate([forms, charge.reshape(1, -1)])
         d = max(self.directions.shape[1], 1)
         full, last = np.eye(1, k + 1)[0], np.inf
         best = (np.inf, full)
@@ -240,7 +233,7 @@ class Score:
             value = self._value(squares, power, freedom) + charged
             if value < best[0]:
                 best = (value, full)
-            if abs(last - value) < STILL:
+            if k == 0 or abs(last - value) < STILL:
                 break
             last = value
             weights = self._weights(squares)

@@ -18,7 +18,7 @@ from hystbench.blocks.transfer_function import stable
 from hystbench.errors import InputError
 from hystbench.gap.effects.variant import Beside, Refused, Values
 from hystbench.gap.fitting.added_signals import beside_columns
-from hystbench.gap.fitting.score import Held
+from hystbench.gap.fitting.held import Held
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.reshape import orthonormal, reshapings
 from hystbench.gap.simulation.shared import shared

@@ -18,7 +18,8 @@ from hystbench.errors import InputError
 from hystbench.gap.effects.effect import Declined
 from hystbench.gap.effects.variant import Values, Variant
 from hystbench.gap.fitting.added_signals import beside_columns
-from hystbench.gap.fitting.score import Amplitudes, Held, Score, Shared
+from hystbench.gap.fitting.held import Held
+from hystbench.gap.fitting.score import Amplitudes, Score, Shared
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
 from hystbench.record import FloatArray
