@@ -54,13 +54,14 @@ class InputDelay(HeldBlock, name="input-delay", place="drive"):
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the delayed input."""
-        shift, place = self.shift_s / dt, np.arange(len(z))
+        shift = self.shift_s / dt
         if self.holding != "band-limited" or len(z) < 3:
+            place = np.arange(len(z))
             v: FloatArray = np.interp(place - shift, place, z)
         else:
             v = later(z, shift)
         _, before = path_from(z, self.start)
-        v[place < shift] = before
+        v[: max(ceil(shift), 0)] = before
         return v
 
     def step(self, sampling: Sampling) -> Step:
@@ -103,14 +104,13 @@ def later(z: FloatArray, samples: float) -> FloatArray:
     samples : float
         Below zero it comes earlier.
     """
-    whole = floor(samples)
-    last = len(z) - 1
-    at = np.arange(len(z)) - whole
-    places = np.clip(at, 0, last)
-    if whole == samples:
-        return z[places]
-    taps = value_at(POINTS, whole - samples - AHEAD)
-    between: FloatArray = weighed(z, taps[np.newaxis])[0][places]
-    between[at <= 0] = z[0]
-    between[at > last] = z[last]
-    return between
+    whole, count, moved = floor(samples), len(z), z
+    if whole != samples:
+        taps = value_at(POINTS, whole - samples - AHEAD)
+        moved = weighed(z, taps[np.newaxis])[0]
+    start = min(max(whole + 1, 0), count)
+    end = max(min(count + whole, count), 0)
+    out = np.empty(count)
+    out[:start], out[end:] = z[0], z[-1]
+    out[start:end] = moved[start - whole : end - whole]
+    return out

@@ -54,11 +54,10 @@ def _solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
         return np.asarray(vector / matrix[0])
     size = np.sqrt(np.maximum(matrix.diagonal(), 0.0))
     size[size == 0] = 1.0
-    matrix, vector = matrix / (size[:, None] * size), vector / size
     lower, failed = dpotrf(matrix, lower=1)
-    if not failed and (lower.diagonal() > KNOWN).all():  # elimination is quicker
-        found, _ = dpotrs(lower, vector, lower=1)
-        return np.asarray(found / size)
+    if not failed and (lower.diagonal() > KNOWN * size).all():  # it is quicker
+        return np.asarray(dpotrs(lower, vector, lower=1)[0])
+    matrix, vector = matrix / (size[:, None] * size), vector / size
     if not (np.isfinite(matrix).all() and np.isfinite(vector).all()):
         return np.zeros(len(vector))
     return np.asarray(np.linalg.lstsq(matrix, vector, rcond=1e-13)[0] / size)

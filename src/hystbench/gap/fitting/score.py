@@ -224,7 +224,7 @@ class Score:
         d = max(self.directions.shape[1], 1)
         full, last = np.eye(1, k + 1)[0], np.inf
         best = (np.inf, full)
-        for _ in range(ROUNDS + 1):
+        for left in reversed(range(ROUNDS + 1)):
             squares = forms @ (full[:, None] * full).ravel()
             charged = float(squares[-1])
             squares = np.maximum(squares[:-1], 0.0)
@@ -233,7 +233,7 @@ class Score:
             value = self._value(squares, power, freedom) + charged
             if value < best[0]:
                 best = (value, full)
-            if k == 0 or abs(last - value) < STILL:
+            if k == 0 or left == 0 or abs(last - value) < STILL:
                 break
             last = value
             weights = self._weights(squares)
