@@ -93,27 +93,35 @@ class RateDependentHysteresis(
         fine = self._fine if len(v) > 2 else 1
         given = v
         if fine > 1:
-            place = np.arange((len(v) - 1) * fine + 1) / fine
             v = np.repeat(v, 2)[:-1] if self._straight else finer(v, fine)
-            u = np.interp(place, np.arange(len(u)), u)
             if growth is not None:
+                place = np.arange(len(v)) / fine
                 growth = np.interp(place, np.arange(len(growth)), growth)
         if self.form == "acting-field":
             v = self._acting(v, dt / fine)
         else:
-            if fine == 1:
-                rate = np.gradient(v, dt)
-            elif self._straight:
-                rate = np.append(0.0, np.repeat(np.diff(given) / dt, 2))
-            else:
-                rates = weighed(given, _rate_weights(POINTS, AHEAD, fine))
-                rate = np.concatenate([rates[-1:, 0], rates.T[1:].ravel()]) / dt
-            effect = self._effect(np.abs(rate))
+            effect = self._effect_of(given, dt, fine)
             if self.form == "excess-field":
-                v = v - np.copysign(effect, rate)
+                v = v - effect
             else:
                 growth = 1.0 + effect if growth is None else (1.0 + effect) * growth
-        return inner.grow(v, u, dt / fine, growth)[::fine].copy()
+        # Hysteresis does not look at the model's input: that is not made finer.
+        return inner.grow(v, v, dt / fine, growth)[::fine].copy()
+
+    def _effect_of(self, v: FloatArray, dt: float, fine: int) -> FloatArray:
+        """Give e at all steps: of a field with the sign of its rate, else its size."""
+        twice = fine > 1 and self._straight  # both ends of a line have its rate
+        if fine == 1:
+            rate = np.gradient(v, dt)
+        elif twice:
+            rate = np.diff(v) / dt
+        else:
+            rates = weighed(v, _rate_weights(POINTS, AHEAD, fine))
+            rate = np.concatenate([rates[-1:, 0], rates.T[1:].ravel()]) / dt
+        effect = self._effect(np.abs(rate))
+        if self.form == "excess-field":
+            effect = np.copysign(effect, rate)
+        return np.append(0.0, np.repeat(effect, 2)) if twice else effect
 
     @property
     def _straight(self) -> bool:
