@@ -96,7 +96,7 @@ class BesideBase:
         """Tell whether there may be a better answer beside a re-tuned base.
 
         Re-tuning may replace an effect, or let one of few numbers stand where one of
-        many does. And where it pays for its numbers beside the effects, these may stand
+        many does. And where it pays beside the effects, as one more, these may stand
         for a base that is off.
         """
         state, score = self.named.state, self.score_beside(self)
@@ -115,8 +115,8 @@ class BesideBase:
         if count > 1:  # it may stand for both, and pays as one effect
             alone = now + _pay(count) - _pay(1) - margin
             shorter.append((self.start, alone))
-        least = now - PAYS
-        beside = least if count else least - PAYS
+        # Beside all of them it pays as one more, as it has to where it is to stand.
+        beside = now + _pay(count) - _pay(count + 1) - margin
         # What moves a mode far is told by a fit, as slopes tell little of that.
         far = repeats_the_base(state)
         return re_tuned_score(state, score, beside) < beside or any(
