@@ -336,3 +336,17 @@ def test_a_path_that_leaves_nothing_is_no_reason_to_try_no_forces(monkeypatch):
     asked.clear()
     search("made", measured((*gain, *curved), 0.02), base, **about)
     assert not asked
+
+
+def test_a_base_found_with_an_effect_that_is_not_named_is_the_plain_one():
+    """Without the limit that it was found with, it is no model of the records."""
+    gain = (block("gain", value=12.0, offset=0.0),)
+    wrong = (block("gain", value=7.0, offset=0.0),)
+    base = IdentifiedModel(
+        *("base", CURRENT, DISPLACEMENT, wrong),
+        free=("gain.value", "gain.offset"),
+        found_with="slew-limit",
+    )
+    found = search("made", measured(gain, 0.02), base, vocabulary=among("slew-limit"))
+    assert found.base.chain[0].value == pytest.approx(12.0, rel=1e-2)
+    assert "without slew limit, which is not named" in found.content["reason"]

@@ -74,8 +74,8 @@ class GapSearch:
         """Give a base on records, with nothing named beside it yet."""
         hold, noise = self.evidence.input_hold, self.evidence.noise_rms
         offered = self.offered(base)
-        begun = start_state(records, base, hold, declared=noise, offered=offered)
-        return BesideBase(base, *begun)
+        start, floor = start_state(records, base, hold, declared=noise, offered=offered)
+        return BesideBase(base, replace(start, expected=found_with(base)), floor)
 
     def without_leads(self, found: BesideBase, model: Model) -> BesideBase:
         """Start without the leads that a model shows; the same where there are none.

@@ -4,11 +4,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from hystbench.device_kinds import behaviour_of
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.gpi import again_words, is_another
-from hystbench.gap.bases.linear import is_identified_linear
+from hystbench.gap.bases.linear import (
+    found_with,
+    is_identified_linear,
+    linear_of,
+    with_its_numbers_free,
+)
 from hystbench.gap.bases.roughly_known import roughly_known
 from hystbench.gap.beside_base import BesideBase, stays
+from hystbench.gap.effects import effects
 from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.fitting.re_tuning_gain import re_tuned_words
 from hystbench.gap.gap_search import GapSearch, leaves_little
@@ -53,7 +60,7 @@ def search_and_judge(
     """
     limits = Limits.of(evidence.fit, asked.limits) if asked.limits else None
     gap = GapSearch(evidence, asked.sought, quantities)
-    found, re_tuned = gap.beside(base), False
+    found, re_tuned = _beside_what_is_named(gap, base), False
     identified = is_identified_linear(base)
     if identified:
         found = _in_better_time(gap, found)
@@ -66,6 +73,25 @@ def search_and_judge(
     told = judge_and_tell(evidence.name, found, asked, limits)
     reason = "; ".join([told.content["reason"], *_reason(gap, base, found, re_tuned)])
     return replace(told, content={**told.content, "reason": reason})
+
+
+def _beside_what_is_named(gap: GapSearch, base: Model) -> BesideBase:
+    """Name beside a base; where it was found together with an effect, with that.
+
+    Without that effect such a base is no model of the records. If it is not named, the
+    linear base is the one of input and output alone.
+    """
+    found = gap.beside(base)
+    effect = found_with(base)
+    named = {item.effect for item in found.named.state.added}
+    if effect not in effects() or effect in named:
+        return found
+    gap.asked.say(
+        f"the linear base was found together with {effect}, which is not named: naming "
+        "beside one that was found alone"
+    )
+    alone = linear_of(gap.evidence).model
+    return gap.beside(with_its_numbers_free(alone))
 
 
 def _in_better_time(gap: GapSearch, found: BesideBase) -> BesideBase:
@@ -127,6 +153,9 @@ def _reason(
 ) -> list[str]:
     """Say what was changed of the base before the names were found beside it."""
     state, told = found.named.state, []
+    if found_with(base) and not found_with(found.base):
+        effect = behaviour_of(found_with(base))
+        told.append(f"the linear base is that without {effect}, which is not named")
     if is_another(base, found.base):
         told.append(again_words(gap.evidence.to_identify_from.name))
     if found.inside is not None:

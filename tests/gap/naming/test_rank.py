@@ -305,6 +305,10 @@ def test_what_gains_too_little_of_what_is_needed_is_not_refitted():
     (less,) = rank(state, score, known, folds=False, needs=10 * alone.gain)
     assert less.state is None
     assert less.gain <= alone.gain
+    # An effect that the base was found together with is, as slopes may tell nothing.
+    known_of = replace(state, expected="sensor-lag")
+    (refitted, *_) = rank(known_of, score, known, folds=False, needs=10 * alone.gain)
+    assert refitted.gain == pytest.approx(alone.gain)
 
 
 @pytest.mark.parametrize("folds", [False, True])

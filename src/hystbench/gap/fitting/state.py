@@ -102,6 +102,9 @@ class ModelState:
     correction: FloatArray | None = None
     """Shape (scored samples,). By how much the exact simulation is above the quick one.
     It changes little from candidate to candidate; :meth:`settled` measures it anew."""
+    expected: str = ""
+    """Effect that the base was found together with, if any: it is refitted whatever a
+    first trial tells, as slopes of a base that is far off without it tell little."""
     offered: tuple[str, ...] | None = None
     """Effects that may be added; all by default."""
 

@@ -89,7 +89,7 @@ def rank(
         return tuple(declined)
     most = now - min(trial.score for trial in found)
     refined = _refined(found, now, max(_near(most), worth))
-    likely = _likely(refined, now, max(most * (1 - BEHIND), worth), bool(state.added))
+    likely = _likely(refined, now, max(most * (1 - BEHIND), worth), state)
     # A form that bends far on all records may still foretell none of them.
     judged = best_forms(
         _each_judged(likely, refined, state, score, now, folds),
@@ -138,13 +138,13 @@ def _best_of_each(refined: Sequence[Trial]) -> list[Trial]:
 
 
 def _likely(
-    refined: Sequence[Trial], now: float, least: float, beside: bool
+    refined: Sequence[Trial], now: float, least: float, state: ModelState
 ) -> list[Trial]:
     """Choose the trials that are refitted: several of an effect, if need be.
 
     First the best of each effect that gains nearly as much as any. Then those that
-    begin at numbers of their own; beside other effects only of those chosen first. Then
-    laws of fewer numbers of these.
+    begin at numbers of their own, beside other effects only of those chosen first, and
+    all of an effect that is expected. Then laws of fewer numbers of these.
     """
     likely = [
         trial
@@ -153,12 +153,12 @@ def _likely(
         or (trial.variant.effect == SHAPE and now - trial.score > PAYS)
     ]
     shown = {trial.variant.effect: trial for trial in likely}
+    others = [x for x in refined if shown.get(x.variant.effect) is not x]
     begun = [
         trial
-        for trial in refined
-        if trial.variant.begun
-        and shown.get(trial.variant.effect) is not trial
-        and (not beside or trial.variant.effect in shown)
+        for trial in others
+        if trial.variant.effect == state.expected
+        or (trial.variant.begun and (not state.added or trial.variant.effect in shown))
     ]
     fewer = _of_fewer_numbers(refined, [shown[x] for x in sorted(shown)], now)
     return [*likely, *begun, *fewer]
@@ -201,7 +201,7 @@ def _first_exact(
     """
     found = first_on_folds(candidates, state, score)
     candidates = in_order(_not_cut_short(item, state) for item in found)
-    while candidates[0].effect not in exact and candidates[0].gain_on_folds:
+    while candidates[0].effect not in exact and candidates[0].gain_on_folds is not None:
         first = candidates.pop(0)
         exact.append(first.effect)
         again = on_folds(exactly(first, score, now), state, score)
