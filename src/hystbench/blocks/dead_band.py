@@ -20,14 +20,12 @@ class DeadBand(Block, name="dead-band", place="drive", curve="dead_band"):
     """
 
     upper: float = number("U", "command at which motion starts upwards", 0.0)
-    lower: float = number("U", "command at which it starts downwards", high=0.0)
+    lower: float = number("U", "command at which it starts downwards; 0 or less")
 
     def check(self) -> None:
-        """Refuse a band of no width."""
-        if self.lower >= self.upper:
-            raise InputError(
-                f"lower: {self.lower:g}; expected less than upper, {self.upper:g}"
-            )
+        """Refuse a band without zero in it."""
+        if self.lower > 0.0:
+            raise InputError(f"lower: {self.lower:g}; expected 0 or less")
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Take off the band."""

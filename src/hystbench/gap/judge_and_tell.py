@@ -11,6 +11,7 @@ import numpy as np
 from hystbench.blocks.calls import USED_UP, current
 from hystbench.gap.asked import Asked
 from hystbench.gap.beside_base import BesideBase
+from hystbench.gap.effects.hysteresis import Hysteresis
 from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.experiment.tell_apart import Experiment, tell_apart
 from hystbench.gap.fitting.augmented_model import augmented, blocks_of
@@ -47,11 +48,17 @@ from hystbench.gap.locate.forms import LEAST_SHARE, View
 from hystbench.gap.locate.level_classes import beside_level
 from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.ladder import FitResult, contributions, rungs
+from hystbench.gap.naming.loops import is_a_curve
 from hystbench.gap.progress import Say
 from hystbench.gap.records.black_box import BlackBox, black_box
 from hystbench.gap.records.floor import Floor, unrepeated
 from hystbench.gap.records.lone_samples import lone_share, lone_words
 from hystbench.model import Model
+
+NO_LOOP = (
+    "what would be a hysteresis has no loop: it is a curve of what enters it, of "
+    "another form than those that were tried"
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -181,6 +188,8 @@ def _judged(
     unowned = measure_unowned(start, state, floor, allowed)
     if state.added:
         verdict, why = judge_names(left, unowned)
+        if verdict == "named" and is_a_curve(state, Hysteresis.name):
+            verdict, why = "unnamed", NO_LOOP
     else:
         bound = floor.method == "upper-bound"
         size_tells = bound or left.is_new or unowned.follows_nothing

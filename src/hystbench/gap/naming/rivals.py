@@ -13,8 +13,11 @@ from hystbench.gap.fitting.cross_validation import gain_on_folds
 from hystbench.gap.fitting.model_score import directions_of, score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.naming.loops import is_a_curve
 from hystbench.gap.naming.rounds import Candidate, in_order
 from hystbench.gap.thresholds import AS_GOOD, CERTAIN, LOOSE, PARAMETER, PAYS, SCALE
+
+A_CURVE = "has no loop, and a curve of few numbers leaves as little"
 
 
 def first_on_folds(
@@ -85,13 +88,16 @@ def beyond_simpler_laws(
       the sensor was set to zero with the bias on. It is charged if the simpler law
       leaves less than `AS_GOOD` of the gap more.
 
-    The charge is `CERTAIN`: both forms may stand for what the simulation misses.
+    The charge is `CERTAIN`: both forms may stand for what the simulation misses. A
+    hysteresis without a loop declines beside a simpler law that leaves less than
+    `AS_GOOD` of the gap more: many plays bend to any curve.
     """
     floor = score.floor
     gap = before.power(floor)
 
     def charged(item: Candidate) -> Candidate:
-        more = _may_leave_more(item)
+        curve = item.state is not None and is_a_curve(item.state, item.effect)
+        more = AS_GOOD if curve else _may_leave_more(item)
         if item.state is None or not more:
             return item
         for other in candidates:
@@ -99,7 +105,7 @@ def beyond_simpler_laws(
                 continue
             simpler = item.state.freedom >= other.state.freedom
             if simpler and item.state.share(other.state, floor, gap) < more:
-                return item.dearer(CERTAIN)
+                return item.but(A_CURVE) if curve else item.dearer(CERTAIN)
         return item
 
     return in_order(charged(item) for item in candidates)
