@@ -8,6 +8,7 @@ from hystbench.gap.bases.linear import linear_of
 from hystbench.gap.bases.orders import Judged, Orders, none_lowers_both
 from hystbench.gap.records.evidence import Evidence
 from hystbench.quantities import Quantities
+from tests.gap.examples import plain_play
 from tests.gap.made import record
 
 
@@ -83,3 +84,13 @@ def test_a_device_that_swings_for_longer_than_its_record_keeps_its_mode():
     (pole,) = swings(linear_of(lagging(tau_s=60.0)))
     assert pole.imag == pytest.approx(2 * np.pi * 2.0, rel=1e-3)
     assert -1 / pole.real > 30.0
+
+
+def test_harmonics_of_a_loop_are_no_swing_of_the_base():
+    """A mode at three times the frequency of a sine needs no input to be there."""
+    dt, n = 0.02, 500
+    u = np.sin(2 * np.pi * 0.5 * dt * np.arange(n))
+    loop = 0.3 * u + plain_play(u, 0.4)
+    y = loop + 1e-3 * np.random.default_rng(4).standard_normal(n)
+    found = linear_of(Evidence("made", (record(u, y, dt=dt),), (), "linear"))
+    assert all(-1 / swings(found).real < 10.0)  # the record has 10 s

@@ -21,6 +21,7 @@ from hystbench.gap.bases.spectral import (
     with_poles,
 )
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.first_state import with_state_of
 from hystbench.gap.records.folds import Fold, make_folds
 from hystbench.gap.records.scored_samples import without
 from hystbench.gap.thresholds import (
@@ -30,7 +31,7 @@ from hystbench.gap.thresholds import (
     NUMBER_PAYS,
     TIMING_PAYS,
 )
-from hystbench.record import FloatArray, Mask
+from hystbench.record import ComplexArray, FloatArray, Mask
 
 #: Highest order that is tried, of all poles at once, and with modes added one by one.
 HIGHEST = 6
@@ -101,15 +102,20 @@ def first_none_lowers(tried: Sequence[Model]) -> Model:
 
 
 def without_lasting_swings(tried: Sequence[Model]) -> Sequence[Model]:
-    """Leave out models with a swing that hardly fades, if they are little better.
+    """Leave out models with a swing that hardly fades, if no input is needed for it.
 
     Such a swing goes on by itself and imitates what no input causes, on folds of the
-    same record too. Without that of a device much more is left: four times the power.
+    same record too. Without that of a device much more is left: four times the power,
+    and more as well if the swing is free to be in each record, whatever its input.
     """
     fading = [item for item in tried if item.fades]
     best, other = first_none_lowers(tried), first_none_lowers(fading)
-    much = best.folds**2 < LOOSE * other.folds**2
-    return tried if best.fades or much else fading
+    if not isinstance(best, Found) or best.fades:
+        return tried
+    if best.folds**2 >= LOOSE * other.folds**2:
+        return fading
+    driven = not isinstance(other, Found) or lowers(best, other.beside(best.lasting))
+    return tried if driven else fading
 
 
 @dataclass(frozen=True)
@@ -126,12 +132,21 @@ class Found(Judged):
 
         One that repeats never ends, and no swing is begun in it.
         """
+        return len(self.lasting) == 0
+
+    @property
+    def lasting(self) -> ComplexArray:
+        """Poles of swings that hardly fade, in 1/s, one of each pair."""
         records = self.task.records
         poles = self.ratio.poles(self.task.scale)
         seconds = max(len(record) * record.dt for record in records)
-        lasts = np.exp(poles.real * seconds) > MOST
-        repeat = any(record.repeats for record in records)
-        return repeat or not np.any(lasts & (poles.imag > 0))
+        lasts = (np.exp(poles.real * seconds) > MOST) & (poles.imag > 0)
+        return poles[lasts & (not any(record.repeats for record in records))]
+
+    def beside(self, swings: ComplexArray) -> Found:
+        """Fit it again with swings of such poles free in each record."""
+        freed = tuple(with_state_of(record, swings) for record in self.task.records)
+        return self.orders.judged(replace(self.task, records=freed), self.ratio)
 
 
 @dataclass(frozen=True)
