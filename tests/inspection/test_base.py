@@ -13,7 +13,7 @@ from hystbench.record import Channel
 from tests.conftest import run_hystbench
 from tests.gap.made import DISPLACEMENT, record, write_folder
 from tests.gap.small import block
-from tests.inspection.stage import NOISE, STAGE, T, looked, saved, through
+from tests.inspection.stage import NOISE, STAGE, T, looked, saved, through, wave
 
 
 @pytest.fixture
@@ -73,6 +73,51 @@ def test_a_part_that_goes_on_lies_where_it_was_measured(tmp_path):
 
 
 USED = ("a", "fit"), ("b", "hold-out")
+
+
+@pytest.fixture
+def begun(tmp_path):
+    """Records of a lag that was far away before each began."""
+    made = []
+    for seed, use in enumerate(("fit", "fit", "hold-out")):
+        u = np.concatenate([np.full(400, 8.0), wave(seed)])
+        y = through(u, block("drive-lag", time_constant_s=0.02))
+        y += NOISE * np.random.default_rng(seed).standard_normal(len(u))
+        made.append(record(u[400:], y[400:], name=f"r{seed}", use=use))
+    write_folder(tmp_path / "lag", made, noise_rms=NOISE)
+    return tmp_path
+
+
+def test_the_beginning_in_the_middle_of_a_motion_is_left_out(begun):
+    """As the search does: the base that was identified leaves the noise alone."""
+    found = looked(begun, "lag", "linear", effects=False)
+    assert found.base.left < 2 * NOISE
+    assert all(0 < item.record.lead < 400 for item in found.base.whole)
+    assert "not scored is the beginning of records" in said(found)
+    assert "the model may be wrong" not in said(found)
+
+
+def test_effects_are_judged_behind_the_beginning_too(begun):
+    """Beside a start of eight times the motion no effect had been as small."""
+    found = looked(begun, "lag", "linear")
+    (item,) = (x for x in found.effects if x.effect == "sensor-nonlinearity")
+    assert item.seen_from < 0.1
+
+
+def test_what_an_identified_base_was_fitted_to_is_told_apart(tmp_path):
+    """A kick in the first tenth is no start of it: two errors, and why."""
+    made = []
+    for seed, use in enumerate(("fit", "fit", "hold-out")):
+        u = wave(seed)
+        y = 3 * u + NOISE * np.random.default_rng(seed).standard_normal(len(u))
+        y[10:40] += np.random.default_rng(7).standard_normal(30)
+        made.append(record(u, y, name=f"r{seed}", use=use))
+    write_folder(tmp_path / "gain", made, noise_rms=NOISE)
+    found = looked(tmp_path, "gain", "linear", effects=False)
+    assert found.base.left > 5 * found.base.behind
+    fit = found.base.note.partition("rms error ")[2].partition(" um on the fit")[0]
+    assert found.base.behind == pytest.approx(float(fit), rel=0.01)
+    assert f"({found.base.behind:.3g} µm behind the first tenth" in said(found)
 
 
 def test_a_model_of_other_signals_is_refused(rig):

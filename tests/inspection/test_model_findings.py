@@ -92,6 +92,19 @@ def test_other_units_that_leave_half_of_it_are_no_likely_reason(tmp_path):
     assert "it lacks a strong effect" in one.text
 
 
+def test_of_an_identified_base_neither_units_nor_start_are_doubted(tmp_path):
+    """They are those of the records."""
+    u = wave(0)
+    rest = 0.3 * np.random.default_rng(1).standard_normal(len(u))
+    made = [record(u, 0.3 * u + rest, name="a")]
+    made.append(record(u[::-1], u, name="b", use="hold-out"))
+    write_folder(tmp_path / "stage", made)
+    found = looked(tmp_path, "stage", "linear", effects=False)
+    (one,) = told(found, "misfit")
+    assert (one.topic, one.kind) == ("misfit identified", "note")
+    assert "units" not in one.text
+
+
 def test_a_model_that_leaves_as_much_as_the_output_moves_explains_nothing(stage):
     """A thousandth of the gain leaves all but a thousandth; a stiff one a part."""
     (one,) = told(of_stage(stage, gain=1e-3), "misfit")

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from hystbench.blocks import block_class
 from hystbench.dataset import Dataset
-from hystbench.gap.bases.lead import begun_beside
+from hystbench.gap.bases.lead import begun_beside, without_leads
+from hystbench.gap.bases.kinds import IDENTIFIED
+from hystbench.gap.bases.linear import is_identified_linear
 from hystbench.gap.bases.load import load_base
+from hystbench.gap.bases.orders import LEAD
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.evidence import evidence_of
 from hystbench.gap.records.scored_samples import Compared
@@ -42,6 +45,15 @@ class Base:
     fit: tuple[Compared, ...]
     """Those to fit, as ``hystbench gap`` takes them: of a free mass cut in windows.
     A loop of play operators is fitted to no spoilt one."""
+
+    behind: float | None = None
+    """Rms of what an identified linear base leaves of what it was fitted to: the fit
+    records behind the first tenth of each, with an offset of each where it had one."""
+
+    @property
+    def identified(self) -> bool:
+        """Whether it was identified from the records to fit."""
+        return self.given in IDENTIFIED
 
     @property
     def called(self) -> str:
@@ -111,30 +123,51 @@ def base_of(
         return Base(base, given, "", whole, fit)
     evidence = evidence_of(dataset, records)
     base, note = load_base(given, evidence)
-    parts = (*evidence.fit, *evidence.hold_out)
-    begun = begun_beside(base, parts)
+    begun = tuple(
+        item
+        for use in (evidence.fit, evidence.hold_out)
+        for item in without_leads(begun_beside(base, use), base, evidence)
+    )
     outputs = run_base(base, begun, hold)
     compared = [
-        Compared(part.as_measured, y[item.past :])
-        for part, item, y in zip(parts, begun, outputs, strict=True)
+        Compared(item.as_measured, y[item.past :])
+        for item, y in zip(begun, outputs, strict=True)
     ]
     fit = tuple(compared[: len(evidence.fit)])
-    return Base(base, given, note, tuple(_put_together(records, compared)), fit)
+    behind = None
+    if is_identified_linear(base):
+        behind = rms(*(_behind(item, evidence.own_offsets) for item in fit))
+    whole = tuple(_put_together(records, compared))
+    return Base(base, given, note, whole, fit, behind)
+
+
+def _behind(item: Compared, own_offset: bool) -> FloatArray:
+    """Give what is left of a record behind its first tenth."""
+    late = np.arange(len(item.record)) >= LEAD * len(item.record)
+    rest = item.residual[late & item.record.counted]
+    return rest - np.mean(rest) if own_offset and len(rest) else rest
 
 
 def _put_together(
     records: Sequence[Record], parts: Sequence[Compared]
 ) -> Iterator[Compared]:
-    """Give whole records of the windows that they were cut into, if they were."""
+    """Give whole records of the windows that they were cut into, if they were.
+
+    One that was not cut keeps what scores leave out of its beginning.
+    """
     left = {use: iter([x for x in parts if x.record.use == use]) for use in USES}
     for record in records:
         simulated: list[FloatArray] = []
+        begun = record
         while sum(map(len, simulated)) < len(record):
             part = next(left[record.use])
+            if len(part.record) == len(record):
+                lead, poles = part.record.lead, part.record.start_poles
+                begun = replace(record, lead=lead, start_poles=poles)
             first = sum(map(len, simulated))
             zero = record.y[first] - part.record.y[0]
             simulated.append(part.simulated + zero)
-        yield Compared(record, np.concatenate(simulated))
+        yield Compared(begun, np.concatenate(simulated))
 
 
 def loop_of_plays(records: Sequence[Record]) -> Model:

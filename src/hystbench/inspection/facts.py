@@ -131,8 +131,10 @@ def delay_of(item: Compared) -> tuple[float, float, float]:
         Of the residual's power, that goes with it; none where a loop of another width
         would do the same.
     """
-    slope = np.gradient(item.simulated, item.record.dt)
-    residual = item.residual - item.residual.mean()
+    behind = np.arange(len(item.record)) >= item.record.lead
+    slope = np.gradient(item.simulated, item.record.dt)[behind]
+    residual = item.residual[behind]
+    residual = residual - residual.mean()
     top = np.array([float(part.sum()) for part in _parts(residual * slope)])
     bottom = np.array([float(part.sum()) for part in _parts(slope**2)])
     total = float(bottom.sum())

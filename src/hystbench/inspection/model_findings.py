@@ -14,6 +14,7 @@ from hystbench.blocks.structure import Structure
 from hystbench.dataset import Dataset
 from hystbench.errors import InputError
 from hystbench.gap.bases.kinds import kind_of_base
+from hystbench.gap.bases.lead import lead_warnings
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.thresholds import AS_GOOD, LOOSE, WORTH_A_WORD
@@ -41,6 +42,9 @@ def model_findings(dataset: Dataset, base: Base) -> Iterator[Finding]:
     if not base.given:
         return
     yield from _another_quantity(dataset, base)
+    records = [item.record for item in base.whole]
+    for line in lead_warnings(records):
+        yield finding("begun", line=line)
     if not base.fits:
         yield _misfit(dataset, base)
     if kind_of_base(base.given) == "file":
@@ -131,6 +135,8 @@ def _misfit(dataset: Dataset, base: Base) -> Finding:
         "explains": "explains nothing: it " * nothing,
         "share": 100 * base.share_left,
     }
+    if base.identified:  # neither its units nor its start are a user's
+        return finding("misfit identified", **told)
     for topic in ("offset", "units", "rate"):
         numbers, left = _would_leave(base, topic)
         if left**2 <= LOOSE * base.left**2:

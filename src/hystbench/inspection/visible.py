@@ -103,7 +103,8 @@ def seen_effects(
     if "hysteresis" in declined and (own_loop := _hysteresis(state)):
         shapes += own_loop
         del declined["hysteresis"]
-    reach = float(np.sqrt(np.mean([np.var(record.y) for record in records])))
+    outputs = [record.y[record.counted] for record in records]
+    reach = float(np.sqrt(np.mean([np.var(y) for y in outputs])))
     judge = _Judge(state, own, floor, reach)
     measured = [judge.measured(shape, shape in own_loop) for shape in shapes]
     found = []
