@@ -6,6 +6,7 @@ import pytest
 from hystbench.dataset import load_dataset
 from hystbench.inspection import screen
 from hystbench.inspection.check import check
+from hystbench.inspection.page import page
 from tests.inspection.made import COUNT, loop, write
 from tests.inspection.test_check import NOISE, noisy
 
@@ -74,8 +75,8 @@ def test_of_three_each_later_one_is_held_against_the_first(tmp_path):
     assert [item.record for item in told(found, "apart")] == ["again-2"]
 
 
-def test_a_loop_that_does_not_fit_is_no_base_to_count_effects_on(tmp_path):
-    """Half of the output's rms is left: what stands out of it was not asked."""
+def test_a_loop_that_does_not_fit_is_no_base_to_judge_effects_on(tmp_path):
+    """Half of the output's rms is left: no effects are listed, on screen or page."""
     lag = np.exp(-np.arange(COUNT) / 150) / 150
     made = {}
     for seed, name in enumerate(("one", "two", "held")):
@@ -84,13 +85,15 @@ def test_a_loop_that_does_not_fit_is_no_base_to_count_effects_on(tmp_path):
     about = f"noise_rms: {NOISE}\n"
     place = write(tmp_path, made, about=about, roles={"held": "hold-out"})
     found = check(load_dataset(place))
-    assert found.judged
+    assert not found.effects
     assert not found.base.fits
     said = screen.words_of(found)("headline")[0]
     assert "effects judged" not in said
     assert "does not fit" in said
     shown = "\n".join(screen.lines(found))
-    assert "Beside that loop" in shown
+    for text in (shown, page(found)):
+        assert "is not told, as the loop" in " ".join(text.split())
+        assert "drive-lag" not in text
 
 
 def test_a_loop_that_fits_is_counted_on(tmp_path):

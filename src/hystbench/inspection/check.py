@@ -40,7 +40,8 @@ class Check:
     """What effects are judged beside."""
     findings: tuple[Finding, ...]
     effects: tuple[SmallestSeen, ...]
-    """Empty where they were not simulated."""
+    """Empty where they were not simulated: not asked for, or no base to judge them
+    on."""
 
     @property
     def revealed(self) -> tuple[SmallestSeen, ...]:
@@ -70,7 +71,8 @@ def check(dataset: Dataset, effects: bool = True, model: str = "") -> Check:
     ----------
     dataset : Dataset
     effects : bool
-        Whether to simulate them, which takes most of the time.
+        Whether to simulate them, which takes most of the time. On a loop of play
+        operators that does not fit none are.
     model : str
         As of ``hystbench gap --model``: effects are judged beside it. By default
         beside a loop of play operators that is fitted to the records.
@@ -107,7 +109,7 @@ def check(dataset: Dataset, effects: bool = True, model: str = "") -> Check:
             floor.rms,
             dataset.input_hold,
         )
-        if effects
+        if effects and (base.given or base.fits)
         else (),
     )
 
