@@ -10,14 +10,15 @@ import numpy as np
 
 from hystbench.blocks import block_class
 from hystbench.dataset import Dataset
-from hystbench.gap.bases.lead import begun_beside, without_leads
 from hystbench.gap.bases.kinds import IDENTIFIED
+from hystbench.gap.bases.lead import begun_beside, without_leads
 from hystbench.gap.bases.linear import is_identified_linear
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.bases.orders import LEAD
+from hystbench.gap.bases.output_error import own_columns
 from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.records.evidence import evidence_of
-from hystbench.gap.records.scored_samples import Compared
+from hystbench.gap.records.scored_samples import Compared, without
 from hystbench.gap.thresholds import LOOSE
 from hystbench.metrics import rms
 from hystbench.model import Model
@@ -48,7 +49,8 @@ class Base:
 
     behind: float | None = None
     """Rms of what an identified linear base leaves of what it was fitted to: the fit
-    records behind the first tenth of each, with an offset of each where it had one."""
+    records behind the first tenth of each, without an offset of each, where it had
+    one."""
 
     @property
     def identified(self) -> bool:
@@ -141,11 +143,12 @@ def base_of(
     return Base(base, given, note, whole, fit, behind)
 
 
-def _behind(item: Compared, own_offset: bool) -> FloatArray:
-    """Give what is left of a record behind its first tenth."""
-    late = np.arange(len(item.record)) >= LEAD * len(item.record)
-    rest = item.residual[late & item.record.counted]
-    return rest - np.mean(rest) if own_offset and len(rest) else rest
+def _behind(item: Compared, own_offsets: bool) -> FloatArray:
+    """Give what is left of a record behind its first tenth and apart from its own."""
+    record = item.record
+    late = record.counted & (np.arange(len(record)) >= LEAD * len(record))
+    (own,) = own_columns([record], own_offsets)
+    return without((record.y - item.simulated)[late], own[late])
 
 
 def _put_together(
