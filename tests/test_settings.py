@@ -153,6 +153,17 @@ def test_a_record_shorter_than_its_filter_is_refused(write_dataset, loop_csv):
         read(changed("source", str(path)))
 
 
+def test_a_record_that_stands_still_is_for_the_gap_alone(write_dataset, loop_csv):
+    """The error of a filter is told as a share of the output."""
+    header, *rows = loop_csv.splitlines()
+    still = "\n".join([header, *(f"{row.rpartition(',')[0]},0" for row in rows)])
+    path = write_dataset({"a.csv": loop_csv, "b.csv": still + "\n"})
+    said = "file: b.csv, stands_still: [output]"
+    path.write_text(path.read_text().replace("file: b.csv", said))
+    with pytest.raises(InputError, match=r"b\.csv: record b: \w+ is constant"):
+        read(changed("source", str(path)))
+
+
 def test_signals_narrow_a_dataset_and_a_misspelt_one_is_refused(
     write_dataset, loop_csv
 ):

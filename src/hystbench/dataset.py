@@ -1,8 +1,7 @@
 """Measured records: a dataset.yaml and the files of measurements that it names."""
 
-import os
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
@@ -10,19 +9,21 @@ from typing import Any, Literal
 
 import numpy as np
 
-from hystbench.command_files import reads
+from hystbench.dataset_files import check_digest, check_files, file_of
 from hystbench.device_kinds import DEVICE_KINDS, DeviceKind
-from hystbench.errors import InputError, nearest, short
+from hystbench.errors import InputError, nearest
 from hystbench.even_times import on_even_times, usual_step
-from hystbench.formats import SUFFIXES, Column, Table, read_table
+from hystbench.formats import Column, Table, read_table
 from hystbench.quantities import QUANTITIES, Quantities, Quantity, quantity_of
 from hystbench.record import Channel, Hold, Record, Use
 from hystbench.samples import (
     UNIFORM_TOLERANCE,
+    WhereMoved,
     check_increases,
     check_moves,
     check_period,
     check_unit,
+    just_before,
     record_name,
     rows_of,
     sampling_interval,
@@ -30,12 +31,7 @@ from hystbench.samples import (
 )
 from hystbench.schema import check_against_schema
 from hystbench.units import check_known, check_same_unit, plain, seconds
-from hystbench.written import sha256
 from hystbench.yaml_files import load_yaml
-
-#: Names of records: they name results, and braces are Snakemake's own.
-RECORD_NAME = re.compile(r"[^.\-\s{}*?\\\x00-\x1f][^{}*?\\\x00-\x1f]*")
-
 
 CHANNELS = ("time", "input", "output", "simulated")
 """What a column of a dataset may be."""
@@ -56,7 +52,7 @@ class Dataset:
     def record_files(self) -> dict[str, Path]:
         """File of each record, by the record's name: the one given, or the stem."""
         return {
-            record_name(entry): _file_of(self.path, entry)
+            record_name(entry): file_of(self.path, entry)
             for entry in self.about["records"]
         }
 
@@ -125,8 +121,9 @@ class Dataset:
             dt = 1.0 / self._sampling_frequency(table, columns.values(), entry)
         u, y = signals["input"], signals["output"]
         channels = [self.about["input"], self.about["output"]]
-        for item, values in zip(channels, (u, y), strict=True):
-            check_moves(file, item, values)
+        of = f"{file}: record {name} (rows {rows.start + 1} to {rows.stop})"
+        for key, values in (("input", u), ("output", y)):
+            check_moves(of, self.about[key], values, self._where_moved(name, key))
         given, measured = (Channel(_name(item), item["unit"]) for item in channels)
         period = entry.get("period_samples")
         if period is not None:
@@ -144,6 +141,30 @@ class Dataset:
             signals.get("simulated"),
             lost if lost.any() else None,
         )
+
+    def _where_moved(self, name: str, key: str) -> WhereMoved:
+        """Tell where a channel that is constant in a record has to move instead."""
+        if key == "input":
+            before = self.use(name) == "hold-out" and self.just_before(name)
+            return "before" if before else "nowhere"
+        if "output" not in self.stands_still(name):
+            return "unsaid"
+        others = [x for x in self.record_files if x != name and self.use(x) == "fit"]
+        moves = any(self._output_moves(other) for other in others)
+        return "elsewhere" if moves else "in none"
+
+    def _output_moves(self, name: str) -> bool:
+        """Tell whether the output of a record is more than one value."""
+        _, columns, rows = self.columns(name)
+        values = columns["output"].values[rows]
+        return len(np.unique(values[np.isfinite(values)])) > 1
+
+    def just_before(self, name: str) -> list[str]:
+        """Name the parts of the same measurement that end where a record begins.
+
+        By their rows; times are not looked at.
+        """
+        return just_before(self.about["records"], self.entry(name))
 
     def columns(self, name: str) -> tuple[Table, dict[str, Column], slice]:
         """Read the columns of a record, as they stand in its file.
@@ -164,7 +185,7 @@ class Dataset:
         """
         file, entry = self.record_files[name], self.entry(name)
         abouts = {key: self.about[key] for key in CHANNELS if key in self.about}
-        _check_digest(self.path, file, entry)
+        check_digest(self.path, file, entry)
         table = read_table(file, [about["column"] for about in abouts.values()])
         columns = {
             key: table.column(about["column"], entry.get("group", ""))
@@ -222,13 +243,15 @@ class Dataset:
         """Name of the record for identification: the one named, or the slowest.
 
         The slowest has the least rms(du/dt) / rms(u); only records with
-        ``use: fit`` are looked at. To find it their files are read, once.
+        ``use: fit`` whose output moves are looked at. To find it their files are read,
+        once.
         """
         named = self.about.get("identification")
         if named is not None:
             return str(named)
         fit = [name for name in self.record_files if self.use(name) == "fit"]
-        return min(fit, key=lambda name: self.read(name).rate)
+        moving = [record for record in map(self.read, fit) if np.ptp(record.y) > 0]
+        return min(moving, key=lambda record: record.rate).name
 
 
 def load_dataset(path: str | Path) -> Dataset:
@@ -284,7 +307,7 @@ def dataset_of(file: Path, about: dict[str, Any]) -> Dataset:
     check_against_schema(about, schema(), str(file))
     dataset = Dataset(file, about["name"], about)
     files = dataset.record_files
-    _check_files(file, about["records"])
+    check_files(file, about["records"])
     named = about.get("identification")
     if named is not None and named not in files:
         raise InputError(
@@ -310,82 +333,6 @@ def dataset_of(file: Path, about: dict[str, Any]) -> Dataset:
     if "time" in about:
         seconds(f"{file}: time: unit", about["time"]["unit"])
     return dataset
-
-
-def _file_of(about: Path, entry: Mapping[str, Any]) -> Path:
-    """Give the file of a record, also from a folder that is not there yet."""
-    name: str = entry["file"]
-    if about.parent.is_dir():
-        return about.parent / name
-    return Path(os.path.normpath(about.parent.resolve() / name))
-
-
-def _check_files(about: Path, entries: Sequence[Mapping[str, Any]]) -> None:
-    """Refuse a record whose file is none, and two records of one name."""
-    seen: dict[str, str] = {}
-    for entry in entries:
-        name, record = entry["file"], record_name(entry)
-        place, file = f"{about}: records", _file_of(about, entry)
-        if not RECORD_NAME.fullmatch(record):
-            raise InputError(
-                f"{place}: {short(record if 'name' in entry else name)} names results "
-                "as well; expected a name that begins with a letter or digit and has "
-                "none of {}*?\\"
-            )
-        if record in seen:
-            also = seen[record]
-            raise InputError(
-                f"{place}: {name!r} stands there twice; expected each once, or a "
-                "'name' each where they are parts of one file"
-                if also == name
-                else f"{place}: {also!r} and {name!r} are both named {record!r}; "
-                "expected a name each, as it names its results"
-            )
-        seen[record] = name
-        if file.is_dir():
-            raise InputError(f"{place}: {name!r} is a folder; expected a CSV file")
-        if not _is_file(file):
-            raise InputError(f"{place}: no file {name!r}; {_other_file(about, name)}")
-        reads(file)
-
-
-def _is_file(file: Path) -> bool:
-    try:
-        return file.is_file()
-    except (OSError, ValueError):  # links in a circle, or no name of a file at all
-        return False
-
-
-def _other_file(about: Path, name: str) -> str:
-    """Name the file that may be meant, from the folder of dataset.yaml."""
-    folder = (about.parent / name).parent
-    if not folder.is_dir():
-        return f"there is no folder {str(folder)!r}"
-    there = sorted(
-        item.name
-        for item in folder.iterdir()
-        if item.suffix.lower() in SUFFIXES and item.is_file()
-    )
-    if not there:
-        return f"expected a CSV file; the folder {str(folder)!r} has none"
-    before = Path(name).parent
-    return nearest(name, [str(before / item) for item in there])
-
-
-def _check_digest(about: Path, file: Path, entry: Mapping[str, Any]) -> None:
-    """Refuse a file that is not the one that was described."""
-    if "sha256" not in entry:
-        return
-    try:
-        found = sha256(file)
-    except OSError:
-        return  # who reads it says so
-    if found != entry["sha256"]:
-        raise InputError(
-            f"{about}: records: {entry['file']!r} is not the file that was "
-            f"described: its SHA-256 begins {found[:12]}, not {entry['sha256'][:12]}; "
-            "run 'hystbench init' again, or take 'sha256' away"
-        )
 
 
 def _name(channel: Mapping[str, str]) -> str:

@@ -208,9 +208,8 @@ def _other_size(
     """Tell of records whose range is a thousand times that of the others, or less."""
     about = dataset.about[channel]
     signals = {"input": lambda item: item.u, "output": lambda item: item.y}
-    ranges = sorted(
-        (float(np.ptp(signals[channel](item))), item.name) for item in records
-    )
+    sizes = [(float(np.ptp(signals[channel](item))), item.name) for item in records]
+    ranges = sorted(pair for pair in sizes if pair[0] > 0)  # one may stand still
     steps = [high / low for (low, _), (high, _) in pairwise(ranges)]
     if not steps or max(steps) < THOUSAND:
         return

@@ -166,12 +166,12 @@ def _flank(flank: FloatArray, length: int, quantum: float) -> tuple[float, bool]
 
 
 def smallest_step(values: FloatArray) -> float:
-    """Give the smallest step of a channel that is not constant.
+    """Give the smallest step of a channel, or zero where it is constant.
 
     It is at least what the channel is digitized by.
     """
     moves = np.abs(np.diff(values))
-    return float(moves[moves > 0].min())
+    return float(moves[moves > 0].min()) if moves.any() else 0.0
 
 
 def repeats(values: FloatArray, least: float) -> list[tuple[int, int]]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, Literal, cast
 
 import numpy as np
 
@@ -21,6 +21,28 @@ SMALLEST = 1e-30
 #: An input repeats itself if two of its periods differ by no more than this share of
 #: its standard deviation, rms.
 UNLIKE = 0.2
+
+OF_A_PART = frozenset(
+    {"rows", "use", "name", "meant", "stands_still", "missing", "period_samples"}
+)
+"""What dataset.yaml may say otherwise of another part of the same measurement."""
+
+WhereMoved = Literal["before", "elsewhere", "nowhere", "unsaid", "in none"]
+"""Where a channel moves that is constant in a record: in what was just before it, or in
+another record to fit; or it moves nowhere, does so by a fault for all that is known, or
+is said to stand still, and does so in every record to fit."""
+
+WHERE_MOVED: Mapping[WhereMoved, str] = {
+    "before": "",
+    "elsewhere": "",
+    "nowhere": "a signal that moves (of a step, with a sample before it)",
+    "unsaid": (
+        "a signal that moves; where it really stands, say 'stands_still: [output]' of "
+        "this record in dataset.yaml"
+    ),
+    "in none": "another record with 'use: fit' whose output moves",
+}
+"""What is expected of a constant channel; nothing where that is no fault."""
 
 
 def record_name(entry: Mapping[str, Any]) -> str:
@@ -109,17 +131,52 @@ def whole(
     return cast(FloatArray, np.interp(np.arange(len(values)), there, values[there]))
 
 
-def check_moves(file: Path, item: Mapping[str, str], values: FloatArray) -> None:
-    """Refuse a channel that does not move, or whose squares leave floating point."""
-    where = f"{file}: column {item['column']!r}"
+def just_before(
+    entries: Sequence[Mapping[str, Any]], entry: Mapping[str, Any]
+) -> list[str]:
+    """Name the records of one measurement that end at the row before one begins.
+
+    Parameters
+    ----------
+    entries : sequence of mapping
+        What dataset.yaml says of its records.
+    entry : mapping
+        What it says of one of them.
+    """
+    first = entry.get("rows", (1, None))[0]
+    measurement = {k: v for k, v in entry.items() if k not in OF_A_PART}
+    return [
+        record_name(other)
+        for other in entries
+        if other.get("rows", (1, None))[1] == first - 1
+        and measurement == {k: v for k, v in other.items() if k not in OF_A_PART}
+    ]
+
+
+def check_moves(
+    where: str, item: Mapping[str, str], values: FloatArray, moved: WhereMoved
+) -> None:
+    """Refuse a channel that does not move, or whose squares leave floating point.
+
+    Parameters
+    ----------
+    where : str
+        The file, the record and its rows, for the message.
+    item : mapping
+        What dataset.yaml says of the channel.
+    values : ndarray, shape (n,)
+    moved : str
+        Where it has to move, if it is constant here.
+    """
+    where = f"{where}: column {item['column']!r}"
     span = float(np.ptp(values))
-    if span == 0:
+    if span == 0 and WHERE_MOVED[moved]:
         raise InputError(
-            f"{where}: constant ({values[0]:g} {item['unit']}); "
-            "expected a signal that moves (of a step, with a sample before it)"
+            f"{where}: constant ({values[0]:g} {item['unit']}); expected "
+            f"{WHERE_MOVED[moved]}"
         )
     largest = float(np.abs(values).max())
-    if not (span > SMALLEST and largest < 1 / SMALLEST):
+    if not ((span > SMALLEST or span == 0) and largest < 1 / SMALLEST):
         raise InputError(
             f"{where}: a range of {span:g} and values up to {largest:g} "
             f"{item['unit']}; expected {SMALLEST:g} to {1 / SMALLEST:g} in some unit"

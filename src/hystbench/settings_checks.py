@@ -5,6 +5,8 @@ from dataclasses import MISSING
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from hystbench.dataset import Dataset, load_dataset
 from hystbench.doubts import doubts
 from hystbench.envelope import fewest_samples
@@ -13,6 +15,7 @@ from hystbench.filters import AdaptiveFilter, registry
 from hystbench.filters.keys import keys_of
 from hystbench.plants import model_files, packaged_models
 from hystbench.published import FILTERS, load_errors
+from hystbench.record import Record
 from hystbench.schema import check_against_schema
 from hystbench.signals import Signal, make_signal
 from hystbench.units import plain
@@ -83,6 +86,7 @@ def checked(
             len(record),
             config["filters"]["order"],
         )
+        _check_moves(str(dataset.record_files[record.name]), record)
     return dataset, doubts(dataset, records)
 
 
@@ -163,6 +167,17 @@ def _check_length(place: str, samples: int, order: int) -> None:
             f"{place}: {samples} samples are too few for filters of order {order}; "
             f"expected at least {expected}"
         )
+
+
+def _check_moves(place: str, record: Record) -> None:
+    """Refuse a record with a channel that is constant, which the gap alone may use."""
+    for channel, values in ((record.input, record.u), (record.output, record.y)):
+        if np.ptp(values) == 0:
+            raise InputError(
+                f"{place}: record {record.name}: {channel.name} is constant "
+                f"({values[0]:g} {channel.unit}); expected a signal that moves, as "
+                "filters are compared on it"
+            )
 
 
 def config_schema(config: Mapping[str, Any], schema_file: str | Path) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.dataset import RECORD_NAME
+from hystbench.dataset_files import RECORD_NAME
 from hystbench.errors import InputError, refuse_unknown
 from hystbench.inspection.clocks import Ticks
 from hystbench.inspection.columns import ChosenColumns, RecordColumns

@@ -73,7 +73,7 @@ def kind_of_input(u: FloatArray) -> InputKind:
     """
     steps = np.abs(np.diff(u))
     reach = float(np.ptp(u))
-    if np.mean(steps < 1e-6 * reach) > STILL_SHARE:
+    if np.mean(steps <= 1e-6 * reach) > STILL_SHARE:
         return "steps"
     if np.std(steps) < RAMP_SPREAD * steps.mean() or _bends_at_corners(u):
         return "ramps"

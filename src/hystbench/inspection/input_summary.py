@@ -39,7 +39,7 @@ class InputSummary:
     @property
     def relative_rate(self) -> float:
         """Rms of the rate over half of the range, in 1/s."""
-        return 2 * self.rate / self.span
+        return 2 * self.rate / self.span if self.span > 0 else 0.0
 
 
 def summary_of(u: FloatArray, dt: float) -> InputSummary:

@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
+from hystbench.dataset import load_dataset
 from hystbench.gap.asked import Asked
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import closed_gap
+from hystbench.inspection.check import check
+from tests.messages import message
 
 DT, TAU_S, NOISE, FIRST, LAST = 1.0, 120.0, 0.05, 400, 600
 
@@ -99,6 +102,34 @@ def test_the_clock_has_to_go_on(between, tmp_path, signals):
     where = dataset(tmp_path, signals, BOTH, times=times)
     (held,) = load_evidence(where).hold_out
     assert held.past == (FIRST if between == 1.4 else 0)
+
+
+def switched_off(signals):
+    """Give the signals with a heater that stands from before the cut on."""
+    u, y = signals
+    return np.where(np.arange(LAST) < FIRST - 50, u, 25.0), y
+
+
+def test_an_input_may_stand_where_it_moved_just_before(tmp_path, signals):
+    where = dataset(tmp_path, switched_off(signals), BOTH)
+    (held,) = load_evidence(where).hold_out
+    assert held.past == FIRST
+    assert np.ptp(held.u) > 0 == np.ptp(held.as_measured.u)
+    found = check(load_dataset(where), effects=False)
+    assert found.facts[1].input.kind == "steps"
+
+
+def test_an_input_that_stands_by_itself_is_refused_by_its_rows(tmp_path, signals):
+    apart = [("run.csv", 1, FIRST, "fit"), ("run.csv", FIRST + 2, LAST, "hold-out")]
+    where = dataset(tmp_path, switched_off(signals), apart)
+    said = message(lambda: load_evidence(where))
+    assert f"record part-1 (rows {FIRST + 2} to {LAST}): column 'heater_W'" in said
+    times = DT * np.arange(LAST)
+    times[FIRST:] += 1e4
+    where = dataset(tmp_path, switched_off(signals), BOTH, times=times)
+    said = message(lambda: load_evidence(where))
+    assert f"record part-1 (rows {FIRST + 1} to {LAST})" in said
+    assert "the time does not go on" in said
 
 
 def test_a_period_that_still_warms_up_has_what_was_before(tmp_path):

@@ -35,6 +35,9 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import PAYS, SCALE
 
+STILL = 1e-12
+"""Share of the largest power of an output below which one stands still."""
+
 
 def fitted_in_stages(
     begun: ModelState, score: Score, gentle: Sequence[int] = ()
@@ -111,10 +114,10 @@ def fitted_far(state: ModelState, score: Score) -> Fitted:
 def gentlest(state: ModelState) -> tuple[int, ...]:
     """Give half of the records: those of whose output a model leaves the least share.
 
-    None of a single record.
+    None of a single record. Of an output that stands still any share is large.
     """
     outputs = [np.var(state.measured[part]) for part in state.sample.slices]
-    shares = state.squares / np.maximum(outputs, 1e-300)
+    shares = state.squares / np.maximum(outputs, STILL * np.max(outputs))
     order = np.argsort(shares, kind="stable").tolist()
     return tuple(sorted(order[: len(order) // 2]))
 

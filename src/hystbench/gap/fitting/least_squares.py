@@ -36,6 +36,8 @@ FACTOR = 100.0
 SMALL = 1e-4
 """Share by which a step must lower the squares, or move the numbers, for another to
 follow: the score changes by less than a tenth of what a number costs."""
+NO_REST = 1e-6
+"""Share of what is left of all records, rms, below which nothing is left of one."""
 OUT = 1e3
 """Residual, in times of the output's size, of a model that runs away."""
 
@@ -189,11 +191,15 @@ def _positive(state: ModelState, free: Free) -> bool:
 
 
 def record_weights(state: ModelState) -> FloatArray:
-    """Give one over the rms of the residual of each record, for all its samples."""
+    """Give one over the rms of the residual of each record, for all its samples.
+
+    Where an output stands still a model may leave nothing.
+    """
     weights = np.empty(len(state.measured))
     residual = np.where(np.isfinite(state.residual), state.residual, state.measured)
+    least = max(NO_REST * float(np.sqrt(np.mean(residual**2))), 1e-300)
     for part in state.sample.slices:
-        weights[part] = 1.0 / max(float(np.sqrt(np.mean(residual[part] ** 2))), 1e-300)
+        weights[part] = 1.0 / max(float(np.sqrt(np.mean(residual[part] ** 2))), least)
     return weights
 
 

@@ -195,15 +195,17 @@ def _solved_for(
 
     Of each output the best ones: the mechanism, its gain and that of the other signal.
     Each record counts alike, as in a score: where a force inside shows in loud records,
-    the linear part shows in quiet ones. The last is the best of all samples together. A
-    staircase apart, the input moves in straight lines here: near enough for a
-    beginning.
+    the linear part shows in quiet ones. One that stands still counts as the quietest.
+    The last is the best of all samples together. A staircase apart, the input moves in
+    straight lines here: near enough for a beginning.
     """
     sample = ScoredSamples.of(records)
     wanted = sample.take([record.y for record in records])
     weights = np.empty(len(wanted))
-    for part in sample.slices:
-        weights[part] = 1.0 / max(float(np.std(wanted[part])), 1e-300)
+    sizes = [float(np.std(wanted[part])) for part in sample.slices]
+    quietest = min((size for size in sizes if size > 0), default=1.0)
+    for part, size in zip(sample.slices, sizes, strict=True):
+        weights[part] = 1.0 / max(size, quietest)
     roughly: Any = {"hold": "linear" if hold == "band-limited" else hold}
     found: list[list[tuple[float, float, Begun]]] = [[] for _ in outputs]
     for unit in units:

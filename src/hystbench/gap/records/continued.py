@@ -7,19 +7,16 @@ the first part to know where the second begins.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from hystbench.dataset import Dataset
+from hystbench.errors import InputError
 from hystbench.gap.records.pasts import is_steady, put_before
 from hystbench.record import Record
 from hystbench.units import seconds
 
-OF_A_PART = frozenset(
-    {"rows", "use", "name", "meant", "stands_still", "missing", "period_samples"}
-)
-"""What dataset.yaml may say otherwise of another part of the same measurement."""
 HALF = 0.5
 """Share of a sampling interval by which the clock may be off between two parts."""
 
@@ -38,55 +35,46 @@ def continued(records: Sequence[Record], dataset: Dataset) -> list[Record]:
         As they were read.
     dataset : Dataset
         Tells the files, the rows and the times.
-    """
-    parts = [_Part.of(record, dataset) for record in records]
 
-    def with_past(part: _Part) -> Record:
-        record = part.record
+    Raises
+    ------
+    InputError
+        If the input of a record is constant, with what is put in front of it too.
+    """
+
+    def with_past(record: Record) -> Record:
         if is_steady(record):
             return record
-        pasts = [with_past(x) for x in parts if part.follows(x)]
+        names = dataset.just_before(record.name)
+        before = [x for x in records if x.name in names]
+        pasts = [with_past(x) for x in before if _goes_on(record, x, dataset)]
         longest = max(pasts, key=len, default=None)
         if longest is None:
             return record
         return replace(put_before(longest, record), period_samples=None)
 
-    return [
-        with_past(part) if part.record.use == "hold-out" else part.record
-        for part in parts
+    found = [
+        with_past(record) if record.use == "hold-out" else record for record in records
     ]
+    for record in found:
+        if np.ptp(record.u) == 0:
+            first, last = dataset.entry(record.name).get("rows", (1, len(record)))
+            raise InputError(
+                f"{dataset.record_files[record.name]}: record {record.name} (rows "
+                f"{first} to {last}): its input is constant, and the time does not go "
+                "on to it from the rows before; expected an input that moves"
+            )
+    return found
 
 
-@dataclass(frozen=True)
-class _Part:
-    """A record, and where in a measurement it was."""
-
-    record: Record
-    measurement: str
-    first: int
-    """Row, counted from 1."""
-    last: int | None
-    """None where no rows are told: nothing follows."""
-    dataset: Dataset
-
-    @classmethod
-    def of(cls, record: Record, dataset: Dataset) -> _Part:
-        entry = dataset.entry(record.name)
-        own = sorted((k, v) for k, v in entry.items() if k not in OF_A_PART)
-        first, last = entry.get("rows", (1, None))
-        return cls(record, repr(own), first, last, dataset)
-
-    def follows(self, other: _Part) -> bool:
-        """Tell whether this part begins where another one ends, one sample later."""
-        dt = self.record.dt
-        if self.measurement != other.measurement or self.first - 1 != other.last:
-            return False
-        if not np.isclose(other.record.dt, dt, rtol=1e-4):
-            return False
-        times, before = (_times(x.record.name, x.dataset) for x in (self, other))
-        if times is None or before is None:
-            return True
-        return abs(times[0] - before[1] - dt) <= HALF * dt
+def _goes_on(record: Record, before: Record, dataset: Dataset) -> bool:
+    """Tell whether a record begins where another one ends, one sample later."""
+    if not np.isclose(before.dt, record.dt, rtol=1e-4):
+        return False
+    times, ended = (_times(x.name, dataset) for x in (record, before))
+    if times is None or ended is None:
+        return True
+    return abs(times[0] - ended[1] - record.dt) <= HALF * record.dt
 
 
 def _times(name: str, dataset: Dataset) -> tuple[float, float] | None:

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from hystbench.blocks.held import Hold
 from hystbench.dataset import Dataset, load_dataset
 from hystbench.device_kinds import DeviceKind
@@ -84,10 +86,11 @@ class Evidence:
         """The fit record for identification: the one named, or the slowest.
 
         As :attr:`Dataset.identification` chooses, but among records as they are
-        searched: put together, cut, or with a law taken off.
+        searched: put together, cut, or with a law taken off. The output moves in it.
         """
         if self.identification is None:
-            return min(self.fit, key=lambda record: record.rate)
+            moving = [record for record in self.fit if np.ptp(record.y) > 0]
+            return min(moving or self.fit, key=lambda record: record.rate)
         return next(item for item in self.fit if item.name == self.identification)
 
 
