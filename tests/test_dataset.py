@@ -201,6 +201,30 @@ def test_rounded_times_pass_and_a_stated_tolerance_counts(write_dataset):
     assert load_dataset(path).read("r").dt == pytest.approx(0.001, rel=1e-3)
 
 
+@pytest.mark.parametrize("off", [0.03, 0.3])
+def test_the_line_that_admits_an_uneven_clock_is_told(write_dataset, off):
+    """As told it is taken."""
+    times = TIME + 0.001 * off * np.where(np.arange(len(TIME)) == 20, 1.0, 0.0)
+    path = write_dataset({"a.csv": csv_text(times, U, Y)})
+    said = message(lambda: load_dataset(path).read("a"))
+    line = re.search("write '(time: .*?})'", said)[1]
+    told = float(line.partition("tolerance: ")[2].rstrip("}"))
+    assert off < told < 1.2 * off
+    old = "time: {column: time_s, unit: s}"
+    path.write_text(path.read_text().replace(old, line))
+    assert len(load_dataset(path).read("a")) == len(TIME)
+
+
+def test_of_times_that_no_tolerance_admits_interpolation_is_told(write_dataset):
+    times = TIME + 0.0008 * (np.arange(len(TIME)) == 20)
+    path = write_dataset({"a.csv": csv_text(times, U, Y)})
+    said = message(lambda: load_dataset(path).read("a"))
+    line = "time: {column: time_s, unit: s, uneven: interpolate}"
+    assert f"write '{line}'" in said
+    path.write_text(path.read_text().replace("time: {column: time_s, unit: s}", line))
+    load_dataset(path).read("a")
+
+
 def test_samples_at_uneven_times_are_interpolated_where_that_is_asked_for(
     write_dataset,
 ):
@@ -214,7 +238,7 @@ def test_samples_at_uneven_times_are_interpolated_where_that_is_asked_for(
     )
     records = f"records: [{', '.join(parts)}]\n"
     path = write_dataset({"r.csv": csv_text(time, u, y)}, HEADER + records)
-    assert "'uneven: interpolate'" in message(lambda: load_dataset(path).read("r"))
+    assert "uneven: interpolate" in message(lambda: load_dataset(path).read("r"))
     even = HEADER.replace("unit: s}", "unit: s, uneven: interpolate}")
     path.write_text(even + records)
     first, second = (load_dataset(path).read(name) for name in ("r", "b"))

@@ -116,7 +116,7 @@ class Dataset:
                 )
             else:
                 tolerance = about.get("tolerance", UNIFORM_TOLERANCE)
-                dt = sampling_interval(table, time, tolerance, rows.start)
+                dt = sampling_interval(table, time, tolerance, rows.start, about)
         else:
             dt = 1.0 / self._sampling_frequency(table, columns.values(), entry)
         u, y = signals["input"], signals["output"]

@@ -1,5 +1,6 @@
 """The samples of a record: checked, made whole, their interval found."""
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal, cast
@@ -10,10 +11,14 @@ from hystbench.errors import InputError
 from hystbench.formats import Column, Table, read_table
 from hystbench.record import FloatArray
 from hystbench.units import check_same_unit, is_known
+from hystbench.yaml_files import yaml_text
 
 #: Steps may differ from their mean by this share where dataset.yaml does not say:
 #: printed times are rounded, and a clock that is off by more is no uniform clock.
 UNIFORM_TOLERANCE = 0.01
+
+#: Largest tolerance that dataset.yaml may state, as a share of a step.
+LARGEST_TOLERANCE = 0.5
 
 #: The smallest range of a channel; the largest value is one over it.
 SMALLEST = 1e-30
@@ -226,16 +231,42 @@ def check_increases(table: Table, time: FloatArray, first: int) -> None:
         )
 
 
+def tolerance_for(uneven: float, away: float) -> float | None:
+    """Give the tolerance that a clock needs, with a tenth to spare; None if too large.
+
+    Parameters
+    ----------
+    uneven : float
+        By how much a step differs from the mean one at most, as a share of it.
+    away : float
+        How far a sample lies from even times at most, in steps.
+    """
+    if max(uneven, away) > LARGEST_TOLERANCE:
+        return None
+    return min(LARGEST_TOLERANCE, math.ceil(1100 * uneven) / 1000)
+
+
 def sampling_interval(
     table: Table,
     time: FloatArray,
     tolerance: float,
     first: int,
-    described: bool = True,
+    about: Mapping[str, Any] | None = None,
 ) -> float:
     """Mean step of a time column that increases uniformly within a tolerance.
 
-    Of a record that no dataset.yaml describes, none is named to the user.
+    Parameters
+    ----------
+    table : Table
+    time : ndarray, shape (n,)
+        In seconds.
+    tolerance : float
+        Share of the step.
+    first : int
+        Row of the table, counted from 0, with which it begins.
+    about : mapping, optional
+        What dataset.yaml says of time; by default no dataset.yaml describes the record,
+        and none is named to the user.
     """
     check_increases(table, time, first)
     steps = np.diff(time)
@@ -245,7 +276,14 @@ def sampling_interval(
     step_error = np.abs(steps - dt)
     row = int(np.argmax(step_error))
     if step_error[row] > tolerance * dt or away.max() > max(tolerance, 0.5) * dt:
-        hint = " (time: tolerance, or 'uneven: interpolate')" if described else ""
+        hint = ""
+        if about is not None:
+            enough = tolerance_for(step_error.max() / dt, away.max() / dt)
+            more = {"tolerance": enough} if enough else {"uneven": "interpolate"}
+            kept = {k: v for k, v in about.items() if k != "tolerance"} | more
+            line = yaml_text(kept, 10**6, flow=True).removesuffix("...\n").strip()
+            also = ", or 'uneven: interpolate' in place of a tolerance" * bool(enough)
+            hint = f"; where it is meant write 'time: {line}'{also}"
         raise InputError(
             f"{table.path}: {table.place(first + row + 1)}: a step of {steps[row]:g} s "
             f"where the mean is {dt:g} s; expected uniform sampling within "
@@ -278,4 +316,4 @@ def read_input(file: Path, column: str) -> tuple[float, FloatArray]:
     columns = [table.column(name) for name in ("time_s", column)]
     rows = rows_of(file, table, {}, columns)
     time, u = (whole(table, each, rows, None, False) for each in columns)
-    return sampling_interval(table, time, UNIFORM_TOLERANCE, 0, False), u
+    return sampling_interval(table, time, UNIFORM_TOLERANCE, 0), u

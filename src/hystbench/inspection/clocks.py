@@ -11,17 +11,13 @@ from numpy.typing import NDArray
 from hystbench.errors import InputError
 from hystbench.formats import Table
 from hystbench.record import FloatArray
-from hystbench.samples import UNIFORM_TOLERANCE
+from hystbench.samples import LARGEST_TOLERANCE, UNIFORM_TOLERANCE, tolerance_for
 
 EARLIEST, LATEST = dt.datetime(1990, 1, 1), dt.datetime(2100, 1, 1)
 """Dates between which a computer has recorded."""
 LONGEST_DAYS = 1.0
 """Longest record in days: a column of some ten thousand that runs further counts no
 days."""
-
-
-LARGEST_TOLERANCE = 0.5
-"""Largest tolerance that dataset.yaml may state, as a share of a step."""
 
 
 DIGITS = 10
@@ -131,9 +127,9 @@ def ticks_of(time: FloatArray, where: str, table: Table, first: int = 0) -> Tick
     if whole and mean > 0 and away.max() <= 1.01 * quantum and quantum > 0.5 * mean:
         step = _roundest(there, count, mean, quantum)
         return Ticks(step, UNIFORM_TOLERANCE, True)
-    if uneven <= LARGEST_TOLERANCE and away.max() <= LARGEST_TOLERANCE * mean:
-        with_a_tenth = math.ceil(1100 * uneven) / 1000
-        return Ticks(mean, min(LARGEST_TOLERANCE, with_a_tenth), False)
+    tolerance = tolerance_for(uneven, away.max() / mean) if mean > 0 else None
+    if tolerance is not None:
+        return Ticks(mean, tolerance, False)
     row = int(np.argmax(np.abs(steps - mean)))
     raise InputError(
         f"{where}: {table.place(first + int(places[row + 1]))}: a step in time of "
