@@ -86,6 +86,34 @@ def test_a_german_spreadsheet(run, tmp_path):
     assert record.input.label == "Spulenstrom (mA)"
 
 
+@pytest.mark.parametrize(
+    "header", ["time_s,angle_deg,torque_Nm", "time_s,torque_Nm,angle_deg"]
+)
+def test_of_a_force_and_a_motion_the_force_is_the_input(run, tmp_path, header):
+    """In whatever order they stand; it is said, and another may be asked for."""
+    files = records(tmp_path, header)
+    status, said, _ = run("init", *files)
+    about = written()
+    assert status == 0
+    assert about["input"] == {"column": "torque_Nm", "unit": "Nm"}
+    assert about["output"] == {"column": "angle_deg", "unit": "deg"}
+    assert "the force is taken for the input" in said
+    assert "'--input angle_deg' takes the other" in said
+
+
+def test_columns_that_are_left_are_told(run, tmp_path):
+    time = DT * np.arange(1200)
+    table = np.column_stack([time, sine(5), loop(sine(5)), sine(3)])
+    header = "time_s,voltage_V,displacement_cm,force_N"
+    file = tmp_path / "a.csv"
+    np.savetxt(file, table, "%.9g", ",", header=header, comments="")
+    _, said, _ = run("init", file)
+    about = written()
+    chosen = {about[key]["column"] for key in ("input", "output")}
+    (left,) = {"voltage_V", "displacement_cm", "force_N"} - chosen
+    assert f"neither input nor output: '{left}'" in said
+
+
 def test_a_slash_in_the_header_of_a_text_is_no_group(run, tmp_path):
     files = records(tmp_path, "time [s],voltage [V],speed [m/s]")
     assert run("init", *files)[0] == 0
@@ -521,9 +549,9 @@ def test_times_that_count_from_a_date(run, tmp_path, first, per_second, unit, rt
     assert load_dataset(".").read("run-1").dt == pytest.approx(DT, rel=rtol)
 
 
-@pytest.mark.parametrize("header", ["t_s,Weg_mm,Kraft_N", "t_s,force_N,stroke_mm"])
+@pytest.mark.parametrize("header", ["t_s,Weg_mm,hub_um", "t_s,force_N,stroke_mm"])
 def test_of_two_outputs_the_first_is_the_input_and_that_is_said(run, tmp_path, header):
-    """A damper's rig moves it, a shaker's pushes; most write the input first."""
+    """Most write the input first; of a force and a motion the force is it."""
     files = records(tmp_path, header)
     _, one, two = header.split(",")
     status, said, _ = run("init", *files)
@@ -534,7 +562,7 @@ def test_of_two_outputs_the_first_is_the_input_and_that_is_said(run, tmp_path, h
     status, said, _ = run("init", *files, "--input", two, "--out", "other.yaml")
     assert status == 0
     assert written("other.yaml")["input"]["column"] == two
-    assert "which is which" not in said
+    assert "takes the other" not in said
 
 
 def test_of_two_outputs_the_input_is_asked_for_at_a_terminal(
@@ -551,7 +579,7 @@ def test_of_two_outputs_the_input_is_asked_for_at_a_terminal(
     for stream in ("stdin", "stdout"):
         monkeypatch.setattr(f"sys.{stream}.isatty", lambda: True, raising=False)
     assert run("init", *files)[0] == 0
-    assert asked == [("Which column is the input", "Weg_mm")]
+    assert asked == [("Which column is the input", "Kraft_N")]
     assert written()["input"]["column"] == "Kraft_N"
 
 

@@ -18,6 +18,8 @@ from hystbench.inspection.names import choose, is_time, split_unit
         ("coil_current_A", "coil current", "A"),
         ("plate_degC", "plate", "degC"),
         ("shaft_rpm", "shaft", "rpm"),
+        ("torque_Nm", "torque", "Nm"),
+        ("shaft_mNm", "shaft", "mNm"),
         ("run_two", "run two", None),
         # DIN and ISO write a quantity over its unit.
         ("I_coil/mA", "I coil", "mA"),
@@ -62,6 +64,10 @@ def test_units_in_names(name, words, unit):
         ([("Weg", "mm"), ("Kraft", "N")], (None, None)),
         ([("force", "N"), ("displacement", "mm")], (None, None)),
         ([("force", "N"), ("x", None), ("y", None)], (None, None)),
+        ([("angle", "deg"), ("torque", "Nm")], (None, None)),
+        # Words of a role tell, whatever a column measures.
+        ([("displacement command", "mm"), ("force", "N")], (0, 1)),
+        ([("force response", "N"), ("stroke", "mm")], (1, 0)),
     ],
 )
 def test_input_and_output_by_name_and_unit(columns, expected):

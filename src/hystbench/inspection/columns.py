@@ -13,14 +13,18 @@ from hystbench.inspection.clocks import clock_of
 from hystbench.inspection.names import (
     both_answer,
     choose,
+    force_and_motion,
     is_simulated,
     is_time,
     split_unit,
 )
 from hystbench.inspection.user import Flags, User
 from hystbench.record import FloatArray
+from hystbench.sentences import listed
 from hystbench.units import NONE, check_known, is_known, plain
 
+NAMED = 5
+"""Columns that are left and named; more of them are counted."""
 SHORTEST = 20
 """Samples of a signal; fewer are a table of something else."""
 
@@ -126,7 +130,12 @@ def signals_of(parts: Sequence[RecordColumns], user: User) -> ChosenColumns:
     names = dict(zip(("input", "output"), chosen, strict=True))
     pair = [told[name] for name in rest if name in chosen]
     if given.input is None and given.output is None and both_answer(pair):
-        user.note("either way", **names)
+        forced = force_and_motion(pair) is not None
+        user.note("force and motion" if forced else "either way", **names)
+    left = [repr(name) for name in rest if name not in chosen]
+    if left and (given.input is None or given.output is None):
+        more = [f"{len(left) - NAMED} more"] if len(left) > NAMED else []
+        user.note("columns left", columns=listed([*left[:NAMED], *more]))
     units = {key: _unit(key, name, told[name][1], user) for key, name in names.items()}
     unit_of_time = given.time_unit or (told[time][1] if time else None)
     if time is not None and unit_of_time is None:
@@ -227,7 +236,7 @@ def _channels(
             open_ = [name for name in left if name not in found]
             alone = len(open_) == 1 and found[1 - k] is not None
             asked = f"Which column is the {key}", open_, f"--{key}"
-            likely_one = open_[0] if both_answer([told[n] for n in open_]) else None
+            likely_one = _likely([told[name] for name in open_], open_)
             found[k] = open_[0] if alone else user.ask(*asked, likely_one)
     one, two = found
     if one is None or two is None or one == two:
@@ -235,6 +244,17 @@ def _channels(
             f"{part.where}: {one!r} is both input and output; expected one column each"
         )
     return one, two
+
+
+def _likely(pair: Sequence[tuple[str, str | None]], names: Sequence[str]) -> str | None:
+    """Name the likely input of two columns that may both answer: a force, or the first.
+
+    None of other columns.
+    """
+    if not both_answer(pair):
+        return None
+    force, _ = force_and_motion(pair) or (0, 1)
+    return names[force]
 
 
 def _finite(column: Column) -> FloatArray:

@@ -3,7 +3,10 @@
 import re
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from hystbench.errors import InputError
+from hystbench.quantities import Quantities, quantity_of
 from hystbench.units import PREFIXES, SIMPLE, is_known, plain, seconds
 from hystbench.yaml_files import table_of
 
@@ -13,7 +16,7 @@ KNOWN: Mapping[str, Sequence[str]] = table_of(__file__)
 _BRACKET = re.compile(r"^(?P<name>.*?)\s*/?\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 _SLASH = re.compile(r"^(?P<name>.*?)\s+(?:/|in)\s+(?P<unit>\S+)\s*$")
 _COMMA = re.compile(r"^(?P<name>.*?),\s*(?P<unit>\S+)\s*$")
-ENDS = ("cm", "deg", "degC", "degF", "rpm", "bar", "psi")
+ENDS = ("cm", "deg", "degC", "degF", "rpm", "bar", "psi", "Nm", "mNm", "kNm", "Ncm")
 """Units without a prefix that end a name: no word of a name is one of them."""
 _OVER = re.compile(r"^(?P<name>[^/]*[^/\s])/(?P<unit>[^\s/]+)$")
 SIGNS = ("%", "°", "°C", "Nm")
@@ -117,6 +120,9 @@ def choose(
     leans = [leaning(name, unit) for name, unit in columns]
     if both_answer(columns):
         return None, None
+    if force_and_motion(columns) is not None:  # they are called input and output
+        first = int(np.argmax([_role(name) for name, _ in columns]))
+        return first, 1 - first
     found: list[int | None] = []
     for wanted in (1, -1):
         best = max((wanted * lean for lean in leans), default=0)
@@ -132,9 +138,35 @@ def choose(
 def both_answer(columns: Sequence[tuple[str, str | None]]) -> bool:
     """Tell whether there are two columns that look like outputs, as way and force.
 
-    A shaker's rig has the force as its input, a damper's the way.
+    A shaker's rig has the force as its input, a damper's the way. Nothing is open where
+    a force and a motion are called input or output.
     """
+    if force_and_motion(columns) is not None:
+        one, two = (_role(name) for name, _ in columns)
+        return one == two
     return len(columns) == 2 and all(leaning(*column) < 0 for column in columns)
+
+
+def force_and_motion(
+    columns: Sequence[tuple[str, str | None]],
+) -> tuple[int, int] | None:
+    """Give the places of a force and of a motion, if two columns are that."""
+    if len(columns) != 2:
+        return None
+    kinds = [quantity_of("", unit or "-") for _, unit in columns]
+    for force, motion in ((0, 1), (1, 0)):
+        pair = Quantities(kinds[force], kinds[motion])
+        if pair.input == "force" and pair.causality == "force to motion":
+            return force, motion
+    return None
+
+
+def _role(name: str) -> int:
+    """Tell whether a column is called an input (above zero) or an output (below).
+
+    What it measures is no such word.
+    """
+    return _has(name, "called input") - _has(name, "called output")
 
 
 def _has(name: str, what: str) -> bool:
