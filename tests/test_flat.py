@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hystbench.flat import flats
+from hystbench.flat import flats, held_for
 from tests.gap.made import play
 from tests.inspection.made import sine
 
@@ -67,3 +67,10 @@ def test_a_digitized_backlash_is_not_clipped(levels):
     y = play(sine(5), 0.2)
     step = np.ptp(y) / levels
     assert flats(np.round(y / step) * step) == []
+
+
+def test_a_sensor_that_is_read_slowly_is_told_by_its_changes():
+    y = sine(3)
+    assert held_for(np.repeat(y[::5], 5)[2:]) == 5
+    assert held_for(y) == held_for(np.round(y, 1)) == held_for(np.minimum(y, 0.8)) == 1
+    assert held_for(np.ones(100)) == held_for(np.repeat([1.0, 2.0, 3.0], 10)) == 1

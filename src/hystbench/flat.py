@@ -22,6 +22,8 @@ it."""
 CHANCE = 0.01
 """Stretches that a whole record would have by chance, below which one is none: readings
 of few digits are alike now and then."""
+READINGS = 20
+"""Changes of a channel that all lie at every k-th sample, where chance is no cause."""
 COARSE = 3.0
 """Steps of a digitized channel: what is nearer is its own rounding."""
 
@@ -163,6 +165,22 @@ def _flank(flank: FloatArray, length: int, quantum: float) -> tuple[float, bool]
     half = len(moving) // 2
     whole, within = (abs(moving[k] - moving[0]) / k for k in (len(moving) - 1, half))
     return over, bool(within - quantum / half > AT_ONCE * whole)
+
+
+def held_for(values: FloatArray) -> int:
+    """Give the samples for which a channel holds each of its values; else one.
+
+    A sensor that is read more slowly than it is logged changes at every k-th sample
+    only, counted from any of its changes.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+    """
+    changes = np.flatnonzero(np.diff(values))
+    if len(changes) < READINGS:
+        return 1
+    return int(np.gcd.reduce(np.diff(changes)))
 
 
 def smallest_step(values: FloatArray) -> float:

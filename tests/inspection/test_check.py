@@ -133,6 +133,19 @@ def test_a_clipped_output_is_wrong(tmp_path):
     assert wrong.paste == ("- {file: sine-20.csv, use: fit, stands_still: [output]}",)
 
 
+def test_an_output_that_is_read_slowly_is_not_called_clipped(tmp_path):
+    """Unless it follows an input that stands as long."""
+    made = records((5, 10))
+    held = {k: (u, np.repeat(y[::6], 6)[: len(y)]) for k, (u, y) in made.items()}
+    found = check(load_dataset(write(tmp_path / "a", held)), effects=False)
+    notes = " ".join(item.text for item in of_kind(found, "note"))
+    assert "displacement changes only once in 6 samples" in notes
+    assert "clipped" not in notes
+    both = {k: (np.repeat(u[::6], 6)[: len(u)], y) for k, (u, y) in held.items()}
+    found = check(load_dataset(write(tmp_path / "b", both)), effects=False)
+    assert not [x for x in of_kind(found, "note") if "changes only once" in x.text]
+
+
 def test_missing_samples_are_counted(tmp_path):
     made = records()
     made["sine-20"][1][[100, 101, 500]] = np.nan

@@ -1,11 +1,12 @@
 """What looks wrong of one record by itself: lone samples, flats, holes, the clock."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 from hystbench.dataset import Dataset
-from hystbench.flat import flats
+from hystbench.flat import flats, held_for
 from hystbench.inspection.entries import entry_text
 from hystbench.inspection.facts import Facts
 from hystbench.inspection.findings import Finding, finding
@@ -51,6 +52,9 @@ def record_findings(
             continue
         if key == "input" and facts.input.kind in ("steps", "ramps"):
             continue  # it stands still on purpose
+        if key == "output" and (every := _read_every(record)) > 1:
+            yield finding("held", every=every, **said)
+            continue
         for flat in flats(values):
             if any(first <= flat.first < behind for first, behind in lone[key]):
                 continue
@@ -62,6 +66,15 @@ def record_findings(
         yield replace(finding(f"bridged{far}", **vars(facts)), topic="missing")
     if facts.jitter is not None and facts.jitter > UNEVEN_SHARE:
         yield finding("jitter", name=facts.name, percent=100 * facts.jitter)
+
+
+def _read_every(record: Record) -> int:
+    """Give the samples in which an output is read once; one where each may be new.
+
+    Where its input stands as long, the device may follow that at once.
+    """
+    every = held_for(record.y)
+    return every if math.gcd(every, held_for(record.u)) == 1 else 1
 
 
 def _places(dataset: Dataset, name: str, stretches: list[tuple[int, int]]) -> str:
