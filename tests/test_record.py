@@ -54,6 +54,10 @@ def test_rate_of_a_sine_is_its_angular_frequency():
     )
 
 
+def test_an_input_of_nothing_has_no_rate():
+    assert make(np.zeros(100)).rate == 0.0
+
+
 def test_rate_does_not_hang_on_scale():
     u = np.sin(np.arange(1000) / 50)
     assert make(1400 * u).rate == pytest.approx(make(u).rate, rel=1e-9)

@@ -176,7 +176,9 @@ class Record:
 
     @property
     def rate(self) -> float:
-        """How fast the input moves: rms(du/dt) / rms(u), in 1/s."""
+        """How fast the input moves: rms(du/dt) / rms(u), in 1/s; 0 where it is zero."""
+        if not self.u.any():
+            return 0.0
         speed = np.gradient(self.u, self.dt)
         return float(np.sqrt(np.mean(speed**2) / np.mean(self.u**2)))
 
