@@ -12,6 +12,7 @@ from typing import Any
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Effect
 from hystbench.gap.locate.along_axes import RECORDS_TOLD
+from hystbench.gap.naming.ladder import RETUNED
 from hystbench.gap.thresholds import AS_GOOD
 
 ONLY_FITTED = 0.15
@@ -66,10 +67,14 @@ def _less(
 def _widens(content: Mapping[str, Any]) -> list[str]:
     """Say which step down the ladder is a step up on the hold-out records."""
     return [
-        f"On the hold-out records {step['name']} widens the gap, from "
+        f"On the hold-out records {_step_words(step['name'])} widens the gap, from "
         f"{last['rms']:.3g} to {step['rms']:.3g} {content['unit']}."
         for last, step in steps_up(content)
     ]
+
+
+def _step_words(name: str) -> str:
+    return "re-tuning the base" if name == RETUNED else name
 
 
 def steps_up(content: Mapping[str, Any]) -> list[tuple[Any, Any]]:

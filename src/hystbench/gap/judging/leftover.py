@@ -23,7 +23,7 @@ from hystbench.gap.thresholds import (
     WORTH_A_WORD,
 )
 from hystbench.record import FloatArray
-from hystbench.sentences import finely
+from hystbench.sentences import finely, shortly
 
 
 @dataclass(frozen=True)
@@ -156,9 +156,9 @@ class Leftover:
         ):
             return ""
         return (
-            f"on the fit records {self.unrepeated:.2g} times the noise power is left "
-            "that differs from one period of the same input to the next, which neither "
-            "a named effect nor a wrong hysteresis does"
+            f"on the fit records {shortly(self.unrepeated, 2)} times the noise power "
+            "is left that differs from one period of the same input to the next, which "
+            "neither a named effect nor a wrong hysteresis does"
         )
 
 

@@ -24,7 +24,7 @@ from hystbench.gap.thresholds import (
 )
 from hystbench.periods import find_period
 from hystbench.record import Record
-from hystbench.sentences import finely
+from hystbench.sentences import finely, shortly
 
 Verdict = Literal["named", "parameters", "no-gap", "unnamed"]
 
@@ -128,7 +128,8 @@ def judge_none(
     # 1f. Much is left.
     beyond = "" if left.after >= left.all_after else _beyond_shapes(left.after)
     return "unnamed", (
-        f"on the fit records a gap of {left.all_after:.2g} times the noise power is "
+        f"on the fit records a gap of {shortly(left.all_after, 2)} times the noise "
+        "power is "
         f"there{beyond} and no effect of the vocabulary pays; "
         f"{_box_words(explained_by_box)}"
     )
@@ -136,7 +137,7 @@ def judge_none(
 
 def _beyond_shapes(power: float) -> str:
     """Say what no wrong shape of the base's hysteresis could leave."""
-    times = f"{max(power, 0.0):.2g} times"
+    times = f"{shortly(max(power, 0.0), 2)} times"
     return f" ({times} are more than a wrong shape of the loop could leave)"
 
 
@@ -182,7 +183,8 @@ def _why_in_no_record(
     """
     if left.is_new:
         return (
-            f"what is left on the fit records, {left.all_after:.2g} times the power of "
+            f"what is left on the fit records, {shortly(left.all_after, 2)} times the "
+            "power of "
             "the noise floor, differs from one period of the same input to the next"
         )
     if unrelated is None or left.slight or left.foreign:
@@ -191,7 +193,8 @@ def _why_in_no_record(
     if unrelated.by_chance:
         follows = "the input no more than when it is moved in time against it"
     return (
-        f"what is left on the fit records, {left.after:.2g} times the power of the "
+        f"what is left on the fit records, {shortly(left.after, 2)} times the power "
+        "of the "
         f"noise floor, follows {follows}; {_box_words(explained)}"
     )
 

@@ -102,7 +102,7 @@ def named_apart(
             say("that scores no better: they have none of their own")
             break
         if again.state.power(square) > most:
-            say("too much is left beside that: it is not told")
+            say("too much is left beside that, so that is not shown")
             break
         taken = apart.share(start, square, start.power(square))
         same = _names(again) == _names(found[1])
