@@ -15,7 +15,12 @@ from hystbench.gap.effects.hysteresis import Hysteresis
 from hystbench.gap.experiment.candidates import Limits
 from hystbench.gap.experiment.tell_apart import Experiment, tell_apart
 from hystbench.gap.fitting.augmented_model import augmented, blocks_of
-from hystbench.gap.fitting.model_score import floor_with_steps, make_score, step_error
+from hystbench.gap.fitting.model_score import (
+    floor_with_steps,
+    leaves_more,
+    make_score,
+    step_error,
+)
 from hystbench.gap.fitting.on_records import compared_records
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.parameters import at_ends, base_parameters
@@ -92,7 +97,8 @@ def judge_and_tell(
     say, allowed = asked.say, asked.unnamed_share
     around = found.inside or found  # what the effects are in
     base, start, floor = around.base, around.start, found.floor
-    named, left = _unless_little(found.named, start, floor, say)
+    named = _unless_worse(found.named, start, floor, say)
+    named, left = _unless_little(named, start, floor, say)
     state, model = named.state, augmented(base, named.state)
     before, after = compared_records(start), compared_records(state)
     left = replace(
@@ -143,6 +149,18 @@ def judge_and_tell(
         curves=curves(where),
         experiment=experiment,
     )
+
+
+def _unless_worse(named: Named, start: ModelState, floor: Floor, say: Say) -> Named:
+    """Leave the base as it is where what was found leaves more of the fit records.
+
+    Hold-out records would be told to take that back.
+    """
+    if not leaves_more(named.state, start, floor.square):
+        return named
+    say("what was found leaves more of the fit records than the base: that stays")
+    none = named.with_none_named() if named.rounds else named
+    return replace(none, state=start)
 
 
 def _unless_little(

@@ -784,6 +784,28 @@ def test_an_effect_that_makes_up_for_what_its_host_lacks_is_not_missing(after, p
     assert beats_base(inside, base, Floor(0.01, "declared")) == pays
 
 
+def uneven(records, *offs):
+    """A gain that is off by so much on each record, as its output is."""
+    given = tuple(
+        replace(x, y=x.u + off * np.sin(3 * TIME[: len(x)]))
+        for x, off in zip(records, offs, strict=True)
+    )
+    return state_of((block("gain", value=1.0),), given)
+
+
+def test_forces_that_leave_more_than_the_base_do_not_beat_it():
+    """A score of logarithms falls far for one record that was nearly met before."""
+    records = tuple(record(f"r{k}", np.sin((k + 1) * TIME), TIME) for k in range(2))
+    base, state = uneven(records, 0.1, 0.1), uneven(records, 0.001, 0.3)
+    model = Model("rig", *(Channel("in", "V"), Channel("out", "mm")), base.chain)
+    floor = Floor(1e-6, "declared")
+    score = Score.plain(base.sample, floor.square)
+    assert score.of(state.residual) < score.of(base.residual) - 2 * CERTAIN
+    assert not beats_base(Inside(model, base, Named(state, ()), ""), base, floor)
+    better = uneven(records, 0.001, 0.1)
+    assert beats_base(Inside(model, base, Named(better, ()), ""), base, floor)
+
+
 @pytest.mark.parametrize(
     ("forces", "chain", "gain", "better"),
     [

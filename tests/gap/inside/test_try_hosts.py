@@ -187,3 +187,20 @@ def test_beside_a_timing_the_host_without_it_is_tried_with_lags_alone(
     best = best_with_several(offering(trial, forces), [first, late], float("inf"))
     assert asked == [{"drive-lag"}, set(forces)][:wanted]
     assert best.best is late.best
+
+
+def test_what_leaves_more_than_the_base_is_not_chosen_in_a_host(trial):
+    """It may score less: one record that is nearly met counts much in a logarithm."""
+    alone, worse, fair = (
+        hypothesis(score, left, *names)
+        for score, left, *names in (
+            (0.0, 1.5),
+            (-900.0, 1.2, "asymmetry"),
+            (-600.0, 0.2, "gravity"),
+        )
+    )
+    for item in (alone, worse, fair):
+        item.state.gap = lambda square: 1.0
+        item.state.share = lambda before, square, gap: 1.0
+    assert trial.of(host(), [alone, worse, fair]).best is fair
+    assert trial.of(host(), [alone, worse]).best is alone

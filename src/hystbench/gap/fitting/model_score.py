@@ -16,6 +16,7 @@ from hystbench.gap.records.floor import Floor
 from hystbench.gap.simulation.reshape import closing_reshapings, orthonormal
 from hystbench.gap.simulation.shared import Same
 from hystbench.gap.simulation.simulation import Simulation
+from hystbench.gap.thresholds import AS_GOOD
 from hystbench.metrics import rms
 from hystbench.record import FloatArray
 
@@ -37,6 +38,24 @@ def make_score(state: ModelState, floor: Floor, forms: bool = True) -> Score:
     shape = state.wrong_shape
     directions = directions_of(shape, state) if forms else shape
     return Score(state.sample, directions, floor.square)
+
+
+def leaves_more(state: ModelState, base: ModelState, square: float) -> bool:
+    """Tell whether a model leaves more of the records than a base, as is said of both.
+
+    By over `AS_GOOD`, as on hold-out records. The score may fall all the same: it is a
+    sum of logarithms, and takes much less of one record for a little more of another.
+
+    Parameters
+    ----------
+    state : ModelState
+    base : ModelState
+        On the same records.
+    square : float
+        Of the noise floor.
+    """
+    left, before = (x.power(square) + square for x in (state, base))
+    return left > (1.0 + AS_GOOD) * before
 
 
 def score_of_numbers(state: ModelState, floor: Floor) -> Score:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -70,15 +70,25 @@ def with_a_way(found: Sequence[Fitted]) -> list[Fitted]:
 
 
 def chosen(
-    found: Sequence[Fitted], square: float, share: float = UNNAMED_SHARE
+    found: Sequence[Fitted],
+    square: float,
+    share: float = UNNAMED_SHARE,
+    allowed: Callable[[Fitted], bool] = lambda item: True,
 ) -> Fitted:
     """Take the least score with what effects have to pay; of a tie the fewest numbers.
+
+    Only what is allowed is taken, and the host alone, which comes first.
 
     Bouc and Wen's hysteresis that yields at once is dry friction, which has one number.
     As many numbers have a weight that turns a little and a spring that grows softer:
     then it is the effect that is offered only where its cause can be.
     """
-    values = [charged(item, found, square, share) for item in found]
+    values = [
+        charged(item, found, square, share)
+        if item is found[0] or allowed(item)
+        else np.inf
+        for item in found
+    ]
     best = found[int(np.argmin(values))]
     tied = [
         item

@@ -20,7 +20,7 @@ from hystbench.gap.fitting.cross_validation import (
     gain_on_folds,
     shows_in_one_record,
 )
-from hystbench.gap.fitting.model_score import score_of
+from hystbench.gap.fitting.model_score import leaves_more, score_of
 from hystbench.gap.fitting.on_records import on_records
 from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
 from hystbench.gap.fitting.score import Score
@@ -280,10 +280,11 @@ def beats_base(inside: Inside, start: ModelState, floor: Floor) -> bool:
     """Tell whether effects inside lower the base's score by what one has to gain.
 
     A model of one coordinate may lack what a base of higher order has: an effect that
-    makes up for that is not missing in the base.
+    makes up for that is not missing in the base. Nor may they leave more than the base.
     """
-    score = Score.plain(start.sample, floor.square)
-    return score_of(start, score) - score_of(inside.named.state, score) >= PAYS
+    score, state = Score.plain(start.sample, floor.square), inside.named.state
+    gain = score_of(start, score) - score_of(state, score)
+    return gain >= PAYS and not leaves_more(state, start, floor.square)
 
 
 def beats_chain(inside: Inside, named: Named, floor: Floor, say: Say = silent) -> bool:

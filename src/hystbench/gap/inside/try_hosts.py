@@ -9,6 +9,7 @@ import numpy as np
 
 from hystbench.gap.fitting.in_stages import gentlest
 from hystbench.gap.fitting.least_squares import Fitted
+from hystbench.gap.fitting.model_score import leaves_more
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.choose import best_of_each, charged, chosen, may_gain
@@ -51,8 +52,17 @@ class HostTrial:
         return self.forces.score
 
     def of(self, host: Host, found: Sequence[Fitted]) -> Tried:
-        """Choose among the hypotheses in a host."""
-        return Tried(host, found, chosen(found, self.score.floor, self.share))
+        """Choose among the hypotheses in a host, of those that improve on the base.
+
+        What leaves more of the records than the base could not stand in its place.
+        """
+        floor = self.score.floor
+        best = chosen(found, floor, self.share, lambda x: self._improves(x.state))
+        return Tried(host, found, best)
+
+    def _improves(self, state: ModelState) -> bool:
+        """Tell whether a model leaves no more of the records than the base."""
+        return not leaves_more(state, self.start, self.score.floor)
 
     def with_one(self, host: Host, before: Tried | None = None) -> Tried:
         """Try each force alone in a host, or what did best in the one before."""
