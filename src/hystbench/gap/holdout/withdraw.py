@@ -16,8 +16,10 @@ import numpy as np
 
 from hystbench.gap.bases.gpi import is_another
 from hystbench.gap.bases.lead import lead_warnings
+from hystbench.gap.bases.linear import is_identified_linear
 from hystbench.gap.bases.roughly_known import as_it_was
 from hystbench.gap.fitting.on_records import run_base
+from hystbench.gap.fitting.parameters import base_parameters
 from hystbench.gap.holdout.confidence_cap import no_surer_than_even
 from hystbench.gap.holdout.scored import (
     Outcome,
@@ -26,7 +28,7 @@ from hystbench.gap.holdout.scored import (
     score_hold_out,
 )
 from hystbench.gap.holdout.shortfall import shortfall
-from hystbench.gap.naming.ladder import FitResult
+from hystbench.gap.naming.ladder import FitResult, Rung
 from hystbench.gap.naming.put_in import PutIn
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.lone_samples import (
@@ -68,18 +70,20 @@ class ToShow:
 def show_on_hold_out(decided: ToShow, evidence: Evidence) -> Outcome:
     """Show a decision on the hold-out records; take back what is worse there.
 
-    It is worse where it leaves more than the base, or than the hysteresis that was
-    identified before any effect was known.
+    It is worse where it leaves more than the base, or than what was identified before
+    any effect was known: a hysteresis, or a linear base in whose place a host stands.
     """
     first, fitted, put_in = decided.first, decided.fitted, decided.put_in
     shown = score_hold_out(fitted, evidence.hold_out)
     content = {**decided.content, "withdrawn": None, **shown.content}
-    other, least = first if is_another(first, fitted.base) else None, np.inf
-    if other is not None:
-        least = _left_by(other, fitted, evidence)
+    other, least = None, np.inf
+    if put_in is None and _was_replaced(first, fitted):
+        other, least = first, _left_by(first, fitted, evidence)
+        linear = is_identified_linear(first)
+        who = "the linear base" if linear else "as it was first identified it"
         content["reason"] += (
-            f"; as it was first identified it leaves {sized(least, content['unit'])} "
-            "rms of the hold-out records"
+            f"; {who} leaves {sized(least, content['unit'])} rms of the hold-out "
+            "records"
         )
     taken = withdrawal(content, least)
     if taken is not None:
@@ -87,6 +91,9 @@ def show_on_hold_out(decided: ToShow, evidence: Evidence) -> Outcome:
         # The ladder and what runs away stay: they tell why.
         alone = {key: shown.content[key] for key in ("gap", "records", "black_box")}
         content = without_names({**content, **alone}, taken)
+        if other is not None:
+            numbers = base_parameters(other, _rung_of(other, fitted).state)
+            content["base_parameters"] = numbers
     elif content["effects"] or content["verdict"] == "parameters":
         content = _as_borne_out(content)
     content = _with_warnings(content, shown, decided, evidence)
@@ -99,13 +106,26 @@ def show_on_hold_out(decided: ToShow, evidence: Evidence) -> Outcome:
     return replace(shown, content=content)
 
 
+def _was_replaced(first: Model, fitted: FitResult) -> bool:
+    """Tell whether effects were found beside another base than was first identified."""
+    base, hold = fitted.base, fitted.state.hold
+    if not is_identified_linear(first):
+        return is_another(first, base)
+    return first.with_hold(hold).chain != base.with_hold(hold).chain
+
+
+def _rung_of(base: Model, fitted: FitResult) -> Rung:
+    """Give another base on the fit records, as the first rung."""
+    rung = fitted.rungs[0]
+    chain = base.with_hold(fitted.state.hold).chain
+    return rung._replace(state=replace(rung.state, chain=chain, free=()).settled())
+
+
 def _base_alone(fitted: FitResult, other: Model | None, evidence: Evidence) -> Outcome:
     """Compare the base with the hold-out records, or another in its place, if any."""
     rung, base, hold = fitted.rungs[0], fitted.base, fitted.state.hold
     if other is not None:
-        chain, base = other.with_hold(hold).chain, other
-        state = replace(rung.state, chain=chain, free=()).settled()
-        rung = rung._replace(state=state)
+        base, rung = other, _rung_of(other, fitted)
     unchanged = replace(fitted, base=base, state=rung.state, rungs=(rung,))
     alone = score_hold_out(unchanged, evidence.hold_out)
     return replace(alone, model=as_it_was(base).with_hold(hold))
