@@ -228,6 +228,19 @@ class TestLinear:
         error = (known.y - again.simulate(known.u, known.dt))[200:]
         assert rms(error) == pytest.approx(found.fit_rms, rel=1e-6)
 
+    @pytest.mark.parametrize("count", [1, 2])
+    def test_the_note_says_what_its_errors_leave_out(self, count):
+        """A model from the first sample on, with one offset for all, leaves more."""
+        sines = multisine()
+        known = [
+            record(steady(sines), steady(sines, SYSTEMS["lag"]) + k, name=f"r{k}")
+            for k in range(count)
+        ]
+        found = identified_linear(evidence(*known))
+        assert "behind its first tenth" in found.note
+        assert ("an offset of its own" in found.note) == (count == 2)
+        assert found.fit_rms < 0.01
+
     @given(st.lists(st.floats(-5, 5), min_size=1, max_size=7))
     def test_poles_are_reflected_to_the_left(self, coefficients):
         poles = np.roots([1.0, *stable(np.array(coefficients))[::-1]])

@@ -240,9 +240,10 @@ def linear_of(evidence: Evidence) -> Linear:
     best, found, orders, everything = _chosen(evidence)
     (chain, what), fit, between = _written(best), best.fit, math.inf
     unit = evidence.output.unit
+    own = " and with an offset of its own" if evidence.own_offsets else ""
     note = (
         f"linear base: {what}; rms error {fit:.4g} {unit} on the fit records, "
-        f"{best.folds:.4g} {unit} on folds of them"
+        f"{best.folds:.4g} {unit} on folds of them, each behind its first tenth{own}"
     )
     # A free mass adds up what drives it: it is no filter with a curve in the middle.
     one_filter = evidence.in_windows or evidence.free_starts
