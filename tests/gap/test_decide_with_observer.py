@@ -180,6 +180,21 @@ def test_it_is_tried_where_nothing_is_named_beside_an_identified_base(
     assert bool(tried) == tries
 
 
+@pytest.mark.parametrize("share", [0.999, 0.5])
+def test_it_does_not_stand_where_a_free_run_takes_as_much_of_the_gap(
+    kept_in_place, decided, monkeypatch, share
+):
+    """Names that a free run bears out were given up for one beside an observer."""
+    told = {**decided[0].content, "fit": {"explained": 0.9}}
+    other = replace(decided[0], content=told)
+    plain = replace(decided[1], content={"fit": {"explained": share}}, damper=0.0)
+    asked = Asked(vocabulary=among("stop"))
+    found = with_observer(
+        kept_in_place.deciding, lambda *_: (other, decided[1]), asked, plain
+    )
+    assert (found is None) == (share > 0.9)
+
+
 def test_a_free_run_that_repeats_itself_speaks_against_a_model(kept_in_place):
     """Nothing grows in a mass that is damped much: what it leaves is its own error."""
     mass = block(

@@ -37,12 +37,13 @@ def with_observer(
     evidence: Evidence,
     decide: Callable[[Evidence, Model, Asked], tuple[Decision, ToShow]],
     asked: Asked,
-    plain: ToShow,
+    plain: ToShow | None,
 ) -> tuple[Decision, ToShow] | None:
     """Decide anew beside an observer, where a free run may go astray.
 
-    That stands if forces are named then, inside the mass alone, and a free run does not
-    speak against them: it leaves no more than grown noise may.
+    That stands if forces are named then, inside the mass alone, if they take more of
+    their gap than what was found without it, and if a free run does not speak against
+    them: it leaves no more than grown noise may.
 
     Parameters
     ----------
@@ -51,7 +52,7 @@ def with_observer(
     decide : callable
         Decides on records beside a base.
     asked : Asked
-    plain : ToShow
+    plain : ToShow, optional
         What was decided on them, which stands where hold-out records take names back.
 
     Returns
@@ -73,6 +74,9 @@ def with_observer(
     if decision.content["verdict"] != "named" or elsewhere:
         say("beside an observer none is named")
         return None
+    if not takes_more(decision.content, plain.content if plain else None):
+        say("without an observer as much of the gap is taken")
+        return None
     free = FreeRun.of(decision, damper, evidence.fit[0].decay_s)
     if not free.may_be_grown_noise:
         say("a free run speaks against what is named beside an observer")
@@ -87,6 +91,17 @@ def with_observer(
         damper=damper,
         plain=plain,
     )
+
+
+def takes_more(content: Mapping[str, Any], plain: Mapping[str, Any] | None) -> bool:
+    """Tell whether a decision takes more of its gap than a plain one of a free run.
+
+    Errors did not grow where a free run takes as much.
+    """
+    mine, other = (
+        (x or {}).get("fit", {}).get("explained") or 0.0 for x in (content, plain)
+    )
+    return bool(mine > other)
 
 
 def mass_on_a_spring(evidence: Evidence) -> Model | None:
