@@ -202,5 +202,9 @@ def test_what_leaves_more_than_the_base_is_not_chosen_in_a_host(trial):
     for item in (alone, worse, fair):
         item.state.gap = lambda square: 1.0
         item.state.share = lambda before, square, gap: 1.0
-    assert trial.of(host(), [alone, worse, fair]).best is fair
-    assert trial.of(host(), [alone, worse]).best is alone
+    for found, best in (([alone, worse, fair], fair), ([alone, worse], alone)):
+        tried = trial.of(host(), found)
+        assert tried.best is worse  # a further effect may take more
+        assert trial.of_better(tried).best is best
+    tried = Tried(host(), [alone, worse, fair], fair)
+    assert trial.of_better(tried) is tried

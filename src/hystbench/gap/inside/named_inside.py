@@ -132,6 +132,7 @@ def named_inside(
     if ones is None:
         return None
     tried = with_likenesses(trial, best_with_several(trial, *ones))
+    tried = trial.of_better(tried)
     if not tried.best.effects:
         say("inside: no force pays")
         if identified and fewer is start and not may_gain(tried.best, score):

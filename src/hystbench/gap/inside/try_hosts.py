@@ -52,13 +52,20 @@ class HostTrial:
         return self.forces.score
 
     def of(self, host: Host, found: Sequence[Fitted]) -> Tried:
-        """Choose among the hypotheses in a host, of those that improve on the base.
+        """Choose among the hypotheses in a host."""
+        return Tried(host, found, chosen(found, self.score.floor, self.share))
 
-        What leaves more of the records than the base could not stand in its place.
+    def of_better(self, tried: Tried) -> Tried:
+        """Choose among those that improve on the base, or the host alone.
+
+        What leaves more of the records than the base could not stand in its place. On
+        the way there it may: a further effect takes more.
         """
-        floor = self.score.floor
+        if self._improves(tried.best.state):
+            return tried
+        found, floor = tried.found, self.score.floor
         best = chosen(found, floor, self.share, lambda x: self._improves(x.state))
-        return Tried(host, found, best)
+        return replace(tried, best=best)
 
     def _improves(self, state: ModelState) -> bool:
         """Tell whether a model leaves no more of the records than the base."""
