@@ -22,14 +22,20 @@ def sample_of(lengths):
     return ScoredSamples(tuple(np.arange(n) for n in lengths))
 
 
+def weights_of(lengths):
+    """What each record counts as: on average the same, and by its samples."""
+    weight = max(scores.RECORD_WEIGHT, scores.LEAST_WEIGHT / len(lengths))
+    return weight * np.array(lengths) / np.mean(lengths)
+
+
 def formula(residual, lengths, directions, floor, freedom):
     """The formula of the module's docstring, loop by loop."""
-    weight = max(scores.RECORD_WEIGHT, scores.LEAST_WEIGHT / len(lengths))
+    weights = weights_of(lengths)
     count = directions.shape[1]
     amplitudes = np.linalg.lstsq(directions, residual, rcond=None)[0]
     rest = residual - directions @ amplitudes
     total, first = 0.0, 0
-    for n in lengths:
+    for n, weight in zip(lengths, weights, strict=True):
         total += weight * np.log(max(np.mean(rest[first : first + n] ** 2), floor))
         first += n
     if count:
@@ -120,9 +126,9 @@ def test_on_a_fold_amplitudes_are_judged_by_what_counts(seed, whole):
     left = residual - terms @ found.values
     inside = basis.T @ left
     rest = np.split(left - basis @ inside, np.cumsum(lengths)[:-1])
-    weight = max(scores.RECORD_WEIGHT, scores.LEAST_WEIGHT / len(lengths))
     squares = [np.mean(r[u] ** 2) for r, u in zip(rest, used, strict=True) if u.any()]
-    value = weight * np.sum(np.log(np.maximum(squares, floor)))
+    weights = weights_of(lengths)[[bool(u.any()) for u in used]]
+    value = np.sum(weights * np.log(np.maximum(squares, floor)))
     value += 3 * np.log(max(inside @ inside / 3, floor)) + scores.PARAMETER * 3.0
     assert found.score == pytest.approx(value, abs=1e-6)
     for change in (0.99, 1.01):
@@ -297,3 +303,12 @@ def test_a_sample_takes_one_of_each_equal_stretch(lengths, count):
         assert (np.diff(places) > 0).all()
         stretches = places // (n / len(places) + 1e-12)
         assert abs(stretches - np.arange(len(places))).max() <= 1
+
+
+def test_what_fits_a_short_record_alone_is_not_worth_what_fits_the_long_one():
+    """A short step response was fitted to a thousandth, and the rest was left."""
+    lengths = [197, 805]
+    score = Score(sample_of(lengths), np.zeros((1002, 0)), 1e-8)
+    short, both = (np.repeat(rms, lengths) for rms in ((0.003, 0.16), (0.034, 0.029)))
+    assert score.of(both) < score.of(short)
+    assert np.sum(score.weights) == pytest.approx(2 * score.weight)

@@ -137,8 +137,9 @@ def _split(model: ModelState, score: Score) -> tuple[FloatArray, float]:
 def _terms(rest: FloatArray, score: Score, held: Used) -> FloatArray:
     """Give the terms of the score of held-back samples, by record."""
     terms = []
-    for part, used in zip(score.sample.slices, held, strict=True):
+    parts = zip(score.sample.slices, held, score.weights, strict=True)
+    for part, used, weight in parts:
         if used.any():
             square = max(float(np.mean(rest[part][used] ** 2)), score.floor)
-            terms.append(score.weight * used.mean() * np.log(square))
+            terms.append(weight * used.mean() * np.log(square))
     return np.array(terms)

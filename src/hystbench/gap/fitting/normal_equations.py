@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dpotrs
 
 from hystbench.record import FloatArray
@@ -70,3 +71,15 @@ def joined(first: FloatArray, mixed: FloatArray, second: FloatArray) -> FloatArr
     out[..., :k, :k], out[..., k:, k:] = first, second
     out[..., :k, k:], out[..., k:, :k] = mixed, mixed.mT
     return out
+
+
+def column_rms(columns: FloatArray) -> FloatArray:
+    """Give the root mean square of columns; one for those that are zero."""
+    sizes = np.sqrt(np.einsum("ij,ij->j", columns, columns) / len(columns))
+    return np.where(sizes > 0, sizes, 1.0)
+
+
+def in_one_piece(part: NDArray[np.intp]) -> slice | NDArray[np.intp]:
+    """Give a view's slice where samples stand in one piece, as they mostly do."""
+    whole = part[-1] - part[0] + 1 == len(part)
+    return slice(part[0], part[-1] + 1) if whole else part

@@ -6,10 +6,11 @@ With ``s_i`` the mean square of ``c`` in record ``i``, ``f`` the noise floor's m
 square, ``p`` the number of fitted parameters and ``h`` what is charged for moving
 numbers that are held (:class:`Held`), the score is
 
-    sum_i W log(max(s_i, f)) + d log(max(|a|^2 / d, f)) + P p + h
+    sum_i W_i log(max(s_i, f)) + d log(max(|a|^2 / d, f)) + P p + h
 
-A record counts as ``W`` independent samples (:func:`record_weight`). So reshaping the
-hysteresis is allowed and is charged, and the first two terms saturate.
+A record counts as ``W_i`` independent samples: on average :func:`record_weight`, and by
+its number of scored samples. So reshaping the hysteresis is allowed and is charged, and
+the first two terms saturate.
 """
 
 from __future__ import annotations
@@ -24,8 +25,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.errors import InputError
+from hystbench.gap.fitting import normal_equations
 from hystbench.gap.fitting.held import Held
-from hystbench.gap.fitting.normal_equations import joined, solve
+from hystbench.gap.fitting.normal_equations import column_rms, joined, solve
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
 from hystbench.record import FloatArray
@@ -124,8 +126,14 @@ class Score:
 
     @cached_property
     def weight(self) -> float:
-        """Independent samples that each record counts as, in a fold as in the whole."""
+        """Independent samples that a record counts as on average."""
         return record_weight(len(self.sample.positions))
+
+    @cached_property
+    def weights(self) -> FloatArray:
+        """Independent samples each record counts as: a short one shows fewer waves."""
+        counts = np.array([len(own) for own in self.sample.positions], dtype=float)
+        return self.weight * counts / max(float(np.mean(counts)), 1e-300)
 
     def split(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Split signals into the rest and the amplitudes of the directions.
@@ -198,7 +206,7 @@ class Score:
         whole = np.column_stack([residual, columns])
         if not np.isfinite(whole).all():
             return Told(own, np.ones(own), None, charge)
-        scale = _column_rms(columns)
+        scale = column_rms(columns)
         whole[:, 1:] /= scale
         found = self._products(whole, beside)
         within = found.inside.T @ found.inside
@@ -258,7 +266,7 @@ class Score:
         held : Held, optional
             What holds the amplitudes of the columns; by default nothing.
         """
-        scale = _column_rms(columns)
+        scale = column_rms(columns)
         held = Held.here(np.zeros(len(scale))) if held is None else held
         columns, charge = columns / scale, np.diag(held.stiffness / scale**2)
         power = columns.T @ columns / len(columns)
@@ -333,6 +341,13 @@ class Score:
         )
 
     @cached_property
+    def _weights_of_parts(self) -> FloatArray:
+        """Independent samples of the records of which some samples count."""
+        if self.used is None:
+            return self.weights[self.weights > 0.0]
+        return self.weights[[bool(own.any()) for own in self.used]]
+
+    @cached_property
     def _counts(self) -> NDArray[np.intp]:
         """Samples that count, by record."""
         return np.array([len(part) for part in self.parts])
@@ -356,30 +371,20 @@ class Score:
             return table.reshape(len(self.parts), n, -1)
         out = np.zeros((len(self.parts), n, table.shape[1]))
         for own, part in zip(out, self.parts, strict=True):
-            own[: len(part)] = table[_place(part)]
+            own[: len(part)] = table[normal_equations.in_one_piece(part)]
         return out
 
     def _weights(self, squares: FloatArray) -> FloatArray:
         """Give what a sum of squares counts, by record, beside such mean squares."""
-        return self.weight / (self._counts * np.maximum(squares, self.floor))
+        powers = self._counts * np.maximum(squares, self.floor)
+        return self._weights_of_parts / powers
 
     def _value(self, squares: FloatArray, power: float, freedom: float) -> float:
-        outside = self.weight * float(np.log(np.maximum(squares, self.floor)).sum())
+        logs = np.log(np.maximum(squares, self.floor))
+        outside = float(self._weights_of_parts @ logs)
         return outside + self.of_directions(power) + PARAMETER * freedom
 
     def of_directions(self, power: float) -> float:
         """Give the term of the directions, whose amplitudes have a sum of squares."""
         d = self.directions.shape[1]
         return d * float(np.log(max(power / d, self.floor))) if d else 0.0
-
-
-def _column_rms(columns: FloatArray) -> FloatArray:
-    """Give the root mean square of columns; one for those that are zero."""
-    sizes = np.sqrt(np.einsum("ij,ij->j", columns, columns) / len(columns))
-    return np.where(sizes > 0, sizes, 1.0)
-
-
-def _place(part: NDArray[np.intp]) -> slice | NDArray[np.intp]:
-    """Give a view's slice where samples stand in one piece, as they mostly do."""
-    whole = part[-1] - part[0] + 1 == len(part)
-    return slice(part[0], part[-1] + 1) if whole else part
