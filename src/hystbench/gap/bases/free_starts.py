@@ -15,6 +15,7 @@ import numpy as np
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.bases.output_error import has_constant
+from hystbench.gap.bases.poles import lasting_ones, poles_of
 from hystbench.gap.bases.spectral import Spectra, fit_ratio
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.first_state import (
@@ -75,11 +76,10 @@ def begun_at_any_level(
         Those that a linear base was not identified from.
     base : Model
     seconds : float
-        Length of the longest record that it was identified from: what keeps more than
-        half of its power over that is not known to fade.
+        Length of the longest record that it was identified from: what hardly fades in
+        that is not known to fade.
     """
-    poles = _poles(base)
-    lasting = poles[(np.exp(poles.real * seconds) > MOST) & (poles.imag >= 0.0)]
+    lasting = lasting_ones(_poles(base), seconds)
     if not len(lasting):
         return records
     return tuple(
@@ -90,8 +90,7 @@ def begun_at_any_level(
 
 def _poles(base: Model) -> ComplexArray:
     blocks = [block for block in base.chain if isinstance(block, TransferFunction)]
-    every = [np.zeros(0, complex), *(np.roots(x.denominator) for x in blocks)]
-    return np.concatenate(every)
+    return np.concatenate([np.zeros(0, complex), *map(poles_of, blocks)])
 
 
 def start_fades(base: Model, evidence: Evidence) -> bool:

@@ -13,6 +13,7 @@ from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.starts import plainest_start, possible_starts
 from hystbench.cores import each
 from hystbench.gap.bases.output_error import OutputError, own_columns
+from hystbench.gap.bases.poles import lasting_ones
 from hystbench.gap.bases.spectral import (
     Ratio,
     Spectra,
@@ -27,7 +28,6 @@ from hystbench.gap.records.scored_samples import without
 from hystbench.gap.thresholds import (
     ANOTHER_MODE,
     LOOSE,
-    MOST,
     NUMBER_PAYS,
     TIMING_PAYS,
 )
@@ -138,10 +138,11 @@ class Found(Judged):
     def lasting(self) -> ComplexArray:
         """Poles of swings that hardly fade, in 1/s, one of each pair."""
         records = self.task.records
-        poles = self.ratio.poles(self.task.scale)
+        if any(record.repeats for record in records):
+            return np.zeros(0, complex)
         seconds = max(len(record) * record.dt for record in records)
-        lasts = (np.exp(poles.real * seconds) > MOST) & (poles.imag > 0)
-        return poles[lasts & (not any(record.repeats for record in records))]
+        lasting = lasting_ones(self.ratio.poles(self.task.scale), seconds)
+        return lasting[lasting.imag > 0.0]
 
     def beside(self, swings: ComplexArray) -> Found:
         """Fit it again with swings of such poles free in each record."""

@@ -11,8 +11,6 @@ from hystbench.record import ComplexArray, Record
 STILL = 0.1
 """Share of the rms of an output's steps from sample to sample that is no motion: a
 hundredth of its power."""
-
-
 FADED = 0.01
 """Share of what a state does at first that is nothing."""
 
